@@ -282,7 +282,7 @@ def study(
     check: Annotated[bool, typer.Option("--check", help="Tell which documents are stale.")] = False,
     as_json: Json = False,
 ) -> int:
-    """Run a study that figures of the documentation come from; NAME --help tells its options.
+    """Run a study that figures of the documentation come from, in a checkout; NAME --help tells its options.
 
     Writes NAME.json, NAME.md and pictures. Exit code 1 if a claim that the study checks does not hold.
     """

@@ -35,6 +35,7 @@ _R = TypeVar("_R")
 _OWNER = "retarder-synth"
 _KERNEL_SOURCES = (
     "plant_models/valve_drive.py",
+    "scripts/studies/**/kernels/**/*.py",
     "synth/**/kernels/**/*.py",
     "tuning_tables/estimator.py",
     "tuning_tables/passages/regulator.py",
@@ -42,7 +43,10 @@ _KERNEL_SOURCES = (
     "tuning_tables/passages/tracker.py",
     "tuning_tables/rule.py",
 )
-"""Patterns of the files that kernels are compiled from; tests/architecture finds these by itself and compares."""
+"""Patterns of the files that kernels are compiled from; tests/architecture finds these by itself and compares.
+
+Studies have kernels of their own, in a checkout. These are kept in the same directory, so its name changes with them.
+"""
 
 _COMPILERS = ("llvmlite", "numba", "numpy")
 _FINGERPRINT = re.compile(r"[0-9a-f]{16}")
@@ -90,17 +94,22 @@ def kernel_sources(root: Path) -> list[str]:
 def kernel_fingerprint(root: Path | None = None) -> str:
     """Return 16 hexadecimal digits that change with any kernel source, compiler version or setting, and the processor.
 
-    `root` is the directory that holds the three packages; by default the one this module was loaded from.
+    `root` is the directory that holds the packages; by default the one this module was loaded from.
     """
     root = Path(__file__).resolve().parents[2] if root is None else root
-    facts = [f"{name} {version(name)}" for name in _COMPILERS]
-    facts += [platform.python_implementation(), platform.python_version(), sys.platform, _processor()]
-    facts += sorted(f"{k}={v}" for k, v in os.environ.items() if k.startswith("NUMBA_") and k not in _HARMLESS_SETTINGS)
-    digest = hashlib.sha256(repr(facts).encode())
+    digest = hashlib.sha256(repr(compiling_facts()).encode())
     for name in kernel_sources(root):
         content = (root / name).read_bytes()
         digest.update(f"\0{name}\0{len(content)}\0".encode() + content)
     return digest.hexdigest()[:16]
+
+
+def compiling_facts() -> list[str]:
+    """What compiled kernels depend on besides their sources: versions of the compilers, settings, the processor."""
+    facts = [f"{name} {version(name)}" for name in _COMPILERS]
+    facts += [platform.python_implementation(), platform.python_version(), sys.platform, _processor()]
+    settings = (f"{k}={v}" for k, v in os.environ.items() if k.startswith("NUMBA_") and k not in _HARMLESS_SETTINGS)
+    return [*facts, *sorted(settings)]
 
 
 def guarded(call: Callable[_P, _R], *args: _P.args, **kwargs: _P.kwargs) -> _R:

@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.any_time.closed_loop import AnyTimeLaw, NodeSurfaces
+from synth.kernels.any_time.closed_loop import AnyTimeLaw
 from synth.kernels.loop import regulator
 from synth.solver.switching_lines import SwitchingLines, always_up
 from tuning_tables.active_table import ActiveTable
@@ -27,10 +27,6 @@ def fixed(array: NDArray[Any], dtype: type[Scalar]) -> NDArray[Scalar]:
     view: NDArray[Scalar] = np.ascontiguousarray(array, dtype=dtype).view()
     view.setflags(write=False)
     return view
-
-
-NO_LINE, NO_NODE = fixed(np.empty((0, 0, 0, 0)), np.float64), fixed(np.empty(0), np.float64)
-NO_SURFACES = NodeSurfaces(NO_LINE, NO_LINE, NO_NODE, NO_NODE, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -55,7 +51,7 @@ class TableController:
         if table.decisions is Decisions.AT_REST:
             return self.rule
         slopes, pressures = fixed(table.slopes, np.float32), fixed(table.pressures, np.float32)
-        return AnyTimeLaw(self.rule, slopes, pressures, table.highest_raised, self.gauge_factor, NO_SURFACES)
+        return AnyTimeLaw(self.rule, slopes, pressures, table.highest_raised, self.gauge_factor)
 
     @cached_property
     def rule(self) -> regulator.Rule:
@@ -100,7 +96,7 @@ class LineController:
         if self.decisions is Decisions.AT_REST:
             return self.rule
         none = fixed(np.empty((0, 2)), np.float32), fixed(np.empty(0), np.float32)
-        return AnyTimeLaw(self.rule, *none, 0, 1.0, NO_SURFACES)
+        return AnyTimeLaw(self.rule, *none, 0, 1.0)
 
     @property
     def rule(self) -> regulator.Rule:

@@ -7,9 +7,9 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from synth.kernels.cache import kernel_fingerprint
+from synth.kernels.cache import compiling_facts
 
-WITHOUT_RESULTS = ("synth/checker/", "synth/cli/", "synth/studies/in_the_loop/", "synth/present/")
+WITHOUT_RESULTS = ("synth/checker/", "synth/cli/", "synth/present/")
 """Parts that show or check results and make none."""
 
 PATTERNS = ("plant_models/**/*.py", "plant_models/**/*.toml", "synth/**/*.py", "tuning_tables/**/*.py")
@@ -22,7 +22,7 @@ def software_sha256() -> str:
     The processor counts because compiled kernels are made for it: another one may round otherwise.
     """
     root = Path(__file__).resolve().parents[2]
-    digest = hashlib.sha256(f"{version('retarder-synth')}\0{version('scipy')}\0{kernel_fingerprint()}".encode())
+    digest = hashlib.sha256(f"{version('retarder-synth')}\0{version('scipy')}\0{compiling_facts()}".encode())
     names = {path.relative_to(root).as_posix(): path for pattern in PATTERNS for path in root.glob(pattern)}
     for name in sorted(names):
         if not name.startswith(WITHOUT_RESULTS):

@@ -12,7 +12,7 @@ from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("plant_models", "synth", "tuning_tables")
+PACKAGES = ("plant_models", "scripts", "synth", "tuning_tables")
 
 
 def compiled_from(modules: Iterable[ModuleType]) -> set[str]:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("plant_models", "synth", "tuning_tables")
+PACKAGES = ("plant_models", "scripts", "synth", "tuning_tables")
 HEAVY = ("control", "h5py", "matplotlib", "numba", "scipy")
 FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 
@@ -55,8 +55,10 @@ def test_import_contracts_are_kept() -> None:
         ("synth/kernels/intruder.py", "from synth.solver import tabulate", "kernels-are-bare"),
         ("synth/solver/tabulate.py", "from synth.book import case_result", "steps-go-one-way"),
         ("synth/intruder.py", "import math", "steps-go-one-way"),
-        ("synth/book/tune.py", "from synth.studies import cases", "steps-go-one-way"),
-        ("synth/cli/tune.py", "from synth.studies import cases", "studies-are-apart"),
+        ("synth/book/tune.py", "from synth.sweep import plan", "steps-go-one-way"),
+        ("synth/cli/study.py", "from scripts.studies import cases", "studies-are-apart"),
+        ("plant_models/intruder.py", "import scripts.studies.cases", "studies-are-apart"),
+        ("tuning_tables/intruder.py", "def f():\n    import scripts", "studies-are-apart"),
         ("synth/checker/claims.py", "from tuning_tables import rule", "checker-is-independent"),
     ],
 )
@@ -73,6 +75,10 @@ def test_an_import_against_the_contracts_is_found(tmp_path: Path, name: str, sou
 
 def test_command_line_starts_without_the_numeric_libraries() -> None:
     assert loaded_by("import synth.cli").isdisjoint({"control", "matplotlib", "numba", "scipy"})
+
+
+def test_the_declaration_of_the_commands_loads_no_study() -> None:
+    assert "scripts" not in loaded_by("import synth.cli.commands, synth.cli.study")
 
 
 def test_a_table_is_used_with_numpy_alone() -> None:
@@ -117,7 +123,7 @@ def is_declared_elsewhere(node: ast.stmt) -> bool:
     return any("override" in text or "validator" in text or "serializer" in text for text in decorators)
 
 
-SCRIPTS = sorted(path for path in (ROOT / "scripts").iterdir() if path.suffix not in (".in", ".lock"))
+SCRIPTS = sorted(path for path in (ROOT / "scripts").iterdir() if path.is_file() and path.suffix == "")
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)

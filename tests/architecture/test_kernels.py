@@ -65,7 +65,7 @@ CACHE_PATHS = """
 import importlib, os, sys
 
 for name in sys.argv[1:]:
-    for loaded in [each for each in sys.modules if each.startswith("synth")]:
+    for loaded in [each for each in sys.modules if each.startswith(("scripts", "synth"))]:
         del sys.modules[loaded]
     os.environ.pop("NUMBA_CACHE_DIR", None)
     if "numba" in sys.modules:

@@ -15,14 +15,14 @@ from typing import NamedTuple
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("plant_models", "synth", "tuning_tables")
+PACKAGES = ("plant_models", "scripts", "synth", "tuning_tables")
 SOURCES = {
     path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
     for package in PACKAGES
     for path in sorted((ROOT / package).rglob("*.py"))
 }
 
-MOST_ROOMS = 14
+MOST_ROOMS = 13
 MOST_LINES, MOST_FUNCTION_LINES, MOST_ARGUMENTS = 300, 60, 8
 KERNEL_FUNCTION_LINES, KERNEL_ARGUMENTS = 88, 36
 """What the longest kernel has; lower these when it becomes shorter."""
@@ -189,7 +189,7 @@ def test_no_two_modules_import_each_other() -> None:
 def unreached(sources: Mapping[str, str]) -> set[str]:
     """Modules outside the studies that no command, no front door, and for physics no study, has a use for."""
     modules = {module_of(name) for name in sources}
-    studies = {module for module in modules if module.startswith("synth.studies")}
+    studies = {module for module in modules if module.startswith("scripts")}
     used = reached(sources, {"synth.cli.commands", *PACKAGES}) | {
         module for module in reached(sources, studies) if module.startswith("plant_models")
     }
@@ -204,7 +204,7 @@ def test_a_module_that_nobody_needs_is_found() -> None:
     planted = {
         **SOURCES,
         "synth/book/intruder.py": "from synth.book import tune",
-        "synth/studies/intruder.py": "from synth.book import intruder\nfrom plant_models import intruder",
+        "scripts/studies/intruder.py": "from synth.book import intruder\nfrom plant_models import intruder",
         "plant_models/intruder.py": "",
         "tuning_tables/intruder.py": "",
     }

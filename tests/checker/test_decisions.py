@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from scripts.studies.in_the_loop.agreement import ask
 from synth.checker.float32 import decide, rises
 from synth.checker.table_reading import read_table
-from synth.studies.in_the_loop.agreement import ask
 from tests.controller_code.sample_book import approaching_book, sample_book, surface_book
 from tuning_tables import to_json
 from tuning_tables.table_book import TableBook

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from synth.studies.in_the_loop.controller_process import compile_with
+from scripts.studies.in_the_loop.controller_process import compile_with
 
 COMPILE = ("gcc", "-std=c99", "-w", "-O1")
 

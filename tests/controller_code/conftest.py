@@ -9,7 +9,7 @@ from functools import cache
 
 import pytest
 
-from synth.studies.in_the_loop.controller_process import Controller, build_controller
+from scripts.studies.in_the_loop.controller_process import Controller, build_controller
 from tests.controller_code.changed_export import ChangedExport, changed_export
 from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
 from tuning_tables.table_book import TableBook

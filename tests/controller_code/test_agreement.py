@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.agreement import Questions, Tracks, ask, decisions_of, differences, follow
-from synth.studies.in_the_loop.builds import BUILDS, Build
-from synth.studies.in_the_loop.controller_process import BuildError, build_controller
+from scripts.studies.in_the_loop.agreement import Questions, Tracks, ask, decisions_of, differences, follow
+from scripts.studies.in_the_loop.builds import BUILDS, Build
+from scripts.studies.in_the_loop.controller_process import BuildError, build_controller
 from tests.controller_code.conftest import Tool
 from tuning_tables import decide_for, speed_for
 from tuning_tables.estimator import begin

@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from synth.studies.in_the_loop.builds import BUILDS, Build
-from synth.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
+from scripts.studies.in_the_loop.builds import BUILDS, Build
+from scripts.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
 from tests.controller_code.conftest import ToChange, Tool
 from tests.controller_code.sample_book import sample_book
 from tests.controller_code.test_export import FLOAT_H, PEDANTIC

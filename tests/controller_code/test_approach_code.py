@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.agreement import ask, choices_of, differences, follow
-from synth.studies.in_the_loop.controller_process import COMMAND, sources_of
+from scripts.studies.in_the_loop.agreement import ask, choices_of, differences, follow
+from scripts.studies.in_the_loop.controller_process import COMMAND, sources_of
 from tests.controller_code.conftest import Built, ToChange
 from tests.controller_code.sample_book import approaching_book, table_of, with_approach
 from tuning_tables import Approach, Status

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.agreement import choices_of
-from synth.studies.in_the_loop.controller_process import COMMAND, build_controller
+from scripts.studies.in_the_loop.agreement import choices_of
+from scripts.studies.in_the_loop.controller_process import COMMAND, build_controller
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimator_of, table_of
 from tuning_tables import Estimator, Status

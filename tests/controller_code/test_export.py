@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.controller_process import (
+from scripts.studies.in_the_loop.controller_process import (
     CONTRACT,
     BuildError,
     compile_with,

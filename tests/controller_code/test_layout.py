@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from scripts.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
 from synth.checker.finding import Kind
 from synth.checker.verdict import NOT_CONFIRMED, verify
 from synth.cli import main
-from synth.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
 from tests.controller_code.conftest import Tool
 from tuning_tables import read_json
 from tuning_tables.c_source import c_files

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.builds import SANITIZED
-from synth.studies.in_the_loop.controller_process import CONTRACT, compile_with, sources_of, write_sources
-from synth.studies.in_the_loop.hard_samples import hard_samples
+from scripts.studies.in_the_loop.builds import SANITIZED
+from scripts.studies.in_the_loop.controller_process import CONTRACT, compile_with, sources_of, write_sources
+from scripts.studies.in_the_loop.hard_samples import hard_samples
 from tests.controller_code.conftest import Built, ToChange, Tool
 from tests.controller_code.sample_book import estimating_book, sample_book, table_of
 from tuning_tables import alarms_for, speed_for, unseen_samples

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.controller_process import CONTRACT, compile_with
+from scripts.studies.in_the_loop.controller_process import CONTRACT, compile_with
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimating_book
 from tests.controller_code.weighed_cuts import NAMES, TARGET_M_S, braked_by, weighed_book, weighed_cuts

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.builds import BUILDS, Build
-from synth.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
+from scripts.studies.in_the_loop.builds import BUILDS, Build
+from scripts.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
 from tests.controller_code.conftest import ToChange, Tool
 from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, right

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.agreement import ask, choices_of, differences, follow
-from synth.studies.in_the_loop.controller_process import (
+from scripts.studies.in_the_loop.agreement import ask, choices_of, differences, follow
+from scripts.studies.in_the_loop.controller_process import (
     COMMAND,
     CONTRACT,
     READING,

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from synth.studies.in_the_loop.agreement import Questions, Tracks, ask, differences, follow
-from synth.studies.in_the_loop.controller_process import CONTRACT, Controller, compile_with
+from scripts.studies.in_the_loop.agreement import Questions, Tracks, ask, differences, follow
+from scripts.studies.in_the_loop.controller_process import CONTRACT, Controller, compile_with
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimating_book, park_book, sample_book
 from tuning_tables.c_source import c_files
@@ -42,8 +42,8 @@ int main(int count, char **arguments)
 
 
 def both_in_one(folder: Path, small: bool) -> Path:
-    """A program that holds both controllers, each with a process around it (`synth.studies.in_the_loop`)."""
-    around = (files("synth.studies.in_the_loop") / "controller_process.c").read_text("ascii")
+    """A program that holds both controllers, each with a process around it (`scripts.studies.in_the_loop`)."""
+    around = (files("scripts.studies.in_the_loop") / "controller_process.c").read_text("ascii")
     objects = []
     for name, book in POSITIONS.items():
         prefix = ExportPrefix(name.upper())

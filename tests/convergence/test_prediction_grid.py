@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
+from scripts.studies.tuned_table import tuned_table
 from synth.book.rounded_table import predict
 from synth.configuration.config_file import load_config, parse_config
 from synth.problem.resolution import Resolution, finer_for_check
@@ -18,7 +19,6 @@ from synth.solver.chain.finer_end import times_as_fine
 from synth.solver.policy_density import exit_density
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
-from synth.studies.tuned_table import tuned_table
 from tuning_tables import ControllerTable
 
 CASES = [("gondola-4-22t", 2.0), ("gondola-4-36t", 2.0), ("gondola-4-66t", 2.0), ("gondola-4-52t", 3.0)]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from synth.studies.in_the_loop.agreement import Differences
-from synth.studies.in_the_loop.agreement_study import Agreement, Row
-from synth.studies.in_the_loop.loop_study import InTheLoop
-from synth.studies.in_the_loop.loop_study import Row as TableRow
+from scripts.studies.in_the_loop.agreement import Differences
+from scripts.studies.in_the_loop.agreement_study import Agreement, Row
+from scripts.studies.in_the_loop.loop_study import InTheLoop
+from scripts.studies.in_the_loop.loop_study import Row as TableRow
 
 SAME = Differences(0, 0, 0, 0, "fault 0 at 0")
 

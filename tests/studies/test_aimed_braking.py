@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from synth.studies.aimed_braking.findings import AimedBraking
-from synth.studies.documents import result_of
+from scripts.studies.aimed_braking.findings import AimedBraking
+from scripts.studies.documents import result_of
 
 ROOT = Path(__file__).parents[2]
 

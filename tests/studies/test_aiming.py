@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from synth.studies.aimed_braking.anemometer import ByReadingAndWind, WindByAnemometer
-from synth.studies.aimed_braking.sensitivity import EXIT_STD_M_S, farther
-from synth.studies.aiming.aimed_cuts import AimedCuts, rolled_cuts
-from synth.studies.aiming.hump import POINTS, large_hump, weight_category
-from synth.studies.aiming.levelled import BOUNDS_M_S, NEAR, levelled
-from synth.studies.aiming.norm_distance import BEYOND, norm_distance, root
-from synth.studies.aiming.places import FreeDistance, FromCrest
-from synth.studies.aiming.recorded_cuts import NearestRecord
-from synth.studies.aiming.regression import ByRegression
-from synth.studies.aiming.trial import Cuts, Draws, outcomes, tried, value_of
-from synth.studies.yard_chain.chain import CATEGORY, ESTIMATED, MEASURED, BookSize, Kind, chain_samples
-from synth.studies.yard_chain.faults import HandBraked, WithMissing
-from synth.studies.yard_chain.practices import TODAY_EXIT, Samples, practice, saved
+from scripts.studies.aimed_braking.anemometer import ByReadingAndWind, WindByAnemometer
+from scripts.studies.aimed_braking.sensitivity import EXIT_STD_M_S, farther
+from scripts.studies.aiming.aimed_cuts import AimedCuts, rolled_cuts
+from scripts.studies.aiming.hump import POINTS, large_hump, weight_category
+from scripts.studies.aiming.levelled import BOUNDS_M_S, NEAR, levelled
+from scripts.studies.aiming.norm_distance import BEYOND, norm_distance, root
+from scripts.studies.aiming.places import FreeDistance, FromCrest
+from scripts.studies.aiming.recorded_cuts import NearestRecord
+from scripts.studies.aiming.regression import ByRegression
+from scripts.studies.aiming.trial import Cuts, Draws, outcomes, tried, value_of
+from scripts.studies.yard_chain.chain import CATEGORY, ESTIMATED, MEASURED, BookSize, Kind, chain_samples
+from scripts.studies.yard_chain.faults import HandBraked, WithMissing
+from scripts.studies.yard_chain.practices import TODAY_EXIT, Samples, practice, saved
 from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement
 from synth.yard.aim.position_models import NormalPosition, PositionModel
 from synth.yard.aim.readings import ResistanceByTwoSpeeds

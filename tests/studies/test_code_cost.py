@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.studies.in_the_loop.code_cost import (
+from scripts.studies.in_the_loop.code_cost import (
     CodeSize,
     dearest_call,
     missing,
@@ -15,7 +15,7 @@ from synth.studies.in_the_loop.code_cost import (
     size_program,
     totals_in,
 )
-from synth.studies.in_the_loop.cost_study import Cost, Dearest, Sizes, thousands
+from scripts.studies.in_the_loop.cost_study import Cost, Dearest, Sizes, thousands
 
 LISTING = """\
 retarder_table.o  :

@@ -8,20 +8,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from scripts.studies.control_computer.benefit import RateEstimates
+from scripts.studies.control_computer.comparison import Comparison, joint_factor, judged, verdict
+from scripts.studies.control_computer.controllers import Controllers, controllers
+from scripts.studies.control_computer.failed_hump import FailedPosition, StuckAtStage, failed_trial
+from scripts.studies.control_computer.findings import ControlComputer
+from scripts.studies.control_computer.hump_runs import HUMPED, first_trains
+from scripts.studies.control_computer.published_speeds import published_speeds
+from scripts.studies.control_computer.queues import QueueRun, compared, queue_runs, simulated_run, with_joint_limits
+from scripts.studies.control_computer.reliability import DUPLEXES, duplex_point, lives_beside, printed_availability
+from scripts.studies.documents import result_of
+from scripts.studies.humping.base_trial import Day
+from scripts.studies.humping.runs import Group
 from synth.computer.economics.hump_rates import RATES, HumpRates
 from synth.computer.sizing.demand_service import Discipline
-from synth.studies.control_computer.benefit import RateEstimates
-from synth.studies.control_computer.comparison import Comparison, joint_factor, judged, verdict
-from synth.studies.control_computer.controllers import Controllers, controllers
-from synth.studies.control_computer.failed_hump import FailedPosition, StuckAtStage, failed_trial
-from synth.studies.control_computer.findings import ControlComputer
-from synth.studies.control_computer.hump_runs import HUMPED, first_trains
-from synth.studies.control_computer.published_speeds import published_speeds
-from synth.studies.control_computer.queues import QueueRun, compared, queue_runs, simulated_run, with_joint_limits
-from synth.studies.control_computer.reliability import DUPLEXES, duplex_point, lives_beside, printed_availability
-from synth.studies.documents import result_of
-from synth.studies.humping.base_trial import Day
-from synth.studies.humping.runs import Group
 from synth.yard.humping.made_trial import brake_of
 from synth.yard.humping.outcomes import joined
 from synth.yard.humping.resolved_trial import load_trial

@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from scripts.studies.cases import Case, named_cases
+from scripts.studies.correction.ageing import FrictionFalls, SensorCreeps
+from scripts.studies.correction.findings import Corrected, Row
+from scripts.studies.correction.sequence import corrected, run_sequence
+from scripts.studies.correction.study import rms_ratio
+from scripts.studies.tuned_table import tuned_table
 from synth.configuration.config_file import load_config
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
 from synth.simulation.random_passes import random_passes
-from synth.studies.cases import Case, named_cases
-from synth.studies.correction.ageing import FrictionFalls, SensorCreeps
-from synth.studies.correction.findings import Corrected, Row
-from synth.studies.correction.sequence import corrected, run_sequence
-from synth.studies.correction.study import rms_ratio
-from synth.studies.tuned_table import tuned_table
 from tuning_tables.active_table import ActiveTable, active
 from tuning_tables.correction import Correction, corrected_speed
 from tuning_tables.rule import decide_for

@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.frame.input_error import InputError
-from synth.simulation.passes import ExitSample
-from synth.studies.coverage import (
+from scripts.studies.coverage import (
     CASES,
     COARSE_PASSES,
     DEFAULT_PASSES,
@@ -20,6 +18,8 @@ from synth.studies.coverage import (
     intervals,
     shares_held,
 )
+from synth.frame.input_error import InputError
+from synth.simulation.passes import ExitSample
 
 
 def sample(error: np.ndarray, target: float = 3.0) -> ExitSample:

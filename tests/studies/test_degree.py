@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from synth.studies.degree.study import COMPARED, METHOD, SOLVER_LINES, Degrees, Options
+from scripts.studies.degree.study import COMPARED, METHOD, SOLVER_LINES, Degrees, Options
 
 
 @pytest.fixture(scope="module")

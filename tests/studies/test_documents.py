@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from scripts.studies.documents import KEPT, documents, filled, listed, result_of, stale, written
+from scripts.studies.registry import STUDIES
 from synth.frame.input_error import InputError
-from synth.studies.documents import KEPT, documents, filled, listed, result_of, stale, written
-from synth.studies.registry import STUDIES
 
 ROOT = Path(__file__).parents[2]
 KEPT_NAMES = sorted(path.stem for path in (ROOT / KEPT).glob("*.json"))

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from scripts.studies.estimator.reserve_findings import CaseRows, Excess, Reserves, Row
+from scripts.studies.estimator.reserve_picture import picture
+from scripts.studies.estimator.reserve_study import excess_outside
+from scripts.studies.estimator.wrong import braking_otherwise
 from synth.configuration.plant_parameter import nominal_value
 from synth.configuration.plant_values import SLOPES
 from synth.simulation.passes import ExitSample
-from synth.studies.estimator.reserve_findings import CaseRows, Excess, Reserves, Row
-from synth.studies.estimator.reserve_picture import picture
-from synth.studies.estimator.reserve_study import excess_outside
-from synth.studies.estimator.wrong import braking_otherwise
 from tests.synth.conftest import pilot_plant
 
 FIRST = Row(

@@ -9,19 +9,19 @@ import pytest
 from scipy.stats import binom
 
 from plant_models.library import car_names, load_car, load_position, position_names
+from scripts.studies.document_pictures import is_stale, write_picture
+from scripts.studies.every_cut.cut_figures import Beside, BesideWithout, CutFigures, Outcome, Untuned
+from scripts.studies.every_cut.findings import EveryCut, class_cells, faults_of, findings_of, length_name
+from scripts.studies.every_cut.kept_cases import KeptCases
+from scripts.studies.every_cut.measured_case import measured
+from scripts.studies.every_cut.order_statistics import median_interval
+from scripts.studies.every_cut.picture import figures
+from scripts.studies.every_cut.random_case import CARS_OF_A_CUT, RandomCase, random_case
+from scripts.studies.every_cut.study import METHOD, Options, configuration
+from scripts.studies.result import Result, run_study
+from scripts.studies.study import Study, silent
 from synth.configuration.config_file import parse_config
 from synth.solver.one_blas_thread import one_blas_thread
-from synth.studies.document_pictures import is_stale, write_picture
-from synth.studies.every_cut.cut_figures import Beside, BesideWithout, CutFigures, Outcome, Untuned
-from synth.studies.every_cut.findings import EveryCut, class_cells, faults_of, findings_of, length_name
-from synth.studies.every_cut.kept_cases import KeptCases
-from synth.studies.every_cut.measured_case import measured
-from synth.studies.every_cut.order_statistics import median_interval
-from synth.studies.every_cut.picture import figures
-from synth.studies.every_cut.random_case import CARS_OF_A_CUT, RandomCase, random_case
-from synth.studies.every_cut.study import METHOD, Options, configuration
-from synth.studies.result import Result, run_study
-from synth.studies.study import Study, silent
 
 MANY = [random_case(5, number) for number in range(400)]
 
@@ -138,7 +138,7 @@ def test_what_is_told_of_a_class_is_counted() -> None:
 
 
 def test_a_picture_is_the_one_of_its_result_until_that_changes(tmp_path: Path) -> None:
-    study = Study("every-cut", "", 1.0, "", "synth.studies.every_cut.study", "synth.studies.every_cut.picture")
+    study = Study("every-cut", "", 1.0, "", "scripts.studies.every_cut.study", "scripts.studies.every_cut.picture")
     result = Result(study, "0", Options(), findings_of(1, 2000, [SOUND]))
     file = tmp_path / "every-cut-ratio.svg"
     assert is_stale(file, result, "ratio")
@@ -181,17 +181,20 @@ def test_a_finished_case_is_not_done_again(tmp_path: Path) -> None:
     assert made == ["a", "b", "c"]
 
 
-def test_what_another_software_has_found_is_not_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("changed", ["software_sha256", "studies_sha256"])
+def test_what_another_software_has_found_is_not_taken(
+    changed: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     file = tmp_path / "every-cut.jsonl"
     assert KeptCases(file).outcome_of("a", lambda: SOUND) == SOUND
-    monkeypatch.setattr("synth.studies.every_cut.kept_cases.software_sha256", lambda: "another")
+    monkeypatch.setattr(f"scripts.studies.every_cut.kept_cases.{changed}", lambda: "another")
     other = replace(SOUND, rms_m_s=0.2)
     assert KeptCases(file).outcome_of("a", lambda: other) == other
 
 
 @pytest.mark.slow
 def test_figures_do_not_depend_on_how_a_run_is_cut() -> None:
-    study = Study("every-cut", "", 1.0, "", "synth.studies.every_cut.study")
+    study = Study("every-cut", "", 1.0, "", "scripts.studies.every_cut.study")
     together = METHOD.run(replace(METHOD.smallest, workers=3), silent)
     alone = run_study(study, replace(METHOD.smallest, first=1, cases=1, workers=1)).findings
     assert isinstance(alone, EveryCut)

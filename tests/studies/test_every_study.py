@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from synth.studies.registry import STUDIES
-from synth.studies.result import read_result, run_study
-from synth.studies.study import Study
+from scripts.studies.registry import STUDIES
+from scripts.studies.result import read_result, run_study
+from scripts.studies.study import Study
 
 COARSE = """\
 [targets]

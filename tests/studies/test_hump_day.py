@@ -10,9 +10,9 @@ import pytest
 
 from plant_models.hump import Switch
 from plant_models.library.catalogue import load_weight_categories
-from synth.studies.aiming.trial import Value
-from synth.studies.documents import result_of
-from synth.studies.humping.base_trial import (
+from scripts.studies.aiming.trial import Value
+from scripts.studies.documents import result_of
+from scripts.studies.humping.base_trial import (
     FEEDBACK,
     OPEN,
     Day,
@@ -22,12 +22,12 @@ from synth.studies.humping.base_trial import (
     with_planner,
     with_stds,
 )
-from synth.studies.humping.crossings import REPLICATES, Sums, decided, drawn_weights
-from synth.studies.humping.day_figures import Pair, difference, fewer_catch_ups
-from synth.studies.humping.findings import HumpDay
-from synth.studies.humping.runs import Group, measured
-from synth.studies.humping.sensitivity import on_graph, on_section, thrown_in, with_king_switch, with_switches
-from synth.studies.humping.table_positions import FRICTION, SUPPLY, TablePositions
+from scripts.studies.humping.crossings import REPLICATES, Sums, decided, drawn_weights
+from scripts.studies.humping.day_figures import Pair, difference, fewer_catch_ups
+from scripts.studies.humping.findings import HumpDay
+from scripts.studies.humping.runs import Group, measured
+from scripts.studies.humping.sensitivity import on_graph, on_section, thrown_in, with_king_switch, with_switches
+from scripts.studies.humping.table_positions import FRICTION, SUPPLY, TablePositions
 from synth.yard.humping.class_choice import ClassChoice
 from synth.yard.humping.hump_routes import Mark
 from synth.yard.humping.outcomes import TrainOutcomes

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from plant_models.library.catalogue import load_weight_categories
-from synth.studies.aiming.trial import Value
-from synth.studies.humping.base_trial import OPEN, Day, with_stds
-from synth.studies.humping.books import PARK
-from synth.studies.humping.closed_loops import REGULATED, REGULATORS, TABLES, ClosedLoops
-from synth.studies.humping.exits import exits_of
-from synth.studies.humping.frontier import (
+from scripts.studies.aiming.trial import Value
+from scripts.studies.humping.base_trial import OPEN, Day, with_stds
+from scripts.studies.humping.books import PARK
+from scripts.studies.humping.closed_loops import REGULATED, REGULATORS, TABLES, ClosedLoops
+from scripts.studies.humping.exits import exits_of
+from scripts.studies.humping.frontier import (
     CONTROLS,
     OPEN_LOOP,
     WITH_FEEDBACK,
@@ -23,9 +23,9 @@ from synth.studies.humping.frontier import (
     normal_families,
     sigma,
 )
-from synth.studies.humping.gains import normal_gains, table_gains
-from synth.studies.humping.runs import OUTCOMES
-from synth.studies.humping.table_positions import TablePositions
+from scripts.studies.humping.gains import normal_gains, table_gains
+from scripts.studies.humping.runs import OUTCOMES
+from scripts.studies.humping.table_positions import TablePositions
 from synth.yard.humping.hump_position import Arrivals, HumpPosition, Passed
 from synth.yard.humping.outcomes import TrainOutcomes, joined
 from synth.yard.humping.trial import HumpTrial

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from synth.studies.interpolation import METHOD, Interpolated, Row, parted, worst_of
+from scripts.studies.interpolation import METHOD, Interpolated, Row, parted, worst_of
 
 
 def row(target: float, tuned: float, book: float, low: float, between: bool = True) -> Row:

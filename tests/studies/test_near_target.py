@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from scripts.studies.near_target import NEAR_M_S, log_rms_near, near_ratio, near_target
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import REPLICATE_PASSES
-from synth.studies.near_target import NEAR_M_S, log_rms_near, near_ratio, near_target
 
 TARGET_M_S = 3.0
 

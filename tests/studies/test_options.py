@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from scripts.studies.options import option, options_from, parser_of
 from synth.frame.input_error import InputError
-from synth.studies.options import option, options_from, parser_of
 
 
 @dataclass(frozen=True)

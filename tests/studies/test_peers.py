@@ -12,6 +12,14 @@ import pytest
 from numba import njit
 
 from plant_models import Plant
+from scripts.studies.peers.findings import PREDICTIVE, TABLE, Contest, Figures, as_good, beaten, better
+from scripts.studies.peers.kernels.peer_loop import BY_TABLE, Peer
+from scripts.studies.peers.kernels.prediction import Prediction, held, line_square, stage_by_prediction
+from scripts.studies.peers.kernels.pulses import STATE, Pulses, begin_pulses, stage_by_pulses
+from scripts.studies.peers.peer_loop import PeerLoop, peer_loop
+from scripts.studies.peers.peer_tuning import PREDICTIVE as PREDICTIVE_FAMILY
+from scripts.studies.peers.peer_tuning import PULSES_MEASURED, Aimed, Search, cost_of, tuned_peer
+from scripts.studies.peers.regulators import NO_PREDICTION, NO_PULSES, PredictiveController, PulseController, no_table
 from synth.book.estimation.estimator_design import estimator_of
 from synth.kernels.any_time.closed_loop import AnyTimeLaw
 from synth.kernels.loop.closed_loop import Draws
@@ -22,14 +30,6 @@ from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.peers.findings import PREDICTIVE, TABLE, Contest, Figures, as_good, beaten, better
-from synth.studies.peers.kernels.peer_loop import BY_TABLE, Peer
-from synth.studies.peers.kernels.prediction import Prediction, held, line_square, stage_by_prediction
-from synth.studies.peers.kernels.pulses import STATE, Pulses, begin_pulses, stage_by_pulses
-from synth.studies.peers.peer_loop import PeerLoop, peer_loop
-from synth.studies.peers.peer_tuning import PREDICTIVE as PREDICTIVE_FAMILY
-from synth.studies.peers.peer_tuning import PULSES_MEASURED, Aimed, Search, cost_of, tuned_peer
-from synth.studies.peers.regulators import NO_PREDICTION, NO_PULSES, PredictiveController, PulseController, no_table
 from tests.synth.any_time.tabled import tabled
 from tuning_tables import Decisions
 

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from plant_models import Plant
-from synth.studies.any_time.study import quicker
-from synth.studies.estimator.wrong import wrongs
-from synth.studies.limits.change import FREE_DEGREE, QUIET_M_S, changes
-from synth.studies.robustness.sensor_fault import no_fault
+from scripts.studies.any_time.study import quicker
+from scripts.studies.estimator.wrong import wrongs
+from scripts.studies.limits.change import FREE_DEGREE, QUIET_M_S, changes
+from scripts.studies.sensor_fault import no_fault
 
 
 def differences(one: Any, other: Any, name: str = "") -> Iterator[tuple[str, Any, Any]]:

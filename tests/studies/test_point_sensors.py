@@ -9,6 +9,14 @@ import numpy as np
 import pytest
 
 from plant_models import PointSensors
+from scripts.studies.point_sensors.fault_losses import fault_rows
+from scripts.studies.point_sensors.findings import PointSensorWorth
+from scripts.studies.point_sensors.layouts import equal_sections
+from scripts.studies.point_sensors.rows import FaultRow, ManyRow, SensorRow
+from scripts.studies.point_sensors.sensor_table import AXLES, SensorTable, tabulated, unfinished_share
+from scripts.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
+from scripts.studies.point_sensors.tables import kind_of, tables_of
+from scripts.studies.point_sensors.told import RESISTANCES, speeds_for, squares_at, told_bound
 from synth.book.sensors.candidate_places import LayoutCase, candidate_places
 from synth.book.sensors.layout import equal_layout, with_layout
 from synth.book.sensors.layout_plan import LayoutProblem, best_places, found_layouts
@@ -22,14 +30,6 @@ from synth.solver.chain.scenarios import Scenarios, resistance_scenarios
 from synth.solver.chain.sensor_passages import with_point_sensors
 from synth.solver.policy_density import exit_density
 from synth.solver.told_lines import told_factors
-from synth.studies.point_sensors.fault_losses import fault_rows
-from synth.studies.point_sensors.findings import PointSensorWorth
-from synth.studies.point_sensors.layouts import equal_sections
-from synth.studies.point_sensors.rows import FaultRow, ManyRow, SensorRow
-from synth.studies.point_sensors.sensor_table import AXLES, SensorTable, tabulated, unfinished_share
-from synth.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
-from synth.studies.point_sensors.tables import kind_of, tables_of
-from synth.studies.point_sensors.told import RESISTANCES, speeds_for, squares_at, told_bound
 
 COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=5, resistance_nodes=1)
 DECIDING = 5

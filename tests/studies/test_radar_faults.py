@@ -9,10 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import Plant
-from synth.book.estimation.estimator_design import estimator_of
-from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop, simulate
-from synth.simulation.random_passes import RandomPasses, random_passes
-from synth.studies.radar_faults.faults import (
+from scripts.studies.radar_faults.faults import (
     FROZEN,
     RADAR_FAULTS,
     Biased,
@@ -23,8 +20,11 @@ from synth.studies.radar_faults.faults import (
     missing,
     standing,
 )
-from synth.studies.radar_faults.study import chance, joined, moments_s
-from synth.studies.radar_faults.watched_passes import passes_by_weight, watched_passes
+from scripts.studies.radar_faults.study import chance, joined, moments_s
+from scripts.studies.radar_faults.watched_passes import passes_by_weight, watched_passes
+from synth.book.estimation.estimator_design import estimator_of
+from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop, simulate
+from synth.simulation.random_passes import RandomPasses, random_passes
 from tests.synth.case_factory import make_plant, make_table
 from tuning_tables.estimator import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM
 

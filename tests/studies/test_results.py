@@ -11,12 +11,12 @@ from typing import Any
 
 import pytest
 
+from scripts.studies import study as study_module
+from scripts.studies.markdown_table import MarkdownTable, around, plus_minus, table
+from scripts.studies.options import option
+from scripts.studies.result import Result, read_result, run_study
+from scripts.studies.study import Findings, Method, Study
 from synth.frame.input_error import InputError
-from synth.studies import study as study_module
-from synth.studies.markdown_table import MarkdownTable, around, plus_minus, table
-from synth.studies.options import option
-from synth.studies.result import Result, read_result, run_study
-from synth.studies.study import Findings, Method, Study
 
 
 @dataclass(frozen=True)

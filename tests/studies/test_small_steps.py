@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from scripts.studies.book import Measure, cells, measure, row_of, short_cell
+from scripts.studies.cases import class_cases, named_cases, of_masses
+from scripts.studies.criteria.study import BINS_M_S, criteria, density_of
+from scripts.studies.degree.study import CaseRow, Degrees, Row
+from scripts.studies.estimator.pair import as_tuned
+from scripts.studies.side_by_side import side_by_side
 from synth.configuration.config_file import load_config
 from synth.frame.input_error import InputError
 from synth.problem.aim import Aim
 from synth.problem.criterion import SQUARED_ERROR_CRITERION
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import TableController
-from synth.studies.book import Measure, cells, measure, row_of, short_cell
-from synth.studies.cases import class_cases, named_cases, of_masses
-from synth.studies.criteria.study import BINS_M_S, criteria, density_of
-from synth.studies.degree.study import CaseRow, Degrees, Row
-from synth.studies.estimator.pair import as_tuned
-from synth.studies.side_by_side import side_by_side
 from tests.synth.case_factory import make_sample
 
 

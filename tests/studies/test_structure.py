@@ -10,6 +10,18 @@ from pathlib import Path
 import pytest
 
 from plant_models import Approach, Plant
+from scripts.studies.document_pictures import pictures_of
+from scripts.studies.documents import KEPT, result_of, stale, written
+from scripts.studies.structure.study import (
+    SENSORS,
+    WIRED_TOLERANCE_M_S,
+    Structure,
+    energy_rule,
+    part_rows,
+    passage_run,
+)
+from scripts.studies.structure.wired_pressure import first_time
+from scripts.studies.structure.wired_radar import wired_radar_pass
 from synth.configuration.config_file import load_config
 from synth.frame.input_error import InputError
 from synth.simulation.controllers import TableController
@@ -20,18 +32,6 @@ from synth.simulation.structure.diagram import Diagram
 from synth.simulation.structure.part import Part
 from synth.simulation.structure.passage_diagram import passage_diagram
 from synth.simulation.structure.radar_diagram import radar_diagram
-from synth.studies.document_pictures import pictures_of
-from synth.studies.documents import KEPT, result_of, stale, written
-from synth.studies.structure.study import (
-    SENSORS,
-    WIRED_TOLERANCE_M_S,
-    Structure,
-    energy_rule,
-    part_rows,
-    passage_run,
-)
-from synth.studies.structure.wired_pressure import first_time
-from synth.studies.structure.wired_radar import wired_radar_pass
 from tests.synth.test_control_system import table_for
 
 ROOT = Path(__file__).parents[2]

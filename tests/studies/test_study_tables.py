@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from scripts.studies.cases import named_cases
+from scripts.studies.tuned_table import CREATED, tuned_table
 from synth.book.class_setup import class_setup, origin_of
 from synth.book.comparison.told_regulator import by_lines, run_told
 from synth.book.tuned_table import solutions
@@ -21,8 +23,6 @@ from synth.solver.chain.chain import check_chain, persistent_chain
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.told_lines import SQUARED_ERROR_ALONE, knowing, mean_square, told_factors, told_lines
 from synth.solver.tuned_lines import fitted, polished
-from synth.studies.cases import named_cases
-from synth.studies.tuned_table import CREATED, tuned_table
 
 
 @one_blas_thread()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
+from scripts.studies.told_friction import THOROUGH, simulate_told, thorough, told_friction
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController, simulate
@@ -16,7 +17,6 @@ from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.told_lines import SQUARED_ERROR_ALONE
 from synth.solver.tuned_lines import tuned_lines
-from synth.studies.told_friction import THOROUGH, simulate_told, thorough, told_friction
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=4, resistance_nodes=1)
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from synth.studies.timing.machine import processor_name, this_machine
-from synth.studies.timing.turns import Ratio, Times, in_turns, speed_against, three_digits, timed
+from scripts.studies.timing.machine import processor_name, this_machine
+from scripts.studies.timing.turns import Ratio, Times, in_turns, speed_against, three_digits, timed
 
 
 def test_calls_take_turns_after_one_round_that_counts_for_nothing() -> None:

@@ -7,10 +7,7 @@ from random import Random
 
 import pytest
 
-from synth.checker.coarse_simulation import Passes
-from synth.checker.low_friction import GROUP
-from synth.checker.table_reading import Table, read_table
-from synth.studies.verification import (
+from scripts.studies.verification import (
     FACTORS,
     USUAL_HONESTY,
     Doubts,
@@ -20,6 +17,9 @@ from synth.studies.verification import (
     sample_of,
     with_rms_times,
 )
+from synth.checker.coarse_simulation import Passes
+from synth.checker.low_friction import GROUP
+from synth.checker.table_reading import Table, read_table
 from tests.tuning_tables.conftest import table
 from tuning_tables import ControllerTable, Predicted, to_json
 

@@ -9,6 +9,7 @@ import pytest
 from matplotlib.text import Text
 
 from plant_models import Plant
+from scripts.studies.structure.signals import SIGNALS
 from synth.frame.picture.figure_file import draw
 from synth.present.plots.block_diagram import block_diagram, branches, in_mathtext, parting
 from synth.present.plots.block_layout import (
@@ -27,7 +28,6 @@ from synth.simulation.passage_loop import close_passage_loop
 from synth.simulation.structure.diagram import Sketch
 from synth.simulation.structure.passage_diagram import passage_diagram
 from synth.simulation.structure.radar_diagram import radar_diagram
-from synth.studies.structure.signals import SIGNALS
 from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule, with_approach
 from tests.synth.test_control_system import table_for
 

@@ -70,6 +70,16 @@ def test_the_ratio_of_paired_samples() -> None:
     assert high - low == pytest.approx(0.0, abs=1e-9)
 
 
+def test_the_interval_of_the_ratio_covers() -> None:
+    hits = 0
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        wide, narrow = (sample_of(3.0 + std * rng.standard_normal(2000)) for std in (0.06, 0.05))
+        low, high = rms_ratio(wide, narrow, 3.0)[1]
+        hits += low < 1.2 < high
+    assert 180 <= hits <= 199  # 95 % of 200, and four standard deviations
+
+
 @pytest.mark.parametrize(("hits", "n"), [(0, 3000), (1, 20), (7, 100), (20, 20)])
 def test_clopper_pearson_is_the_exact_interval(hits: int, n: int) -> None:
     exact = stats.binomtest(hits, n).proportion_ci(0.95, method="exact")

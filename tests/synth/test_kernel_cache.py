@@ -13,6 +13,7 @@ from synth.kernels.cache import empty_kernel_cache, guarded, kernel_fingerprint,
 
 SOURCES = (
     "plant_models/valve_drive.py",
+    "scripts/studies/peers/kernels/peer.py",
     "synth/kernels/sweep/bellman.py",
     "synth/kernels/deep/er.py",
     "tuning_tables/rule.py",
@@ -20,7 +21,12 @@ SOURCES = (
 )
 
 
-OTHERS = ("plant_models/cut.py", "synth/configuration/settings.py", "tuning_tables/table.py")
+OTHERS = (
+    "plant_models/cut.py",
+    "scripts/studies/peers/study.py",
+    "synth/configuration/settings.py",
+    "tuning_tables/table.py",
+)
 
 
 @pytest.fixture

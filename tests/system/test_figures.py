@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from scripts.studies.documents import KEPT
+from scripts.studies.named_study import study_named
+from scripts.studies.result import read_result, run_study
 from synth.book.rounded_table import with_prediction
 from synth.book.validate_table import Rehearsal, Revalidation, plant_for, revalidate_all
 from synth.configuration.config_file import parse_config
@@ -17,9 +20,6 @@ from synth.simulation.controllers import full_brake
 from synth.simulation.exit_statistics import brake_power, exit_statistics
 from synth.simulation.passes import ExitSample
 from synth.solver.chain.chain import check_chain
-from synth.studies.documents import KEPT
-from synth.studies.named_study import study_named
-from synth.studies.result import read_result, run_study
 from tuning_tables import ControllerTable, read_json
 
 ROOT = Path(__file__).parents[2]

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from scripts.studies.in_the_loop.agreement import ask, differences, follow
+from scripts.studies.in_the_loop.controller_process import build_controller
 from synth.cli import main
-from synth.studies.in_the_loop.agreement import ask, differences, follow
-from synth.studies.in_the_loop.controller_process import build_controller
 from tests.controller_code.conftest import tool as tool
 from tests.synth.test_own_types import FAULTS, USED, own
 from tests.system.conftest import EPOCH, Command

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import json
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from scripts.studies.registry import STUDIES
+from scripts.studies.result import read_result
 from synth.cli import main
-from synth.studies.registry import STUDIES
-from synth.studies.result import read_result
+from synth.cli.study import laboratory
 from tests.frame.results import results_in
+
+ROOT = Path(__file__).parents[2]
 
 
 def test_the_list_names_question_and_time_of_every_study(capsys: pytest.CaptureFixture[str]) -> None:
@@ -59,3 +65,26 @@ def test_a_run_leaves_its_files(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert capsys.readouterr().out == result.json()
     assert (tmp_path / "interpolation.md").read_text(encoding="utf-8") == result.markdown()
     assert {Path(name).suffix for name in results_in(tmp_path)} == {".json", ".md", ".png", ".svg"}
+
+
+def test_the_product_alone_says_where_studies_are(tmp_path: Path) -> None:
+    """What a wheel holds, copied to a place of its own: -S keeps the checkout that is installed out of the path."""
+    for package in ("plant_models", "synth", "tuning_tables"):
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
+    elsewhere = [str(tmp_path), *(path for path in sys.path if path.endswith("site-packages"))]
+    program = f"import sys; sys.path += {elsewhere!r}; from synth.cli import main; raise SystemExit(main(['study']))"
+    run = subprocess.run(
+        [sys.executable, "-S", "-P", "-c", program],
+        cwd=tmp_path, env={}, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert (run.returncode, run.stdout, run.stderr.count("\n")) == (2, "", 1)
+    assert "studies come with a checkout of the source" in run.stderr
+
+
+def test_a_study_that_lacks_a_library_is_not_taken_for_a_missing_checkout(monkeypatch: pytest.MonkeyPatch) -> None:
+    def lacking(name: str) -> None:
+        raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib")
+
+    monkeypatch.setattr("synth.cli.study.import_module", lacking)
+    with pytest.raises(ModuleNotFoundError, match="matplotlib"):
+        laboratory()

@@ -44,22 +44,8 @@ class SampledDrive(NamedTuple):
     parts: int
 
 
-class NodeSurfaces(NamedTuple):
-    """`lower`, `upper` (K + 1, R, B, N + 1) by stage, wait, pressure node and path node, linear in between.
-
-    The path nodes are `spacing_m` apart from `start_m` on; none of anything: there are no surfaces.
-    """
-
-    lower: Floats
-    upper: Floats
-    waits_s: Floats
-    nodes_kpa: Floats
-    start_m: float
-    spacing_m: float
-
-
 class AnyTimeLaw(NamedTuple):
-    """What is asked at every sample: surfaces on nodes if there are any, else a rule of the locked loop.
+    """What is asked at every sample: a rule of the locked loop.
 
     `slopes` float32 (K + 1, 2), `pressures` float32 (K + 1,), `highest_raised`: those of a table, as
     `tuning_tables.rule.rises` takes them. The gauge shows `gauge_factor` times the true pressure; NaN: it shows none.
@@ -70,56 +56,12 @@ class AnyTimeLaw(NamedTuple):
     pressures: NDArray[np.float32]
     highest_raised: int
     gauge_factor: float
-    surfaces: NodeSurfaces
 
 
 @borrowing
-def surface_line(surface: Floats, nodes_kpa: Floats, spacing_m: float, pressure: float, s: float) -> float:
-    """Line of `surface` (B, N + 1) at a pressure and a path `s` from its first node.
-
-    Beside an infinite node it is infinite: no command.
-    """
-    low = min(max(np.searchsorted(nodes_kpa, pressure + 1e-7) - 1, 0), nodes_kpa.shape[0] - 2)
-    share = (pressure - nodes_kpa[low]) / (nodes_kpa[low + 1] - nodes_kpa[low])
-    place = s / spacing_m
-    node = min(int(place), surface.shape[1] - 2)
-    x = place - node
-    total = 0.0
-    for b in range(2):
-        weight = share if b == 1 else 1.0 - share
-        if abs(weight) < 1e-6:  # on a node its neighbour has no say
-            continue
-        at: float = surface[low + b, node]
-        beyond: float = surface[low + b, node + 1]
-        if math.isinf(at):
-            return at
-        if math.isinf(beyond):
-            return beyond
-        total += weight * (at + x * (beyond - at))
-    return total
-
-
-@borrowing
-def wanted_by_surfaces(by: NodeSurfaces, stage: int, pressure: float, wait: float, s: float, v: float) -> int:
-    """The stage that surfaces want, one beside `stage` or the same."""
-    w = 0
-    for i in range(by.waits_s.shape[0]):
-        if abs(by.waits_s[i] - wait) < abs(by.waits_s[w] - wait):
-            w = i
-    if v < surface_line(by.lower[stage, w], by.nodes_kpa, by.spacing_m, pressure, s - by.start_m):
-        return stage - 1
-    if v > surface_line(by.upper[stage, w], by.nodes_kpa, by.spacing_m, pressure, s - by.start_m):
-        return stage + 1
-    return stage
-
-
-@borrowing
-def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, wait: float, s: float, v: float) -> int:
+def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, s: float, v: float) -> int:
     """The stage that is wanted at a sample, within 0 … `top`; `v` is the speed that the regulator knows."""
     by = law.rule
-    if law.surfaces.lower.shape[0] > 0:
-        by_surfaces: int = wanted_by_surfaces(law.surfaces, stage, pressure, wait, s, v)
-        return by_surfaces
     if by.coefficients.shape[0] > 0:
         shown = pressure * law.gauge_factor
         rise = pressure_rises(law.slopes, law.pressures, law.highest_raised, stage, shown)
@@ -186,7 +128,7 @@ def run_any_time_pass(
         if not math.isnan(measured - last):  # neither at the first sample nor beside a missing reading
             slope += gain * ((measured - last) / period - slope)
         last = measured
-        wanted = wanted_stage(law, stage, top, pressure, wait, s, measured + lead_s * slope)
+        wanted = wanted_stage(law, stage, top, pressure, s, measured + lead_s * slope)
         before, stage = stage, admitted(stage, wanted, s, drive.entrance_stage)
         if stage != before:
             switchings += 1

@@ -26,10 +26,7 @@ def listen(
     work: Work, count: int, played: PlayedPeriods, sensor: Sensor, law: AnyTimeLaw, noise_z: NDArray[np.float32],
     observed: Observed,
 ) -> int:  # fmt: skip
-    """As `lane_regulator.listen`; those in `told` have a command, or their next period has not been played yet.
-
-    Where surfaces are asked, every lane is among them.
-    """
+    """As `lane_regulator.listen`; those in `told` have a command, or their next period has not been played yet."""
     x, n, rule = work.floats, work.ints, law.rule
     told = 0
     for k in range(0, count, packs.EIGHT):
@@ -41,16 +38,14 @@ def listen(
             i = packs.gather(n, lane + PASS)
             speed = estimated(observed, rule.estimator_parameters, rule.estimator_work, there, i, s, speed)
             packs.scatter(observed.passed_kpa, i, there, packs.gather(played.pieces.mean_kpa, state))
-        speaks = there
-        if law.surfaces.lower.shape[0] == 0:
-            unplayed = packs.gather(x, lane + LEFT_S) == 0.0
-            if rule.coefficients.shape[0] > 0:
-                at = state * 2
-                rises = packs.gather(played.rises, at), packs.gather(played.rises, at + 1)
-                speaks = there & (unplayed | speaks_by_table(rule, stage, s, speed, *rises))
-            else:
-                speed = foretold(x, lane, speed, speed, sensor, rule)
-                speaks = there & (unplayed | speaks_by_lines(rule, stage, s, speed))
+        unplayed = packs.gather(x, lane + LEFT_S) == 0.0
+        if rule.coefficients.shape[0] > 0:
+            at = state * 2
+            rises = packs.gather(played.rises, at), packs.gather(played.rises, at + 1)
+            speaks = there & (unplayed | speaks_by_table(rule, stage, s, speed, *rises))
+        else:
+            speed = foretold(x, lane, speed, speed, sensor, rule)
+            speaks = there & (unplayed | speaks_by_lines(rule, stage, s, speed))
         packs.keep(work.heard, told, speaks, speed)
         told += packs.keep(work.told, told, speaks, lane)
     return told
@@ -64,7 +59,7 @@ def regulate(
     """What the regulator and the drive do at a sample (as in `any_time.closed_loop.run_any_time_pass`)."""
     x, n = work.floats, work.ints
     s, state, stage, top = x[S + lane], n[PIECE + lane], n[STAGE + lane], drive.stage_kpa.shape[0] - 1
-    wanted = wanted_stage(law, stage, top, played.pressure_kpa[state], played.wait_s[state], s, speed_m_s)
+    wanted = wanted_stage(law, stage, top, played.pressure_kpa[state], s, speed_m_s)
     wanted = admitted(stage, wanted, s, drive.entrance_stage)
     if wanted != stage:
         n[SWITCHINGS + lane] += 1

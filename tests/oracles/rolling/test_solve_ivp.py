@@ -7,7 +7,7 @@ import pytest
 
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
-from synth.studies.rolling.by_scipy import Floats, acceleration, solved
+from scripts.studies.rolling.by_scipy import Floats, acceleration, solved
 from tests.oracles.rolling.made_cuts import random_cuts, random_track, rolling
 
 YARD_FROM_M, SNOW = 400.0, 0.3

@@ -10,7 +10,7 @@ import pytest
 
 from plant_models import PlantError
 from plant_models.library.catalogue import load_car, load_position, load_weight_categories
-from synth.studies.control_computer.failed_hump import (
+from scripts.studies.control_computer.failed_hump import (
     ByHand,
     FailedPosition,
     StuckAtStage,
@@ -18,7 +18,7 @@ from synth.studies.control_computer.failed_hump import (
     WeakSupply,
     failed_trial,
 )
-from synth.studies.control_computer.failure_costs_of_hump import (
+from scripts.studies.control_computer.failure_costs_of_hump import (
     ExtraFigure,
     cuts_before_stop,
     difference_of_counts,
@@ -26,7 +26,7 @@ from synth.studies.control_computer.failure_costs_of_hump import (
     other_track_with_frozen_points,
     paired_difference,
 )
-from synth.studies.control_computer.stuck_position import StuckPosition
+from scripts.studies.control_computer.stuck_position import StuckPosition
 from synth.yard.humping.normal_hump_position import LibraryBrake, NormalHumpPosition
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.trial import HumpTrial

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
+from scripts.studies.control_computer.regulator_benefit import FIGURES, Benefit, Yard, benefits, regulator_benefit
 from synth.computer.economics.hump_day_change import change_of_trains
 from synth.computer.economics.hump_rates import rates_after
 from synth.frame.settings.changed import changed
-from synth.studies.control_computer.regulator_benefit import FIGURES, Benefit, Yard, benefits, regulator_benefit
 from tests.synth.computer.economics.made_cases import (
     CHANGE,
     HANDLING,

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 from plant_models import PlantError
-from synth.studies.control_computer.stationary import null_space_shares, stationary_shares
+from scripts.studies.control_computer.stationary import null_space_shares, stationary_shares
 
 
 @pytest.mark.parametrize("seed", range(5))

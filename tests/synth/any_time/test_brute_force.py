@@ -2,7 +2,7 @@
 
 Taken from the package: the grid, the automaton of the drive (it has its own oracle), the integrals of grade and β over
 the path, the levels of the path noise, and the weights of true speeds behind a measured one. Written anew: the motion,
-where it lands and how the value there is interpolated, averaging over what is hidden, thresholds, commands, entry.
+where it lands and how the value there is interpolated, averaging over what is hidden, commands, entry.
 """
 
 from __future__ import annotations
@@ -17,30 +17,23 @@ from plant_models import Plant, RollingResistance
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
+from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.any_time.sampled_chain import SampledChain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
-from synth.solver.backward_induction import true_speed_weights
-from synth.studies.any_time.surface_induction import solve_surfaces
-from tests.synth.any_time.locked_surfaces import at_quanta
 
 Row = list[float]
 AIM = Aim(2.5, Criterion())
 
 
 class BruteForce:
-    """Values of one problem, node after node from the exit; lines are found unless they are given.
+    """Values of one problem under `lines` (2, N, M), node after node from the exit."""
 
-    `limited`: interpolated values are kept between those that they come from, as where lines are found.
-    """
-
-    def __init__(self, c: SampledChain, lines: np.ndarray | None) -> None:
-        self.c, self.limited = c, lines is None
+    def __init__(self, c: SampledChain, lines: np.ndarray) -> None:
+        self.c, self.lines = c, lines
         self.nodes, self.points = len(c.grid.path_m) - 1, len(c.grid.speed_m_s)
         exits, self.stalled = AIM.criterion.exit_costs(c.grid.speed_m_s, AIM.target_speed_m_s)
         self.exit_row = [self.stalled, *(float(each) for each in exits[1:])]
         self.value: dict[tuple[int, int, int, int], Row] = {}
-        found = np.full((2, self.nodes, len(c.modes.stage)), math.inf) * np.array([-1.0, 1.0])[:, None, None]
-        self.lines = found if lines is None else lines
         for n in reversed(range(self.nodes)):
             for m in range(len(c.modes.stage)):
                 self.decide(n, m)
@@ -52,19 +45,16 @@ class BruteForce:
         extra = float(self.c.scenarios.extra_m_s2[i]) * (b - a) * self.c.grid.path_step_m
         return float(drive[b] - drive[a]) + extra - f * kpa * float(brake[b] - brake[a])
 
-    def in_energy(self, row: Row, x: float, limited: bool) -> float:
+    def in_energy(self, row: Row, x: float) -> float:
         """Cubic Lagrange at x cells, linear in the first eight cells and in the last, constant beyond both ends."""
         x = min(max(x, 0.0), self.points - 1.0)
         i = min(int(x), self.points - 2)
         if x < 8.0 or i == self.points - 2:
-            total = row[i] + (x - i) * (row[i + 1] - row[i])
-        else:
-            total = 0.0
-            for a in range(i - 1, i + 3):
-                total += row[a] * math.prod((x - b) / (a - b) for b in range(i - 1, i + 3) if b != a)
-        j = min(max(i, 1), self.points - 3)
-        four = row[j - 1 : j + 3]
-        return min(max(total, min(four)), max(four)) if limited else total
+            return row[i] + (x - i) * (row[i + 1] - row[i])
+        total = 0.0
+        for a in range(i - 1, i + 3):
+            total += row[a] * math.prod((x - b) / (a - b) for b in range(i - 1, i + 3) if b != a)
+        return total
 
     def row_at(self, i: int, node: int, q: int, m: int, a: int) -> Row:
         """Values where a period leads to, interpolated in pressure; the level changes over the path of the period."""
@@ -76,8 +66,7 @@ class BruteForce:
         for j in range(1, self.points):
             mixing = self.c.mixing[q, :, j]
             each = [sum(float(p) * self.value[i, node, t, k][j] for k, p in enumerate(mixing)) for t, _ in pairs]
-            total = sum(w * value for (_, w), value in zip(pairs, each, strict=True))
-            row.append(min(max(total, min(each)), max(each)) if self.limited else total)
+            row.append(sum(w * value for (_, w), value in zip(pairs, each, strict=True)))
         return row
 
     def command(self, i: int, n: int, m: int, q: int, a: int) -> Row:
@@ -93,36 +82,23 @@ class BruteForce:
             middle = max(math.floor(quanta + 0.5), 2)
             mean = self.gained(i, f, kpa, n, n + middle) / (middle * step)
             ahead = max(quanta + 0.5 * mean * period_s**2 / step, 1.0)
-            found, total = [], 0.0
+            total = 0.0
             for to in range(middle - 1, middle + 2):
                 if to not in rows:
                     rows[to] = self.row_at(i, n + to, q, m, a)
                 x = j + self.gained(i, f, kpa, n, n + to) / c.grid.energy_step_m2_s2
-                found.append(self.in_energy(rows[to], x, self.limited))
                 others = [b for b in range(middle - 1, middle + 2) if b != to]
-                total += found[-1] * math.prod((ahead - b) / (to - b) for b in others)
-            out.append(min(max(total, min(found)), max(found)) if self.limited else total)
+                total += self.in_energy(rows[to], x) * math.prod((ahead - b) / (to - b) for b in others)
+            out.append(total)
         return out
 
     def decide(self, n: int, m: int) -> None:
-        """Lines, if they are not given, and values at one node and mode."""
+        """Values at one node and mode."""
         c, v = self.c, [float(x) for x in self.c.grid.speed_m_s]
         noise, price = c.measurement.std, AIM.criterion.switching_tolerance_m2_s2
         hidden = [(i, q) for i in range(len(c.scenarios.weight)) for q in range(len(c.noise.levels))]
         asked = [a for a in range(3) if c.modes.allowed[m, a]]
         value = {(i, q, a): self.command(i, n, m, q, a) for i, q in hidden for a in asked}
-        if self.limited:
-            start, weights = true_speed_weights(c.grid.speed_m_s, c.grid.speed_m_s, noise)
-            for a in set(asked) - {1}:
-                gain = [0.0] * self.points
-                for j in range(1, self.points):
-                    for i, q in hidden:
-                        w = float(c.scenarios.weight[i] * c.noise.stationary[q])
-                        gain[j] += w * (value[i, q, 1][j] - value[i, q, a][j] - price)
-                seen = [sum(w * gain[start[j] + b] for b, w in enumerate(weights[j])) for j in range(self.points)]
-                counted = [0.0 if abs(g) <= 1e-9 else g - math.copysign(1e-9, g) for g in seen]
-                self.lines[a // 2, n, m] = best_threshold(counted, seen, v, a == 2)
-            self.lines[1, n, m] = max(self.lines[1, n, m], self.lines[0, n, m])
         for i, q in hidden:
             row = [self.stalled]
             for j in range(1, self.points):
@@ -144,29 +120,13 @@ class BruteForce:
                              for j in range(self.points)]  # fmt: skip
                     for j in np.flatnonzero(row):
                         x = float(j) + self.gained(i, 1.0, 0.0, 0, r) / c.grid.energy_step_m2_s2
-                        total += float(weight * share * row[j]) * self.in_energy([self.stalled, *mixed[1:]], x, False)
+                        total += float(weight * share * row[j]) * self.in_energy([self.stalled, *mixed[1:]], x)
         return total
 
 
 def chance_below(z: float) -> float:
     """The standard normal law, cut at six standard deviations."""
     return 0.5 * math.erfc(-z / math.sqrt(2.0)) if abs(z) <= 6.0 else float(z > 0.0)
-
-
-def best_threshold(gain: Row, seen: Row, v: Row, above: bool) -> float:
-    """The threshold with the largest total gain beyond it, of all thresholds between two speeds."""
-    last = len(v) - 1
-    places = range(2, last + 1) if above else range(1, last)
-    best, line = 0.0, math.inf if above else -math.inf
-    for j in reversed(places) if above else places:
-        inside = range(j, last + 1) if above else range(1, j + 1)
-        total = sum(gain[b] * (v[b] - v[b - 1] if above else v[b + 1] - v[b]) for b in inside)
-        if total > best * (1.0 + 1e-12):
-            a, b = (j - 1, j) if above else (j, j + 1)
-            x, y = seen[a] - 1e-9, seen[b] - 1e-9
-            line = 0.5 * (v[a] + v[b]) if (x < 0.0) == (y < 0.0) else v[a] + (v[b] - v[a]) * x / (x - y)
-            best = total
-    return line
 
 
 @pytest.fixture(scope="module")
@@ -177,14 +137,15 @@ def tiny(plant: Plant) -> SampledChain:
     return sampled_chain(small, coarse, pressure_step_kpa=90.0)
 
 
-def test_lines_are_those_of_plain_loops(tiny: SampledChain) -> None:
-    solved = at_quanta(solve_surfaces(tiny, AIM, rough=0.0))
-    brute = BruteForce(tiny, None)
-    assert np.isfinite(brute.lines).sum(axis=(1, 2)).min() > 50
-    assert solved == pytest.approx(brute.lines, abs=1e-9)
-
-
-def test_cost_of_given_surfaces_is_that_of_plain_loops(tiny: SampledChain) -> None:
-    lines = at_quanta(solve_surfaces(tiny, AIM))
-    cost = SurfaceEvaluation(tiny).gradient(lines, AIM).cost_m2_s2
-    assert cost == pytest.approx(BruteForce(tiny, lines).cost(), abs=1e-9)
+def test_cost_of_given_surfaces_is_that_of_plain_loops(plant: Plant, tiny: SampledChain) -> None:
+    coefficients = np.zeros((3, 2, 5))
+    coefficients[:, :, 0] = AIM.target_speed_m_s + np.array([0.05, 0.25])
+    coefficients[:, :, 1], coefficients[:, :, 2], coefficients[:, :, 4] = -0.25, 0.05, 0.03
+    has_line = np.array([[False, True], [True, True], [True, False]])
+    stages = np.asarray(plant.position.stage_pressures_kpa)
+    surfaces = PolynomialSurfaces(plant.start_m, plant.exit_m, stages, CUBIC_AND_SLOPE, coefficients, has_line)
+    lines = surfaces.at(tiny.grid.path_m[:-1], tiny.modes)
+    assert np.isfinite(lines).sum(axis=(1, 2)).min() > 50
+    evaluation = SurfaceEvaluation(tiny)
+    assert evaluation.density(lines).switchings > 2.0
+    assert evaluation.gradient(lines, AIM).cost_m2_s2 == pytest.approx(BruteForce(tiny, lines).cost(), abs=1e-9)

@@ -1,4 +1,4 @@
-"""The simulator of commands at any time: the locked one where nobody commands in a transient, and the rule it runs."""
+"""The simulator of commands at any time: the rule that it runs, and commands during a change of stage."""
 
 from __future__ import annotations
 
@@ -8,13 +8,10 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from synth.simulation.closed_loop import LineController, close_loop
+from synth.simulation.closed_loop import close_loop
 from synth.simulation.random_passes import random_passes
-from synth.solver.any_time.drive_modes import drive_modes
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.any_time.surface_controller import SurfaceController
-from tests.synth.any_time.locked_surfaces import at_rest_only
 from tests.synth.any_time.tabled import tabled
 
 
@@ -25,17 +22,6 @@ def falling_lines(plant: Plant, nodes: int) -> SwitchingLines:
     lower, upper = middle - 0.03, middle + 0.03
     lower[0], upper[-1] = -np.inf, np.inf
     return SwitchingLines(s, lower, upper)
-
-
-def test_without_commands_in_transients_it_is_the_locked_simulator(plant: Plant) -> None:
-    loop, lines = close_loop(plant, plant.position.top_stage + 1), falling_lines(plant, 101)
-    draws = loop.draws(random_passes(11, 0, 2000))
-    locked = loop.run(LineController(lines, farthest=1), draws)
-    unlocked = loop.run(SurfaceController(at_rest_only(lines, drive_modes(plant, 20.0, 5))), draws)
-    assert locked.switchings.mean() > 4.0
-    assert (unlocked.switchings == locked.switchings).all()
-    assert unlocked.exit_speed_m_s == pytest.approx(locked.exit_speed_m_s, abs=1e-9)
-    assert unlocked.transit_time_s == pytest.approx(locked.transit_time_s, abs=1e-9)
 
 
 def polynomials(

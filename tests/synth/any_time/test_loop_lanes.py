@@ -33,11 +33,7 @@ from synth.simulation.controllers import Regulator, fixed
 from synth.simulation.drive_pieces import STATES, empty_periods
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
-from synth.solver.any_time.drive_modes import drive_modes
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.any_time.surface_controller import SurfaceController
-from tests.synth.any_time.locked_surfaces import at_rest_only
-from tests.synth.any_time.test_loop import falling_lines
 from tests.synth.simulation.passage_cases import with_approach
 from tests.synth.test_closed_loop_lanes import rough_estimator, wavy_table, with_gaps
 from tuning_tables import Approach, ControllerTable, Decisions
@@ -186,13 +182,6 @@ def test_a_creeping_cut_is_given_up(plant_22t: Plant, passes: RandomPasses, peri
     assert sample.stalled.all()
     assert not sample.exit_speed_m_s.any()
     assert np.all(np.abs(sample.transit_time_s - kernel.LONGEST_PASS_S) <= period_s)
-
-
-def test_surfaces_on_nodes(plant: Plant) -> None:
-    loop = close_loop(plant, plant.position.top_stage + 1)
-    controller = SurfaceController(at_rest_only(falling_lines(plant, 101), drive_modes(plant, 20.0, 5)))
-    sample = assert_same(loop, controller, loop.draws(random_passes(11, 0, PASSES)))
-    assert sample.switchings.mean() > 4.0
 
 
 def observing(plant: Plant, target_m_s: float) -> TableController:

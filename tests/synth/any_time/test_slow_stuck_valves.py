@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
+from scripts.studies.any_time.findings import Ways
+from scripts.studies.any_time.stuck_valves import STUCK, StuckLoop, StuckValves
 from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.random_passes import random_passes
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
-from synth.studies.any_time.findings import Ways
-from synth.studies.any_time.stuck_valves import STUCK, StuckLoop, StuckValves
 from tests.synth.any_time.tabled import tabled
 from tests.synth.any_time.test_slow_passes import SAME_M_S, SlowPass
 from tests.synth.any_time.test_stuck_valves import surfaces

@@ -10,16 +10,8 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from synth.kernels.loop.closed_loop import Draws
-from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, close_loop
-from synth.simulation.common_passes import common_passes
-from synth.simulation.passes import PassTrace
-from synth.simulation.random_passes import random_passes
-from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
-from synth.solver.tabulate import UNPREDICTED, tabulate
-from synth.studies.any_time.findings import (
+from scripts.studies.any_time.findings import (
     CaseRow,
-    Polishing,
     Ratio,
     StuckFigures,
     Way,
@@ -28,8 +20,15 @@ from synth.studies.any_time.findings import (
     stuck_heads,
     stuck_rows,
 )
-from synth.studies.any_time.stuck_valves import NOTHING, STUCK, StuckLoop, StuckValves, where_stuck
-from synth.studies.any_time.wrong_plants import waiting_table, with_a_silent_gauge
+from scripts.studies.any_time.stuck_valves import NOTHING, STUCK, StuckLoop, StuckValves, where_stuck
+from scripts.studies.any_time.wrong_plants import waiting_table, with_a_silent_gauge
+from synth.kernels.loop.closed_loop import Draws
+from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, close_loop
+from synth.simulation.common_passes import common_passes
+from synth.simulation.passes import PassTrace
+from synth.simulation.random_passes import random_passes
+from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
+from synth.solver.tabulate import UNPREDICTED, tabulate
 from tests.synth.any_time.tabled import ORIGIN, tabled
 from tests.synth.any_time.test_loop import falling_lines
 from tuning_tables import ControllerTable
@@ -222,9 +221,8 @@ def test_the_table_has_a_row_for_each_fault_and_case() -> None:
     ways = {way.value: Way(0.1 * (i + 1), 0.01 * (i + 1), 0.001 * (i + 1)) for i, way in enumerate(Ways)}
     figures = StuckFigures(ways, Ratio(3.0, (2.0, 4.0)), Ratio(1.5, (1.0, 2.0)))
     told = {name: replace(figures, to_gauge=Ratio(i + 1.0, (0.0, 9.0))) for i, name in enumerate(("one", "two"))}
-    polish = Polishing(1, True, 1.0, 0.1)
-    rows = [CaseRow(case, 1.0, polish, {}, {}, {}, {}, None, told) for case in ("a", "b")]
-    rows.append(CaseRow("untried", 2.0, polish, {}, {}, {}, {}, None, {}))
+    rows = [CaseRow(case, 1.0, {}, {}, {}, {}, None, told) for case in ("a", "b")]
+    rows.append(CaseRow("untried", 2.0, {}, {}, {}, {}, None, {}))
     found = list(stuck_rows(rows))
     assert [cells[:2] for cells in found] == [("one", "a"), ("one", "b"), ("two", "a"), ("two", "b")]
     assert found[2][2:] == (

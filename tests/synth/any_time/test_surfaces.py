@@ -15,7 +15,6 @@ from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.exit_statistics import exit_statistics
-from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_ALONE, CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.any_time.sampled_chain import SampledChain, check_sampled_chain, sampled_chain
@@ -24,10 +23,8 @@ from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.policy_density import exit_density
-from synth.studies.any_time.surface_controller import SurfaceController
-from synth.studies.any_time.surface_induction import solve_surfaces
 from tests.synth.any_time.conftest import short_plant
-from tests.synth.any_time.locked_surfaces import at_quanta, at_rest_only
+from tests.synth.any_time.locked_surfaces import at_rest_only
 from tests.synth.any_time.tabled import tabled
 
 TARGET_M_S = 3.0
@@ -114,18 +111,6 @@ def test_a_prediction_is_what_passes_find(plant: Plant, ahead_m: float) -> None:
     assert time_s == pytest.approx(float(np.average(transit, weights=sample.weight)), rel=2e-3)
 
 
-def test_the_cost_of_solved_surfaces_is_what_simulation_finds(plant: Plant) -> None:
-    known = sampled_chain(plant, KNOWN)
-    solved = solve_surfaces(known, AIM)
-    loop = close_loop(plant, plant.position.top_stage + 1)
-    sample = loop.run(SurfaceController(solved), loop.draws(random_passes(21, 0, 20_000), cut_factor=1.0))
-    price = (sample.exit_speed_m_s - TARGET_M_S) ** 2 + AIM.criterion.switching_tolerance_m2_s2 * sample.switchings
-    half = 1.96 * float(price.std(ddof=1)) / np.sqrt(len(price))
-    assert not sample.stalled.any()
-    cost = SurfaceEvaluation(known).gradient(at_quanta(solved), AIM).cost_m2_s2
-    assert cost == pytest.approx(price.mean(), abs=half + 0.03 * price.mean())
-
-
 def test_stage_locked_lines_cost_what_the_locked_solver_says(plant: Plant) -> None:
     """Two discretisations of one process: transients as one step, or sample by sample with the pressure as a state.
 
@@ -138,11 +123,11 @@ def test_stage_locked_lines_cost_what_the_locked_solver_says(plant: Plant) -> No
     density = exit_density(transitions, lines)
     theirs = density.rms_m_s(TARGET_M_S) ** 2 + AIM.criterion.switching_tolerance_m2_s2 * density.switchings
     here = sampled_chain(plant, resolution, pressure_step_kpa=15.0)
-    locked = at_quanta(at_rest_only(lines, here.modes))
+    locked = at_rest_only(lines, here.modes)
     assert SurfaceEvaluation(here).gradient(locked, AIM).cost_m2_s2 == pytest.approx(theirs, rel=GRID_ERROR)
 
 
-def test_without_transients_surfaces_are_the_locked_lines(plant: Plant) -> None:
+def test_without_transients_locked_lines_cost_what_the_locked_solver_says(plant: Plant) -> None:
     """Every change of stage ends within its period: nothing can be commanded on its way."""
     valves = Pneumatics(700.0, 0.0, 0.002, 0.004, 0.002, 0.006, 0.006, 15.0)
     quick = replace(plant, position=replace(plant.position, pneumatics=valves))
@@ -152,9 +137,7 @@ def test_without_transients_surfaces_are_the_locked_lines(plant: Plant) -> None:
     locked = one_stage_a_command(persistent_chain(quick, resolution))
     solution = solve(locked, AIM)
     theirs = exit_density(locked, solution.lines)
-    ours = SurfaceEvaluation(here).density(at_quanta(solve_surfaces(here, AIM)))
-    assert ours.rms_m_s(TARGET_M_S) == pytest.approx(theirs.rms_m_s(TARGET_M_S), rel=0.02)
-    same = SurfaceEvaluation(here).density(at_quanta(at_rest_only(solution.lines, here.modes)))
+    same = SurfaceEvaluation(here).density(at_rest_only(solution.lines, here.modes))
     assert same.rms_m_s(TARGET_M_S) == pytest.approx(theirs.rms_m_s(TARGET_M_S), rel=0.02)
 
 

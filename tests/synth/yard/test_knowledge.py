@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from scripts.studies.aiming.recorded_cuts import ControlPoints, NearestRecord, nearest
+from scripts.studies.aiming.regression import ByRegression
 from synth.simulation.exit_statistics import clopper_pearson
-from synth.studies.aiming.recorded_cuts import ControlPoints, NearestRecord, nearest
-from synth.studies.aiming.regression import ByRegression
 from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement, not_falling
 from synth.yard.aim.outcome import couplings
 from synth.yard.aim.position_models import NormalPosition

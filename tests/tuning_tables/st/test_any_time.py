@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.agreement import ask
+from scripts.studies.in_the_loop.agreement import ask
 from tests.controller_code.sample_book import approaching_book, sample_book, surface_book, with_slopes
 from tests.controller_code.test_surface_code import mutants, pairs
 from tests.tuning_tables.st.conftest import program_of, shaped_book, texts_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.agreement import ask
+from scripts.studies.in_the_loop.agreement import ask
 from tests.controller_code.sample_book import approaching_book
 from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.storage import Real

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from synth.studies.in_the_loop.agreement import ask
+from scripts.studies.in_the_loop.agreement import ask
 from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault, Frame, Real

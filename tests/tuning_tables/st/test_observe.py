@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from synth.studies.in_the_loop.controller_process import ANSWER_WORDS
-from synth.studies.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
-from synth.studies.in_the_loop.observed import observed
+from scripts.studies.in_the_loop.controller_process import ANSWER_WORDS
+from scripts.studies.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
+from scripts.studies.in_the_loop.observed import observed
 from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Real

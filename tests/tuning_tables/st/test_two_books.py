@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 import pytest
 
-from synth.studies.in_the_loop.agreement import ask
+from scripts.studies.in_the_loop.agreement import ask
 from tests.controller_code.sample_book import estimating_book, park_book
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.syntax import faults, parse

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from plant_models import PlantError
+from scripts.studies.control_computer.lives import chain_cycles
+from scripts.studies.control_computer.stationary import null_space_shares, stationary_shares
 from synth.computer.reliability.four_states import FourStates, State, StateShares
-from synth.studies.control_computer.lives import chain_cycles
-from synth.studies.control_computer.stationary import null_space_shares, stationary_shares
 
 PRINTED = FourStates(0.01, 0.2, 0.4, 4.0, 0.5)
 TO_REPAIR = replace(PRINTED, failed_check_to=State.REPAIR)

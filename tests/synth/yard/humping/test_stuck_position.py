@@ -10,7 +10,7 @@ import pytest
 
 from plant_models import PlantError
 from plant_models.library.catalogue import load_car, load_position, load_weight_categories
-from synth.studies.control_computer.stuck_position import StuckPosition, StuckStage, released
+from scripts.studies.control_computer.stuck_position import StuckPosition, StuckStage, released
 from synth.yard.humping.hump_position import Arrivals
 from synth.yard.humping.normal_hump_position import LibraryBrake, NormalHumpPosition
 

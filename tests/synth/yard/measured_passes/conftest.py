@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from synth.studies.identification.truths import TRUTHS, Yard, assumed_yard
+from scripts.studies.identification.truths import TRUTHS, Yard, assumed_yard
 from synth.yard.measured_passes.estimate import Estimate, estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.unknowns import unknowns_of

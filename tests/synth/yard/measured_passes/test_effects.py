@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from scripts.studies.identification.truths import TRUTHS, Yard
 from synth.simulation import logged_passes
-from synth.studies.identification.truths import TRUTHS, Yard
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses

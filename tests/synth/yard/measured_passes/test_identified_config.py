@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from plant_models.library import POSITIONS
+from scripts.studies.identification.truths import text_of_classes
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.type_template import type_toml
 from synth.frame.input_error import InputError
-from synth.studies.identification.truths import text_of_classes
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.config_source import ConfigSource, config_source
 from synth.yard.measured_passes.estimate import Estimate

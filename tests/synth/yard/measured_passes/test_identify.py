@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from plant_models.pressure_gauge import USUAL_NOISE_KPA
+from scripts.studies.identification.truths import text_of_classes
 from synth.cli.arguments import GaugeStd
 from synth.cli.identify import identify_command
 from synth.cli.validate import asked_log
 from synth.frame.input_error import InputError
-from synth.studies.identification.truths import text_of_classes
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.identifiability import Finding

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.studies.identification.truths import TRUTHS, Yard
+from scripts.studies.identification.truths import TRUTHS, Yard
 from synth.yard.measured_passes.estimate import posterior
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.identify_summary import log_sentences

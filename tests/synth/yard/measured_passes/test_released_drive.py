@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plant_models.pressure_gauge import PressureGauge
-from synth.studies.identification.truths import GAUGE, TRUTHS, Truth, Yard
+from scripts.studies.identification.truths import GAUGE, TRUTHS, Truth, Yard
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.estimate import posterior
 from synth.yard.measured_passes.fitting_passes import FittingPasses, fitting_passes

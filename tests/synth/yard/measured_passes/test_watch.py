@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from scripts.studies.tuned_table import tuned_table
+from scripts.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, Change, simulated
 from synth.cli import main
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.results_directory import results_directory
-from synth.studies.tuned_table import tuned_table
-from synth.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, Change, simulated
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.drift import baseline
 from synth.yard.measured_passes.drift.baseline import configured

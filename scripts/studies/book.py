@@ -1,0 +1,187 @@
+"""The default book as `scripts/run` tunes it, seed and all: what README and the page of results tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from scripts.studies.cases import of_masses
+from scripts.studies.markdown_table import MarkdownTable, around, table
+from scripts.studies.options import option
+from scripts.studies.study import Findings, Method, Tell
+from synth.book.acceptance import judge
+from synth.book.summary import summary_of
+from synth.book.tune import tune
+from synth.book.tuned_table import read_back
+from synth.book.watcher import Teller
+from synth.configuration.config_file import load_config
+from synth.frame.printed_numbers import ABSENT, few, percent
+from synth.simulation.replicates import Interval
+
+
+@dataclass(frozen=True)
+class Options:
+    """Which book."""
+
+    config: Path | None = option(None, "configuration; the built-in default book without it")
+    masses_t: tuple[float, ...] = option((), "only cuts of these masses, t")
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A figure of simulated passes with its 95 % interval."""
+
+    value: float
+    ci95: Interval
+
+    def cell(self, digits: int) -> str:
+        """'0.0419 [0.0414, 0.0425]'."""
+        return around(self.value, self.ci95, digits)
+
+
+@dataclass(frozen=True)
+class Changed:
+    """What became of a table in the condition `name`: rms, and shares of cuts."""
+
+    name: str
+    rms: Measure
+    overspeed: float
+    stalled: float
+
+    @property
+    def cell(self) -> str:
+        """'0.0440 [0.0432, 0.0449]; 0.04, 0'."""
+        return f"{self.rms.cell(4)}; {percent(self.overspeed)}, {percent(self.stalled)}"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One case of the book, in m/s and as shares; what the figures mean: docs/results.md."""
+
+    label: str
+    target_m_s: float
+    feasible: bool
+    rms: Measure
+    p95: Measure
+    p99: Measure
+    out_of_brake: Measure
+    rms_within: Measure
+    predicted_rms_m_s: float
+    honesty: Measure
+    regret: Measure | None
+    best_baseline: str
+    baseline_rms: Measure
+    off_nominal: tuple[Changed, ...]
+
+
+@dataclass(frozen=True)
+class Results(Findings):
+    """All cases."""
+
+    config_sha256: str
+    seed: int
+    passes: int
+    rows: tuple[Row, ...]
+
+    def tables(self) -> Mapping[str, MarkdownTable]:
+        """`results` and `off-nominal`: a row a case; `summary`: a row a class."""
+        heads = ("case", "feasible", "rms", "95 of 100 within ±", "99 of 100 within ±", "out of brake, in 10 000",
+                 "rms of the others", "predicted rms", "predicted / simulated", "regret",
+                 "best baseline")  # fmt: skip
+        conditions = dict.fromkeys(each.name for row in self.rows for each in row.off_nominal)
+        targets = tuple(dict.fromkeys(f"to {row.target_m_s:g} m/s" for row in self.rows))
+        short: dict[str, list[str]] = {}
+        for row in self.rows:
+            short.setdefault(row.label, []).append(short_cell(row))
+        return {
+            "results": table("The default book, m/s", heads, map(cells, self.rows)),
+            "off-nominal": table(
+                "rms off nominal, m/s [95 %]; too fast, stopped inside, %",
+                ("case", *conditions), (changed_cells(row, tuple(conditions)) for row in self.rows),
+            ),
+            "summary": table(
+                "rms, m/s [95 %]; cuts in 10 000 that leave too fast whatever a table does; ° infeasible",
+                ("class", *targets), ((label, *found) for label, found in short.items()),
+            ),
+        }  # fmt: skip
+
+    def sentences(self) -> tuple[str, ...]:
+        """How much was simulated."""
+        return (f"{self.passes} stratified passes a case, seed {self.seed}",)
+
+
+def short_cell(row: Row) -> str:
+    """'0.1382 [0.1354, 0.1412]°; 182'."""
+    return f"{row.rms.cell(4)}{'' if row.feasible else '°'}; {few(1e4 * row.out_of_brake.value)}"
+
+
+def changed_cells(row: Row, conditions: tuple[str, ...]) -> tuple[str, ...]:
+    """The cells of one case off nominal."""
+    found = {each.name: each.cell for each in row.off_nominal}
+    return (f"{row.label} to {row.target_m_s:g} m/s", *(found.get(name, ABSENT) for name in conditions))
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """The cells of one case."""
+    most, (low, high) = 1e4 * row.out_of_brake.value, (1e4 * end for end in row.out_of_brake.ci95)
+    return (
+        f"{row.label} to {row.target_m_s:g} m/s", "yes" if row.feasible else "no", row.rms.cell(4), row.p95.cell(3),
+        row.p99.cell(3), f"{few(most)} [{few(low)}, {few(high)}]", row.rms_within.cell(4),
+        f"{row.predicted_rms_m_s:.4f}", row.honesty.cell(3),
+        ABSENT if row.regret is None else row.regret.cell(3),
+        f"{row.baseline_rms.cell(4)} ({row.best_baseline})",
+    )  # fmt: skip
+
+
+def run(options: Options, tell: Tell) -> Results:
+    """Tune the book."""
+    config = of_masses(load_config(options.config), options.masses_t)
+    book = tune(config, read_back, Teller(tell))
+    summary = summary_of(book, judge(book.whole, config.acceptance), {})
+    rows = tuple(map(row_of, summary["cases"]))
+    return Results(config.sha256, config.validation.seed, config.validation.passes, rows)
+
+
+def row_of(case: Mapping[str, Any]) -> Row:
+    """One case of a summary."""
+    found, power = case["simulated"], case["brake_power"]
+    best = case["best_baseline"]
+    baseline = case["comparison"][best]
+    return Row(
+        label=case["label"],
+        target_m_s=case["target_speed_m_s"],
+        feasible=bool(case["feasible"]),
+        rms=measure(found, "rms_m_s"),
+        p95=measure(found, "p95_m_s"),
+        p99=measure(found, "p99_m_s"),
+        out_of_brake=measure(power, "out_of_brake"),
+        rms_within=measure(power, "rms_within_m_s"),
+        predicted_rms_m_s=found["predicted_rms_m_s"],
+        honesty=measure(case, "honesty"),
+        regret=None if case["regret"] is None else measure(case, "regret"),
+        best_baseline=best,
+        baseline_rms=measure(baseline, "rms_m_s"),
+        off_nominal=tuple(map(changed, filter(is_possible, case["off_nominal"].values()))),
+    )
+
+
+def is_possible(found: Mapping[str, Any]) -> bool:
+    """Whether there are figures of a condition of a summary."""
+    return "impossible" not in found
+
+
+def changed(found: Mapping[str, Any]) -> Changed:
+    """One condition of a summary."""
+    return Changed(found["name"], measure(found, "rms_m_s"), found["overspeed"], found["stalled"])
+
+
+def measure(found: Mapping[str, Any], name: str) -> Measure:
+    """`name` and its interval; 'rms_m_s' has 'rms_ci95_m_s' beside it, 'honesty' 'honesty_ci95'."""
+    interval = name.replace("_m_s", "_ci95_m_s") if name.endswith("_m_s") else f"{name}_ci95"
+    low, high = found[interval]
+    return Measure(found[name], (low, high))
+
+
+METHOD = Method(Options, Options(masses_t=(52.0,)), Results, run)

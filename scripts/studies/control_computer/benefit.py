@@ -1,0 +1,190 @@
+"""What a more exact control brings the yard: the same trains today, with what is asked for, with the new control."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+
+from scripts.studies.control_computer.assumed_yard import YARD
+from scripts.studies.control_computer.hump_runs import Humped, first_trains
+from scripts.studies.control_computer.regulator_benefit import Benefit, regulator_benefit
+from scripts.studies.humping.base_trial import FEEDBACK, OPEN, Day, with_planner
+from scripts.studies.humping.books import HIGHEST_M_S, Book
+from scripts.studies.humping.closed_loops import TABLES_STD_M_S
+from scripts.studies.humping.runs import Group
+from scripts.studies.humping.table_positions import table_positions
+from scripts.studies.markdown_table import MarkdownTable, table
+from scripts.studies.study import Tell
+from synth.computer.economics.hump_day_change import HumpDayChange, change_of_trains, figures_of_trains
+from synth.computer.economics.hump_day_figures import NAMES
+from synth.frame.interval import Interval
+from synth.yard.humping.outcomes import TrainOutcomes
+from synth.yard.humping.train_figures import share
+from synth.yard.humping.trial import HumpTrial
+
+LEAST_S = {"today": 2.6, "asked": 0.3, "new": 0.3, "tables": 0.3}
+"""Least interval of the programs: where the study `hump-day` has about 0.1 % catch-ups, on other trains than here."""
+
+STDS_M_S = {"today": 0.35, "asked": 0.15, "new": 0.03, "tables": TABLES_STD_M_S}
+WIDER_RANGE = f"[exit_speeds]\nhighest_m_s = [{HIGHEST_M_S}, {HIGHEST_M_S}]\n"
+
+
+@dataclass(frozen=True)
+class RateEstimates:
+    """The figures of `HumpRates`, each with its 95 % interval and what it was counted from."""
+
+    cars_per_h: Interval
+    catch_ups: Interval
+    misrouted: Interval
+    on_track: Interval
+    over_speeds_to_1_5: Interval
+    over_speeds_to_2: Interval
+    over_speeds_above_2: Interval
+    gap_m: Interval
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One control of the hump; `exit_std_m_s` of all positions (where tables run: that for which exits are chosen)."""
+
+    name: str
+    control: str
+    exit_std_m_s: float
+    least_s: float
+    trains: int
+    rates: RateEstimates
+
+
+@dataclass(frozen=True)
+class Beside:
+    """A variant less today on the same trains, and what it brings the assumed yard (today less it)."""
+
+    change: HumpDayChange
+    benefits: tuple[Benefit, ...]
+
+
+@dataclass(frozen=True)
+class BenefitOfControl:
+    """Variants and their changes by name; `tables` only where they were humped."""
+
+    variants: dict[str, Variant]
+    beside_today: dict[str, Beside]
+
+    def tables(self) -> dict[str, MarkdownTable]:
+        """`rates`, `changes`, `benefits`."""
+        names = tuple(LABELS[name] for name in self.variants)
+        others = tuple(LABELS[name] for name in self.beside_today)
+        rates, changes = self.variants.values(), self.beside_today.values()
+        lines = tuple(zip(*(each.benefits for each in changes), strict=True))
+        return {
+            "rates": table(
+                "figures of the hump, with 95 % intervals",
+                ("figure", *names),
+                (
+                    ("positions, σ, m/s", *(f"{v.exit_std_m_s:g}" for v in rates)),
+                    ("control", *(v.control for v in rates)),
+                    ("least interval, s", *(f"{v.least_s:g}" for v in rates)),
+                    ("trains", *(str(v.trains) for v in rates)),
+                    *((WORDS[field], *(shown(field, getattr(v.rates, field)) for v in rates)) for field in WORDS),
+                ),
+            ),
+            "changes": table(
+                "the same less today, paired by train",
+                ("figure", *others),
+                ((WORDS[field], *(shown(field, getattr(c.change, field)) for c in changes)) for field in WORDS),
+            ),
+            "benefits": table(
+                "less than today in the assumed yard, with bootstrap intervals over the trains",
+                ("figure", "unit", *others),
+                ((line[0].name, line[0].unit, *(rounded(each.less) for each in line)) for line in lines),
+            ),
+        }  # fmt: skip
+
+    def faults(self) -> tuple[str, ...]:
+        """A more exact control must not hump fewer cars an hour beyond the interval."""
+        return tuple(
+            f"benefit: {LABELS[name]} humps fewer cars an hour than today, {rounded(each.change.cars_per_h)}"
+            for name, each in self.beside_today.items()
+            if each.change.cars_per_h.high95 < 0.0
+        )
+
+
+LABELS = {"today": "today", "asked": "asked for", "new": "new", "tables": "our tables"}
+WORDS = {
+    "cars_per_h": "cars an hour",
+    "catch_ups": "catch-ups, %",
+    "misrouted": "misrouted, %",
+    "on_track": "on their track, %",
+    "over_speeds_to_1_5": "couplings to 1.5 m/s, %",
+    "over_speeds_to_2": "couplings to 2 m/s, %",
+    "over_speeds_above_2": "couplings above 2 m/s, %",
+    "gap_m": "gap a cut, m",
+}
+PLAIN = {"cars_per_h": 0, "gap_m": 1}
+"""Figures that are no shares, and their decimals."""
+
+
+def shown(field: str, found: Interval) -> str:
+    """A figure of `WORDS`."""
+    scale, digits = (1.0, PLAIN[field]) if field in PLAIN else (100.0, 2)
+    ends = f"[{scale * found.low95:.{digits}f}, {scale * found.high95:.{digits}f}]"
+    return f"{scale * found.value:.{digits}f} {ends}"
+
+
+def rounded(found: Interval) -> str:
+    """With three digits."""
+    return " ".join((spaced(found.value), f"[{spaced(found.low95)}, {spaced(found.high95)}]"))
+
+
+def spaced(value: float) -> str:
+    """Three digits, without exponent."""
+    whole = float(f"{value:.3g}")
+    return f"{whole:,.0f}".replace(",", " ") if abs(whole) >= 100.0 else f"{whole:g}"
+
+
+def benefit_groups(seed: int, cuts: int, design_cuts: int, tables: bool, tell: Tell) -> dict[str, Group]:
+    """A group a variant; with `tables` two books are tuned."""
+    names = [name for name in LEAST_S if tables or name != "tables"]
+    made = {}
+    for name in names:
+        more = WIDER_RANGE if name == "tables" else ""
+        day = Day(seed, cuts, STDS_M_S[name], design_cuts=design_cuts, more=more)
+        trial = with_planner(day.trial(), least_s=LEAST_S[name])
+        if name == "tables":
+            trial = on_tables(trial, tell)
+        made[name] = Group({name: replace(trial, control=OPEN if name == "today" else FEEDBACK)})
+    return made
+
+
+def on_tables(trial: HumpTrial, tell: Tell) -> HumpTrial:
+    """With our tables in all positions."""
+    made = table_positions(trial, Book.tables).on(trial)
+    tell("books tuned")
+    return made
+
+
+def benefit_of(humped: Mapping[str, Humped], names: tuple[str, ...], replicates: int, seed: int) -> BenefitOfControl:
+    """What the variants came to; where one has fewer trains, today is told of these alone."""
+    found = {name: humped[name].outcomes for name in names}
+    today = found["today"]
+    beside = {}
+    for name in names[1:]:
+        same, new = first_trains(today, len(found[name])), found[name]
+        beside[name] = Beside(change_of_trains(same, new), regulator_benefit(same, new, YARD, replicates, seed))
+    return BenefitOfControl({name: variant(name, each) for name, each in found.items()}, beside)
+
+
+def variant(name: str, found: TrainOutcomes) -> Variant:
+    """Its figures."""
+    told = figures_of_trains(name, found)
+    p, low, high, _ = share(found.judged.astype(float), found.cuts.astype(float))
+    rates = {field: getattr(told, field) for field in NAMES}
+    rates["on_track"] = Interval(p, low, high, int(found.cuts.sum()))
+    control = "open loop" if name == "today" else "feedback"
+    return Variant(name, control, STDS_M_S[name], LEAST_S[name], len(found), RateEstimates(**plain(rates)))
+
+
+def plain(rates: Mapping[str, Interval]) -> dict[str, Interval]:
+    """The same of plain numbers."""
+    assert {field.name for field in fields(RateEstimates)} == set(rates)
+    return {name: Interval(float(e.value), float(e.low95), float(e.high95), int(e.n)) for name, e in rates.items()}

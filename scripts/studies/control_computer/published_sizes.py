@@ -1,0 +1,141 @@
+"""Word length, inputs and outputs, and memory of the published control computer, counted again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from plant_models.library.hump_entry import hump_names, load_hump
+from scripts.studies.markdown_table import MarkdownTable, table
+from synth.computer.sizing.inputs_outputs import (
+    ChannelRules,
+    Channels,
+    counted_channels,
+    source_channels,
+    total_channels,
+)
+from synth.computer.sizing.memory_need import (
+    ControllerCounts,
+    Memory,
+    MemoryTable,
+    controller_memory,
+    source_memory,
+)
+from synth.computer.sizing.word_length import SOURCE_WORD_BITS, common_word_bits, hump_quantities
+
+CUTS = 60
+"""Of the longest train, assumed."""
+
+TABLES_A_BOOK, CODE_BYTES, TABLE_BYTES, AIM_TABLE_BYTES = 15, 2652, 448, 1024
+"""Our export with estimators: see `ControllerCounts`; an aim table of 16 × 16 speeds in binary32, assumed."""
+
+
+@dataclass(frozen=True)
+class QuantityBits:
+    """Binary digits of one quantity, by ours and by the published formula."""
+
+    name: str
+    bits: int
+    published_formula: int
+
+
+@dataclass(frozen=True)
+class HumpChannels:
+    """Tracks, positions and channels of a hump; `hump` '' for what is published."""
+
+    hump: str
+    tracks: int
+    positions: int
+    digital_in: int
+    analog_in: int
+    digital_out: int
+    analog_out: int
+
+
+@dataclass(frozen=True)
+class MemoryRow:
+    """What one thing takes, in words and bits of a word."""
+
+    what: str
+    memory: str
+    count: int
+    bits: int
+
+
+@dataclass(frozen=True)
+class PublishedSizes:
+    """All of them. `fixed_words`, `working_words`: of the published table; KiB of our controller on the large hump."""
+
+    quantities: tuple[QuantityBits, ...]
+    word_bits: int
+    channels: tuple[HumpChannels, ...]
+    published_memory: tuple[MemoryRow, ...]
+    fixed_words: int
+    working_words: int
+    our_memory: tuple[MemoryRow, ...]
+    our_kib: tuple[float, float]
+
+    def tables(self) -> dict[str, MarkdownTable]:
+        """`bits`, `channels`, `memory`."""
+        return {
+            "bits": table(
+                f"binary digits of what the computer handles; {SOURCE_WORD_BITS} are published",
+                ("quantity", "digits", "by the published formula"),
+                ((q.name, str(q.bits), str(q.published_formula)) for q in self.quantities),
+            ),
+            "channels": table(
+                "inputs and outputs",
+                ("hump", "tracks", "positions", "digital in", "analog in", "digital out", "analog out"),
+                ((c.hump or "published", *(str(n) if n else "–" for n in (c.tracks, c.positions)),
+                  *map(str, (c.digital_in, c.analog_in, c.digital_out, c.analog_out))) for c in self.channels),
+            ),
+            "memory": table(
+                "what is kept in memory: the published table, and our controller on the large hump",
+                ("of", "what", "memory", "entries", "bits each"),
+                ((of, m.what, m.memory, str(m.count), str(m.bits))
+                 for of, rows in (("published", self.published_memory), ("ours", self.our_memory)) for m in rows),
+            ),
+        }  # fmt: skip
+
+
+def published_sizes() -> PublishedSizes:
+    """All parts."""
+    published, ours = source_memory(), our_memory("large")
+    return PublishedSizes(
+        quantities=tuple(QuantityBits(q.name, q.bits, q.bits_of_source) for q in hump_quantities()),
+        word_bits=common_word_bits(hump_quantities()),
+        channels=(hump_channels("", 0, 0, source_channels()), *map(channels_of, hump_names())),
+        published_memory=memory_rows(published),
+        fixed_words=published.words(Memory.FIXED, 17),
+        working_words=published.words(Memory.WORKING, 53),
+        our_memory=memory_rows(ours),
+        our_kib=(ours.kibibytes(Memory.FIXED), ours.kibibytes(Memory.WORKING)),
+    )
+
+
+def channels_of(name: str) -> HumpChannels:
+    """Of a hump of the library."""
+    graph = load_hump(name).graph
+    total = total_channels(counted_channels(graph, ChannelRules()))
+    return hump_channels(name, len(graph.tracks), len(graph.retarders), total)
+
+
+def hump_channels(name: str, tracks: int, positions: int, found: Channels) -> HumpChannels:
+    """As plain numbers."""
+    return HumpChannels(name, tracks, positions, found.digital_in, found.analog_in, found.digital_out, found.analog_out)
+
+
+def our_memory(name: str) -> MemoryTable:
+    """Of our controller on a hump of the library."""
+    graph = load_hump(name).graph
+    return controller_memory(
+        ControllerCounts(
+            positions=len(graph.retarders), tables_a_book=TABLES_A_BOOK, books=2, aim_tables=6,
+            switches=len(graph.switches), tracks=len(graph.tracks), cuts=CUTS, code_bytes=CODE_BYTES,
+            table_bytes=TABLE_BYTES, aim_table_bytes=AIM_TABLE_BYTES,
+        )
+    )  # fmt: skip
+
+
+def memory_rows(found: MemoryTable) -> tuple[MemoryRow, ...]:
+    """As plain values."""
+    return tuple(MemoryRow(row.name, row.memory.value, row.count, row.bits) for row in found.rows)

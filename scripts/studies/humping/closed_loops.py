@@ -1,0 +1,102 @@
+"""What is run where positions work in their closed loop: curves by the least interval, and pairs at one of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from scripts.studies.humping.base_trial import Day, with_free, with_interval_std, with_stds
+from scripts.studies.humping.books import HIGHEST_M_S, Book, Regulator
+from scripts.studies.humping.couplings import FREE
+from scripts.studies.humping.day_figures import Pair, PairFigures
+from scripts.studies.humping.disturbances import OILED, WEAKER
+from scripts.studies.humping.frontier import OPEN_LOOP, WITH_FEEDBACK, WITH_SLOWING, Families, Family, sigma
+from scripts.studies.humping.table_positions import FRICTION, SUPPLY, TablePositions, table_positions
+from scripts.studies.study import Tell
+from synth.yard.humping.free_tracks import DrawnFree
+from synth.yard.humping.outcomes import TrainOutcomes
+from synth.yard.humping.trial import HumpTrial
+
+ENERGY_RULE, TABLES, TABLES_ESTIMATED = "energy rule", "our tables", "our tables, estimator"
+
+REGULATORS: dict[str, Regulator] = {
+    ENERGY_RULE: Book.energy_rule,
+    TABLES: Book.tables,
+    TABLES_ESTIMATED: Book.estimating_tables,
+}
+
+REGULATED = (OPEN_LOOP, WITH_FEEDBACK, WITH_SLOWING)
+"""Their controls."""
+
+TABLES_STD_M_S = 0.05
+"""Error that the exit speeds of the last position are chosen with where positions work in their closed loop."""
+
+
+@dataclass(frozen=True)
+class RegulatedCouplings:
+    """Couplings and gaps of regulated positions, with tracks free between both shares of `free`."""
+
+    positions: str
+    free: tuple[float, float]
+    found: PairFigures
+
+
+@dataclass(frozen=True)
+class ClosedLoops:
+    """`base`: their trial, still with normal positions; the positions of every regulator by its name; errors of the
+    normal positions beside them."""
+
+    base: HumpTrial
+    made: dict[str, TablePositions]
+    stds_m_s: tuple[float, ...]
+
+    @property
+    def best(self) -> str:
+        """The most exact normal positions."""
+        return sigma(min(self.stds_m_s))
+
+    @property
+    def commanded(self) -> str:
+        """These, commanded as tables are: at most `HIGHEST_M_S`, and the last position for `TABLES_STD_M_S`."""
+        return f"{self.best}, commanded as tables are"
+
+    def families(self) -> Families:
+        """The curves of the regulators, and of the most exact normal positions commanded as these are."""
+        found = {name: Family(made.on(self.base), REGULATED) for name, made in self.made.items()}
+        found[self.commanded] = Family(with_interval_std(self.base, min(self.stds_m_s)), (WITH_FEEDBACK,))
+        return found
+
+    def pairs(self) -> list[Pair]:
+        """A pair for each regulator beside normal positions, and for tables on plants they were not tuned for."""
+        base, tables = self.base, self.made[TABLES]
+        told = f"commands for {sigma(TABLES_STD_M_S)}"
+        rows = [Pair(f"normal, {sigma(std)}, {told}", with_stds(base, (std,) * 3)) for std in self.stds_m_s]
+        rows += [Pair(name, made.on(base)) for name, made in self.made.items()]
+        oiled, weak = tables.changed({FRICTION: OILED}), tables.changed({SUPPLY: WEAKER})
+        rows.append(Pair(f"{TABLES}, friction −30 %", oiled.on(base)))
+        return [*rows, Pair(f"{TABLES}, stages at {WEAKER:g} of their pressure", weak.on(base))]
+
+    def couplings(self) -> dict[tuple[str, tuple[float, float]], Pair]:
+        """A pair for each regulator and length of the free tracks, but the one that `pairs` have."""
+        return {
+            (name, free): Pair(f"{name}, free {free[0]:g}–{free[1]:g}", with_free(made.on(self.base), DrawnFree(*free)))
+            for name, made in self.made.items()
+            for free in FREE[:-1]
+        }
+
+    def found_couplings(self, outcomes: dict[str, TrainOutcomes]) -> tuple[RegulatedCouplings, ...]:
+        """What they came to, those of `pairs` with them."""
+        usual = {(pair.name, FREE[-1]): pair for pair in self.pairs() if pair.name in self.made}
+        return tuple(
+            RegulatedCouplings(name, free, pair.found(outcomes))
+            for (name, free), pair in (*self.couplings().items(), *usual.items())
+        )
+
+
+def closed_loops(day: Day, stds_m_s: tuple[float, ...], tell: Tell) -> ClosedLoops:
+    """All of them; books are tuned here, which takes minutes."""
+    limits = f"[exit_speeds]\nhighest_m_s = [{HIGHEST_M_S}, {HIGHEST_M_S}]\n"
+    base, made = replace(day, std_m_s=TABLES_STD_M_S, more=limits).trial(), {}
+    for name, regulator in REGULATORS.items():
+        made[name] = table_positions(base, regulator)
+        tell(f"books tuned: {name}")
+    return ClosedLoops(base, made, stds_m_s)

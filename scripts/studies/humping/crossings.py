@@ -1,0 +1,77 @@
+"""Where curves of catch-ups over the hump speed cross a share or a speed, with intervals from bootstrap samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from plant_models.frozen_arrays import frozen_arrays
+from scripts.studies.aiming.trial import Value
+from synth.yard.humping.outcomes import TrainOutcomes
+from synth.yard.humping.trial import Floats
+
+REPLICATES = 2000
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Sums:
+    """Of each bootstrap replicate (rows; the first is the sample itself) and each program, safest first: share of
+    catch-ups, mean hump speed, cars an hour."""
+
+    catch_ups: Floats
+    hump_speed_m_s: Floats
+    cars_per_hour: Floats
+
+    def crossing(self, limit: float) -> tuple[Floats, Floats]:
+        """Speed and cars an hour (rows,) where the share passes `limit`, linear in between; −∞ and ∞ where it does so
+        ahead of the first program or behind the last."""
+        beyond = self.catch_ups > limit
+        behind = beyond.argmax(axis=1)
+        rows = np.arange(len(beyond))
+        ahead = np.maximum(behind - 1, 0)
+        low, high = self.catch_ups[rows, ahead], self.catch_ups[rows, behind]
+        part = np.where(high > low, (limit - low) / np.where(high > low, high - low, 1.0), 0.0)
+        found = []
+        for values in (self.hump_speed_m_s, self.cars_per_hour):
+            between = values[rows, ahead] + part * (values[rows, behind] - values[rows, ahead])
+            between = np.where(behind == 0, -np.inf, between)
+            found.append(np.where(beyond.any(axis=1), between, np.inf))
+        return found[0], found[1]
+
+    def at_speed(self, hump_speed_m_s: float) -> Floats:
+        """Share of catch-ups (rows,) where the mean hump speed is passed first, linear in between; NaN if it is not."""
+        faster = self.hump_speed_m_s >= hump_speed_m_s
+        behind, rows = faster.argmax(axis=1), np.arange(len(faster))
+        ahead = np.maximum(behind - 1, 0)
+        low, high = self.hump_speed_m_s[rows, ahead], self.hump_speed_m_s[rows, behind]
+        part = np.where(high > low, (hump_speed_m_s - low) / np.where(high > low, high - low, 1.0), 0.0)
+        share = self.catch_ups[rows, ahead] + part * (self.catch_ups[rows, behind] - self.catch_ups[rows, ahead])
+        return np.where(faster.any(axis=1) & (behind > 0), share, np.nan)
+
+
+def sums_of(outcomes: list[TrainOutcomes], weights: Floats) -> Sums:
+    """Those of the programs of a curve; `weights` (rows, trains): how often each train is drawn."""
+
+    def total(name: str) -> Floats:
+        return np.stack([weights @ getattr(each, name).astype(float) for each in outcomes], axis=1)
+
+    seconds = total("span_s")
+    return Sums(total("caught") / total("cuts"), total("span_m") / seconds, 3600.0 * total("span_cars") / seconds)
+
+
+def drawn_weights(trains: int, seed: int) -> Floats:
+    """Bootstrap weights (1 + REPLICATES, trains); the first row is one each."""
+    rng = np.random.default_rng(np.random.SeedSequence(seed))
+    drawn = rng.multinomial(trains, np.full(trains, 1.0 / trains), REPLICATES)
+    return np.concatenate((np.ones((1, trains)), drawn.astype(float)))
+
+
+def decided(values: Floats) -> Value | None:
+    """The sample's own value (the first) with the percentile interval of the others, if all three are finite."""
+    if not np.isfinite(values[0]):
+        return None
+    ordered = np.sort(values[1:])
+    low, high = (float(ordered[int(q * (len(ordered) - 1))]) for q in (0.025, 0.975))
+    return Value(float(values[0]), (low, high)) if np.isfinite((low, high)).all() else None

@@ -1,0 +1,192 @@
+"""The closed loop with the compiled C controller as a separate process, asked through a pipe at every decision.
+
+If the table has an estimator, the process observes as well, at every sample. A table that decides at any time is asked
+at every sample, with the pressure of the gauge if it has slopes.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from types import FunctionType
+from typing import Any, Final
+
+import numpy as np
+from numba import njit
+
+from plant_models import Plant
+from scripts.studies.in_the_loop.controller_process import Controller
+from synth.kernels.any_time import closed_loop as any_time
+from synth.kernels.loop import closed_loop as kernel
+from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
+from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import RandomPasses
+from tuning_tables import ControllerTable
+
+OBSERVE: Final = -1
+BEGIN: Final = -2
+"""What is asked for, in the place of a stage (controller_process.c)."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The same passes with the rule in the simulator and with the controller process, and what each took.
+
+    `differing`: passes of which exit speed, time, stall or number of switchings differ in any bit.
+    """
+
+    inside: ExitSample
+    process: ExitSample
+    differing: int
+    inside_s: float
+    process_s: float
+
+
+def closed_loop_with_process(
+    plant: Plant, table: ControllerTable, number: int, controller: Controller, passes: RandomPasses, line: PipeLine
+) -> Comparison:
+    """Run `passes` of `plant` under `table`, number `number` in the book of `controller`, both ways."""
+    loop = close_loop(plant, len(table.stages))
+    draws = loop.draws(passes)
+    started = time.perf_counter()
+    inside = loop.run(TableController(table), draws)
+    turned = time.perf_counter()
+    with line.connected(controller, number):
+        process = run_passes(loop, TableController(table), draws, line)
+    ended = time.perf_counter()
+    pairs = [(getattr(inside, name), getattr(process, name)) for name in vars(inside)]
+    differs = np.zeros(len(inside), dtype=np.bool_)
+    for one, other in pairs:
+        differs |= one != other
+    return Comparison(inside, process, int(differs.sum()), turned - started, ended - turned)
+
+
+def run_passes(loop: ClosedLoop, controller: TableController, draws: kernel.Draws, line: PipeLine) -> ExitSample:
+    """All passes of `draws`, by the kernel that asks through `line`."""
+    n, law = len(draws.cut_factor), controller.law()
+    exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
+    events = np.empty((0, kernel.EVENT_FIELDS))
+    if isinstance(law, any_time.AnyTimeLaw):
+        line.run_any_time_passes(loop.path, loop.sampled, loop.sensor, law, draws, exits, events)
+    else:
+        line.run_passes(loop.path, loop.drive, loop.sensor, law, draws, exits, events)
+    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight)
+
+
+class PipeLine:
+    """The kernels of the closed loop compiled with a decision and an estimator that ask through two file descriptors.
+
+    Compiling one takes some seconds, when it is first needed; after that any controller process can be connected, one
+    at a time.
+    """
+
+    def __init__(self) -> None:
+        self._ask, self._hear = os.open(os.devnull, os.O_RDWR), os.open(os.devnull, os.O_RDWR)
+        self._at_rest, self._at_pressure, self._observe = _controller_through(self._ask, self._hear)
+
+    @cached_property
+    def run_passes(self) -> Callable[..., int]:
+        """`kernels.loop.closed_loop.run_passes` for tables that decide at rest."""
+        run: Callable[..., int] = run_passes_with(self._at_rest, self._observe)
+        return run
+
+    @cached_property
+    def run_any_time_passes(self) -> Callable[..., int]:
+        """`kernels.any_time.closed_loop.run_any_time_passes` for tables that decide at any time."""
+        run: Callable[..., int] = run_any_time_passes_with(self._at_pressure, self._observe)
+        return run
+
+    @contextmanager
+    def connected(self, controller: Controller, number: int) -> Iterator[None]:
+        """Start the controller for table `number`, and end it afterwards."""
+        command = [*controller.command, "serve", str(number)]
+        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0) as process:
+            assert process.stdin is not None
+            assert process.stdout is not None
+            os.dup2(process.stdin.fileno(), self._ask, inheritable=False)
+            os.dup2(process.stdout.fileno(), self._hear, inheritable=False)
+            try:
+                yield
+            finally:
+                for descriptor in (self._ask, self._hear):
+                    closed = os.open(os.devnull, os.O_RDWR)
+                    os.dup2(closed, descriptor)
+                    os.close(closed)
+                process.stdin.close()
+        if process.returncode != 0:
+            raise RuntimeError(f"{' '.join(command)} ended with exit code {process.returncode}")
+
+
+def run_passes_with(decision: Any, estimated_speed: Any) -> Any:
+    """`kernel.run_passes`, the same text, with other functions in the place of the tables' own; compiled, not cached.
+
+    Both compiled, with arguments and answers of `tuning_tables.rule.decide` and `tuning_tables.estimator.observe`. The
+    loop around them is no other.
+    """
+    compiled = njit(nogil=True, error_model="numpy")
+    scope = {**vars(kernel), "stage_by_table": decision, "estimated_speed": estimated_speed}
+    scope["run_pass"] = compiled(FunctionType(kernel.run_pass.py_func.__code__, scope))
+    return compiled(FunctionType(kernel.run_passes.py_func.__code__, scope))
+
+
+def run_any_time_passes_with(decision: Any, estimated_speed: Any) -> Any:
+    """`any_time.run_any_time_passes`, likewise; the decision is handed the pressure in the place of what it adds."""
+    compiled = njit(nogil=True, error_model="numpy")
+
+    @njit
+    def pressure_itself(slopes, pressures, highest_raised, stage, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
+        return kpa
+
+    scope = {**vars(any_time), "stage_by_table": decision, "estimated_speed": estimated_speed}
+    scope["pressure_rises"] = pressure_itself
+    for name in ("wanted_stage", "run_any_time_pass"):
+        scope[name] = compiled(FunctionType(getattr(any_time, name).py_func.__code__, scope))
+    return compiled(FunctionType(any_time.run_any_time_passes.py_func.__code__, scope))
+
+
+def _controller_through(ask: int, hear: int) -> tuple[Any, Any, Any]:
+    """Decisions at rest and at any time, and an estimator, that write a request to `ask` and read its answer at `hear`.
+
+    The decision at any time is handed the pressure in the place of what it adds to the lines.
+    """
+    library = ctypes.CDLL(None)
+    write, read = library.write, library.read
+    for call in (write, read):
+        call.argtypes = [ctypes.c_int, ctypes.c_void_p, ctypes.c_size_t]
+        call.restype = ctypes.c_ssize_t
+
+    @njit
+    def answered(what, s, v, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
+        request = np.empty(4, np.int32)
+        reading = request.view(np.float32)
+        request[0], reading[1], reading[2], reading[3] = what, s, v, kpa
+        answer = np.empty(1, np.int32)
+        # Writes and reads of sixteen and four bytes are never split in a pipe.
+        if write(ask, request.ctypes.data, 16) != 16 or read(hear, answer.ctypes.data, 4) != 4:
+            raise RuntimeError("the controller process does not answer")
+        return answer
+
+    @njit
+    def decide(coefficients, has_line, valid, limits, stage, s, v):  # type: ignore[no-untyped-def]  # as above
+        return answered(stage, s, v, 0.0)[0]
+
+    @njit
+    def decide_at_pressure(  # type: ignore[no-untyped-def]  # as above
+        coefficients, has_line, valid, limits, stage, s, v, kpa
+    ):
+        return answered(stage, s, v, kpa)[0]
+
+    @njit
+    def observe(parameters, work, state, s, v, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
+        # The process has the state; what the kernel holds only tells whether a pass begins.
+        what = OBSERVE if state[0] != 0.0 else BEGIN
+        state[0] = 1.0
+        return answered(what, s, v, kpa).view(np.float32)[0]
+
+    return decide, decide_at_pressure, observe

@@ -1,0 +1,127 @@
+"""Accuracy against time in the position, for several prices of a second; and what one of them brings a whole hump.
+
+Every table is that of a tune, simulated on the same passes; every hump variant humps the same trains.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from scripts.studies.humping.exits import exits_table
+from scripts.studies.humping.pair_tables import curve_table, gains_table
+from scripts.studies.markdown_table import MarkdownTable, plus_minus, table
+from scripts.studies.options import option
+from scripts.studies.side_by_side import side_by_side
+from scripts.studies.study import Findings, Method, Tell
+from scripts.studies.time_price.humped import Humped, humped
+from scripts.studies.tuned_table import CREATED
+from synth.book.class_setup import ClassSetup, Origin, class_setup
+from synth.book.pareto.case_front import pareto_front
+from synth.book.pareto.pareto_front import ParetoFront, told
+from synth.configuration.config_file import parse_config
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
+from synth.simulation.stratified_passes import stratified_passes
+from tuning_tables import Generator
+
+FRESH = 49979687
+
+CUTS = ((1, 22.0), (1, 85.0), (3, 150.0), (10, 520.0))
+"""Gondolas of a cut, and their mass, t."""
+
+TARGET_M_S = 3.0
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is studied."""
+
+    passes: int = option(20_000, "fresh passes of each table", (200, 10**6))
+    cases: int = option(len(CUTS), "how many of the cuts", (1, len(CUTS)))
+    trains: int = option(1000, "trains of every variant of the hump; 0: none", (0, 10**6))
+    cuts: int = option(40, "cuts of a train", (2, 999))
+    price_m2_s3: float = option(1e-4, "what a second costs the tables of the hump, m²/s³", (0.0, 1.0))
+    least_s: tuple[float, ...] = option(
+        (1.4, 1.0, 0.6, 0.3, 0.0, -0.4), "least intervals of the programs of hump speeds, falling", (-10.0, 10.0)
+    )
+    limits: tuple[float, ...] = option((0.001, 0.005), "shares of catch-ups that may not be passed", (1e-5, 0.5))
+    workers: int = option(2, "processes; they change no result", (1, 1000))
+    seed: int = option(17, "of the trains", (0, 10**9))
+
+
+@dataclass(frozen=True)
+class TimePrice(Findings):
+    """The fronts of all cases; `hump`: None where no train was humped."""
+
+    config_sha256: str
+    seed: int
+    passes: int
+    fronts: tuple[ParetoFront, ...]
+    hump: Humped | None
+
+    def tables(self) -> Mapping[str, MarkdownTable]:
+        """`fronts`: a row for each case and price; `gains`, `exits`, `hump NUMBER`: of the hump."""
+        found = {"fronts": fronts_table(self.fronts)}
+        if self.hump is not None:
+            found["gains"] = gains_table("what the price brings the hump, on the same trains", self.hump.gains)
+            found["exits"] = exits_table(self.hump.exits)
+            found |= {f"hump {number}": curve_table(each) for number, each in enumerate(self.hump.curves, start=1)}
+        return found
+
+    def sentences(self) -> tuple[str, ...]:
+        """What is nearly free, and how much was simulated."""
+        return told(self.fronts), f"{self.passes} stratified passes a table, seed {self.seed}"
+
+
+HEADS = ("case", "price, m²/s³", "rms, mm/s", "rms / rms without price", "predicted, mm/s", "time, s", "commands")
+
+
+def fronts_table(fronts: tuple[ParetoFront, ...]) -> MarkdownTable:
+    """A row for each case and price."""
+    rows = [
+        (
+            front.name,
+            f"{point.time_price_m2_s3:g}",
+            plus_minus(point.statistics.rms_m_s, point.statistics.rms_ci95_m_s, 1, 1e3),
+            plus_minus(point.ratio, point.ratio_ci95, 3),
+            f"{1e3 * point.predicted_rms_m_s:.1f}",
+            plus_minus(point.statistics.time_s, point.statistics.time_ci95_s, 2),
+            f"{point.statistics.switchings:.1f}",
+        )
+        for front in fronts
+        for point in front.points
+    ]
+    return table("accuracy against time in the position, by the price of a second", HEADS, rows)
+
+
+def run(options: Options, tell: Tell) -> TimePrice:
+    """The cases, then the hump."""
+    config = configured(options.cases)
+    seed = config.validation.seed + FRESH
+    fresh = stratified_passes(seed, 0, options.passes)
+    origin = Origin(Generator("retarder-synth study", "0", config.sha256), CREATED)
+    setups = [class_setup(config, label, plant, fresh, origin) for label, plant in config.plants()]
+
+    def front(setup: ClassSetup) -> ParetoFront:
+        found = pareto_front(config, setup, Aim(TARGET_M_S, config.criterion))
+        tell(found.name)
+        return found
+
+    fronts = side_by_side(front, setups)
+    hump = None
+    if options.trains:
+        hump = humped(
+            options.seed, options.trains, options.cuts, options.price_m2_s3, options.least_s, options.limits,
+            options.workers, tell,
+        )  # fmt: skip
+    return TimePrice(config.sha256, seed, options.passes, tuple(fronts), hump)
+
+
+def configured(cases: int) -> ResolvedConfig:
+    """The default position with the first of the cuts."""
+    cuts = "".join(f'[[cut]]\ncar = "gondola-4"\ncars = {cars}\nmass_t = {mass}\n' for cars, mass in CUTS[:cases])
+    return parse_config(f"[targets]\nexit_speeds_m_s = [{TARGET_M_S}]\n{cuts}", "study time-price")
+
+
+METHOD = Method(Options, Options(passes=200, cases=1, trains=0), TimePrice, run)

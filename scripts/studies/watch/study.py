@@ -1,0 +1,128 @@
+"""After how many passes a drift is found and named, and how often an alarm is false.
+
+Passes in order and with each change are simulated once. A repetition draws some in order, then changed ones, with
+replacement; so it is a sequence of independent passes, and costs no simulation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import beta, chi2
+
+from scripts.studies.options import option
+from scripts.studies.study import Method, Tell
+from scripts.studies.tuned_table import tuned_table
+from scripts.studies.watch.findings import FalseAlarms, Found, Watched
+from scripts.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, Change, Judge, joined, simulated
+from synth.configuration.config_file import load_config
+from synth.yard.measured_passes.drift.baseline import configured
+from synth.yard.measured_passes.drift.causes import causes_of
+from synth.yard.measured_passes.drift.charts import charts_of, kinds_of, limit_of, steps_of
+from synth.yard.measured_passes.drift.diagnosis import diagnosed
+from synth.yard.measured_passes.drift.evidence import Evidence
+from synth.yard.measured_passes.fitting_passes import fitting_passes
+
+BESIDE = 200
+"""Sequences that false alarms are counted on, side by side."""
+
+LONGEST = 500
+"""Passes after a change."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """How much is done."""
+
+    classes: int = option(4, "cut classes of the built-in configuration", (1, 10))
+    passes: int = option(4000, "passes in order", (40, 10**6))
+    changed_passes: int = option(1500, "passes with each change", (40, 10**6))
+    repetitions: int = option(400, "of each change", (2, 10**5))
+    calm_passes: int = option(1_000_000, "drawn for false alarms", (1000, 10**9))
+    seed: int = option(23, "of the random numbers", (0, 2**31))
+
+
+def run(options: Options, tell: Tell) -> Watched:
+    """Tune, simulate, draw."""
+    config = load_config(None)
+    plants = config.plants()
+    chosen = [plants[i] for i in np.unique(np.linspace(0, len(plants) - 1, options.classes).astype(int)).tolist()]
+    tables = []
+    for label, plant in chosen:
+        targets = config.targets_of(label)
+        tables.append((plant, tuned_table(config, plant, targets[len(targets) // 2])))
+    tell(f"{len(tables)} tables tuned")
+    amounts = [options.passes] + [options.changed_passes] * len(CHANGES)
+    logs = [
+        simulated(tables, change, amount, options.seed + number, GAUGE)
+        for number, (change, amount) in enumerate(zip((IN_ORDER, *CHANGES), amounts, strict=True))
+    ]
+    tell("passes simulated")
+    found: list[Found] = []
+    calm: list[FalseAlarms] = []
+    for gauge in (True, False):
+        seen = logs if gauge else [replace(log, pressure_kpa=np.full_like(log.pressure_kpa, np.nan)) for log in logs]
+        passes = fitting_passes(seen[0], plants, "the study")
+        values, slope_key = configured(passes, config.parameters)
+        judge = Judge(tuple(plants), values, causes_of(passes, values, slope_key), slope_key)
+        rng = np.random.default_rng([options.seed, int(gauge)])
+        calm_pool = judge.evidence(seen[0])
+        calm.append(false_alarms(calm_pool, gauge, options.calm_passes, rng))
+        for change, log in zip(CHANGES, seen[1:], strict=True):
+            found.append(repeated(change, gauge, calm_pool, judge.evidence(log), options.repetitions, rng))
+        tell(f"drawn, gauge: {gauge}")
+    return Watched(config.sha256, options.seed, options.passes, options.changed_passes, tuple(found), tuple(calm))
+
+
+def false_alarms(pool: Evidence, gauge: bool, passes: int, rng: np.random.Generator) -> FalseAlarms:
+    """Sequences of passes in order, side by side; an alarm begins one anew."""
+    steps, charts = steps_of(pool), len(kinds_of(pool.causes))
+    limit = limit_of(charts)
+    sums, alarms, length = np.zeros((BESIDE, charts)), 0, passes // BESIDE
+    for _ in range(length):
+        sums = np.maximum(sums + steps[rng.integers(0, len(steps), BESIDE)], 0.0)
+        over = (sums >= limit).any(axis=1)
+        alarms += int(over.sum())
+        sums[over] = 0.0
+    done = length * BESIDE
+    low = float(chi2.ppf(0.025, 2 * alarms)) / 2.0 if alarms else 0.0
+    high = float(chi2.ppf(0.975, 2 * alarms + 2)) / 2.0
+    return FalseAlarms(gauge, charts, limit, done, alarms, (low / done, high / done))
+
+
+def repeated(
+    change: Change, gauge: bool, calm: Evidence, changed: Evidence, repetitions: int, rng: np.random.Generator
+) -> Found:
+    """The change after 50 to 150 passes in order, again and again."""
+    alarm, named, right, wrong, early = [], [], 0, 0, 0
+    for _ in range(repetitions):
+        begin = int(rng.integers(50, 151))
+        before = calm.taken(rng.integers(0, len(calm), begin))
+        evidence = joined(before, changed.taken(rng.integers(0, len(changed), LONGEST)))
+        diagnosis = diagnosed(evidence, charts_of(evidence))
+        if diagnosis is not None and diagnosis.alarm < begin:
+            early += 1
+            continue
+        alarm.append(float(LONGEST) if diagnosis is None else diagnosis.alarm - begin + 1.0)
+        named.append(float(LONGEST) if diagnosis is None else diagnosis.until - begin + 1.0)
+        if diagnosis is not None and diagnosis.decided:
+            hit = diagnosis.first.cause.name == change.cause
+            right, wrong = right + hit, wrong + (not hit)
+    n = max(1, repetitions - early)
+    low = float(beta.ppf(0.025, right, n - right + 1)) if right else 0.0
+    high = float(beta.ppf(0.975, right + 1, n - right)) if right < n else 1.0
+    return Found(
+        change.title, gauge, repetitions, early, quantiles(alarm), quantiles(named), right / n, (low, high), wrong / n
+    )
+
+
+def quantiles(values: list[float]) -> tuple[float, float]:
+    """Median and 90 %."""
+    low, high = np.quantile(values or [0.0], [0.5, 0.9]).tolist()
+    return float(low), float(high)
+
+
+SMALLEST = Options(classes=2, passes=200, changed_passes=100, repetitions=10, calm_passes=2000)
+
+METHOD = Method(Options, SMALLEST, Watched, run)

@@ -1,1 +1,0 @@
-"""The laboratory: what the machine was measured with. No command but `study` reaches it."""
