@@ -62,7 +62,7 @@ def write(told: Told, directory: ResultsDirectory, tell: Callable[[str], None]) 
         if isinstance(each, File):
             directory.write(each.name, each.content)
         elif isinstance(each, Table):
-            directory.write(f"tables/{each.name}.csv", to_csv(each))
+            directory.write(f"sheets/{each.name}.csv", to_csv(each))
     output = told.head.output
     pictures = drawn(told, tell) if output.plots or output.report else {}
     if output.plots:

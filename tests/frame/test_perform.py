@@ -48,7 +48,7 @@ def test_every_medium_tells_the_same_figures(app: typer.Typer, tmp_path: Path) -
     assert code == 0
     told = summary(tmp_path)
     share = told["tables"]["shares"][0]["share"]
-    with (tmp_path / "tables" / "shares.csv").open(encoding="utf-8", newline="") as file:
+    with (tmp_path / "sheets" / "shares.csv").open(encoding="utf-8", newline="") as file:
         first, _, nobody = csv.DictReader(file)
     columns = {"value": "share", "low95": "share_low95", "high95": "share_high95", "n": "share_n"}
     assert {part: float(first[column]) for part, column in columns.items()} == share
@@ -70,7 +70,7 @@ def test_the_summary_names_every_file_with_its_hash_and_is_what_json_prints(app:
     code, printed = run(app, "-o", str(tmp_path), "--json")
     assert (code, printed) == (0, (tmp_path / "summary.json").read_text(encoding="utf-8"))
     told = summary(tmp_path)
-    files = {"coins.txt", "plots/coins.png", "plots/coins.svg", "report.html", "tables/shares.csv"}
+    files = {"coins.txt", "plots/coins.png", "plots/coins.svg", "report.html", "sheets/shares.csv"}
     assert set(told["files"]) == files
     for name, digest in told["files"].items():
         assert hashlib.sha256((tmp_path / name).read_bytes()).hexdigest() == digest
@@ -97,7 +97,7 @@ def test_the_same_question_gives_the_same_bytes_and_options_count(app: typer.Typ
         assert run(app, "-o", str(tmp_path / name), *words)[0] == 0
     one, two, other = (results_in(tmp_path / name) for name in ("one", "two", "other"))
     assert one == two
-    assert one["tables/shares.csv"] != other["tables/shares.csv"]
+    assert one["sheets/shares.csv"] != other["sheets/shares.csv"]
     assert summary(tmp_path / "other")["warnings"] == ["few throws"]
     assert summary(tmp_path / "other")["config"]["throws"] == 50
 
@@ -105,7 +105,7 @@ def test_the_same_question_gives_the_same_bytes_and_options_count(app: typer.Typ
 def test_what_is_only_asked_is_written(app: typer.Typer, tmp_path: Path) -> None:
     (tmp_path / "c.toml").write_text("[output]\nplots = false\nreport = false\n", encoding="utf-8")
     assert run(app, str(tmp_path / "c.toml"), "-o", str(tmp_path / "out"))[0] == 0
-    assert set(summary(tmp_path / "out")["files"]) == {"coins.txt", "tables/shares.csv"}
+    assert set(summary(tmp_path / "out")["files"]) == {"coins.txt", "sheets/shares.csv"}
 
 
 @pytest.mark.parametrize(

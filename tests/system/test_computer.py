@@ -59,7 +59,7 @@ def test_a_run_leaves_what_it_says(first: tuple[Path, str]) -> None:
     summary = told(folder / "out")
     assert (summary["format"], summary["command"]) == ("retarder-synth-summary", "computer")
     pictures = {f"plots/computer-{name}" for name in ("waits", "checks", "traffic", "tornado")}
-    sheets = {f"tables/{name}.csv" for name in summary["tables"]}
+    sheets = {f"sheets/{name}.csv" for name in summary["tables"]}
     assert set(summary["files"]) == {"report.html", *sheets, *(f"{each}.{form}" for each in pictures
                                                               for form in ("png", "svg"))}  # fmt: skip
     assert "accepted: the allowed waits need 105,694 op/s" in printed
@@ -102,7 +102,7 @@ def test_a_pay_back_that_never_comes_is_a_statement(tmp_path: Path) -> None:
     document = json.loads(done.stdout)
     figures = {row["figure"]: row["value"] for row in document["tables"]["economics"]}
     assert figures["pay back years"] is None
-    assert {name.partition("/")[0] for name in document["files"]} == {"tables"}
+    assert {name.partition("/")[0] for name in document["files"]} == {"sheets"}
 
 
 def test_an_overloaded_hump_is_the_fault_of_the_input(tmp_path: Path) -> None:

@@ -111,7 +111,7 @@ def test_files_are_those_of_the_summary_and_csv_says_what_it_says(ran: Path) -> 
     summary = json.loads((ran / "one" / "summary.json").read_bytes())
     for name, digest in summary["files"].items():
         assert hashlib.sha256((ran / "one" / name).read_bytes()).hexdigest() == digest
-    with (ran / "one" / "tables" / "cases.csv").open(encoding="utf-8", newline="") as file:
+    with (ran / "one" / "sheets" / "cases.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     for row, told in zip(rows, summary["tables"]["cases"], strict=True):
         assert (row["case"], row["key"]) == (told["case"], told["key"])

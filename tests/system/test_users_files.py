@@ -79,7 +79,7 @@ DIRECTORIES = (
     Writing(("sensors", "tune", "points.toml"), "report.html"),
     Writing(("sensors", "plan", "yard.toml"), "sensors.toml"),
     Writing(("permissions", "yard.toml"), "summary.json"),
-    Writing(("sensitivity", "yard.toml", "--table", "book.h5"), "tables/overall.csv"),
+    Writing(("sensitivity", "yard.toml", "--table", "book.h5"), "sheets/overall.csv"),
     Writing(("sweep", "sweep.toml"), "config.toml"),
     Writing(("aim", "aim.toml"), "report.html"),
     Writing(("computer", "computer.toml"), "report.html"),
