@@ -13,8 +13,22 @@ if TYPE_CHECKING:
     AnyCommand = Command[Any, Any, Any, Any]
 
 
-def computer() -> AnyCommand:
+def aim() -> AnyCommand:
     """Loaded when it is called, as all of these."""
+    from synth.yard.aim.command import COMMAND
+
+    return COMMAND
+
+
+def aim_options() -> type[Options]:
+    """Of it."""
+    from synth.yard.aim.options import AimOptions
+
+    return AimOptions
+
+
+def computer() -> AnyCommand:
+    """See `aim`."""
     from synth.computer.command import COMMAND
 
     return COMMAND
@@ -28,7 +42,7 @@ def computer_options() -> type[Options]:
 
 
 def permissions() -> AnyCommand:
-    """See `computer`."""
+    """See `aim`."""
     from synth.book.permissions.command import COMMAND
 
     return COMMAND
@@ -42,7 +56,7 @@ def permissions_options() -> type[Options]:
 
 
 def sensitivity() -> AnyCommand:
-    """See `computer`."""
+    """See `aim`."""
     from synth.book.sensitivity.command import COMMAND
 
     return COMMAND
@@ -56,7 +70,7 @@ def sensitivity_options() -> type[Options]:
 
 
 def sensors_plan() -> AnyCommand:
-    """See `computer`."""
+    """See `aim`."""
     from synth.book.sensors.plan_command import COMMAND
 
     return COMMAND
@@ -70,6 +84,15 @@ def sensors_plan_options() -> type[Options]:
 
 
 COMMANDS: Final = (
+    Listed(
+        "aim",
+        aim,
+        aim_options,
+        "init --aim",
+        "Make aim tables: the exit speeds at which a park position lets cuts go.\n\n"
+        "Random cuts roll to the standing cars; the tables keep a required probability of coupling too fast. Exit code "
+        "1 if a table misses it.",
+    ),
     Listed(
         "sensitivity",
         sensitivity,

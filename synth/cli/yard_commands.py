@@ -22,34 +22,9 @@ Seed = Annotated[
 
 def add_yard_commands(app: typer.Typer) -> None:
     """Add the commands of the yard to `app`."""
-    app.command()(aim)
     app.command()(watch)
     app.add_typer(hump_commands.app, name="hump")
     app.add_typer(sensors_commands.app, name="sensors")
-
-
-def aim(
-    config: Configuration = None,
-    output: Output = Path("out/aim"),
-    passes: Annotated[
-        int | None,
-        typer.Option(
-            parser=whole_number(1000, 200_000),
-            metavar="N",
-            help="Cuts of each number of cars that speeds are chosen on; as configured unless given.",
-        ),
-    ] = None,
-    seed: Seed = None,
-    as_json: Json = False,
-) -> int:
-    """Make aim tables: the exit speeds at which a park position lets cuts go.
-
-    Random cuts roll to the standing cars; the tables keep a required probability of coupling too fast. Exit code 1 if a
-    table misses it.
-    """
-    from synth.cli.aim import aim_command
-
-    return aim_command(config, output, passes, seed, as_json)
 
 
 def watch(

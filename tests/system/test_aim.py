@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -81,7 +82,7 @@ def check_file(path: Path) -> None:
     match path.parent.name, path.suffix:
         case "tables", ".json":
             read_aim_json(path)
-        case (("tables" | "c"), ".csv"):
+        case (("tables" | "c" | "sheets"), ".csv"):
             assert content.endswith(b"\r\n")
         case "c", ".c" | ".h":
             assert content.startswith(b"/* ")
@@ -107,11 +108,10 @@ def test_aim_leaves_tables_code_pictures_report_and_a_summary_of_them(aimed_once
     files, summary = files_in(directory), json.loads((directory / "summary.json").read_bytes())
     assert set(files) - {"summary.json"} == set(summary["files"])
     ids = [f"rnz-2m-park-{category}-{known}" for category in ("L", "T") for known in ("category", "measured")]
-    assert [table["id"] for table in summary["tables"]] == ids
+    assert [table["id"] for table in summary["tables"]["aim-tables"]] == ids
     assert {f"tables/{name}.{form}" for name in ids for form in ("json", "csv")} <= set(files)
     assert {"c/aim_table.c", "c/aim_table.h", "st/aim_table.st", "plots/aim-track.png", "report.html"} <= set(files)
-    assert summary["format"] == "aim-summary"
-    assert (summary["accepted"], summary["created"]) == (True, "2023-11-14T22:13:20Z")
+    assert (summary["command"], summary["accepted"], summary["created"]) == ("aim", True, "2023-11-14T22:13:20Z")
     page = files["report.html"].decode()
     for words in ("Accepted", "assumed", "No exit speed keeps that chance", summary["generator"]["config_sha256"]):
         assert words in page
@@ -120,37 +120,37 @@ def test_aim_leaves_tables_code_pictures_report_and_a_summary_of_them(aimed_once
 
 def test_it_prints_the_figures_of_its_summary(aimed_once: tuple[Path, int], pages: list[Page]) -> None:
     directory, _ = aimed_once
-    tables = json.loads((directory / "summary.json").read_bytes())["tables"]
+    rows = json.loads((directory / "summary.json").read_bytes())["tables"]["gaps"]
     told = table_of(page_about(pages, directory))
-    rows = [(table, place) for table in tables for place in (0, len(table["cars"]) - 1)]
-    require_column(told, "cuts", [f"{table['category']} by {table['knowledge']}" for table, _ in rows])
-    require_column(told, "cars", [str(table["cars"][place]) for table, place in rows])
-    distances = [heading for heading in told[0] if heading.startswith("gap, m, at ")]
+    require_column(told, "cuts", [row["cuts"] for row in rows])
+    require_column(told, "cars", [str(row["cars"]) for row in rows])
+    distances = [heading for heading in told[0] if heading.startswith("gap at ")]
     assert len(distances) > 1
     for heading in distances:
-        number = tables[0]["free_distances_m"].index(float(heading.split()[3]))
-        gaps = [table["mean_gap_m"][place][number] for table, place in rows]
-        require_column(told, heading, [None if gap is None else f"{gap:.1f}" for gap in gaps])
-    for (table, _), row in zip(rows, told, strict=True):
-        printed = [float(word.strip("[],")) for word in row["worst cell, over-speed, %"].split()]
-        worst = table["worst_cell"]
-        assert printed == pytest.approx([100.0 * each for each in (worst["p_overspeed"], *worst["ci95"])], rel=0.05)
+        gaps = [row[f"at_{heading.split()[2]}_m"] for row in rows]
+        require_column(told, heading, [f"{g['value']:.2f} [{g['low95']:.2f}, {g['high95']:.2f}]" for g in gaps])
+    for row, printed in zip(rows, told, strict=True):
+        numbers = [float(word) for word in re.findall(r"[\d.]+", printed["worst cell, over-speed"])]
+        worst = [100.0 * row["worst"][key] for key in ("value", "low95", "high95")]
+        assert numbers == pytest.approx(worst, rel=0.05)
 
 
 def test_the_summary_tells_what_the_tables_hold(aimed_once: tuple[Path, int]) -> None:
     directory, _ = aimed_once
-    for told in json.loads((directory / "summary.json").read_bytes())["tables"]:
-        table = read_aim_json(directory / told["table"])
+    tables = json.loads((directory / "summary.json").read_bytes())["tables"]
+    for told in tables["aim-tables"]:
+        table = read_aim_json(directory / "tables" / f"{told['id']}.json")
         assert (table.id, table.category.name) == (told["id"], told["category"])
         assert told["cells_without_speed"] == int(np.isnan(table.exit_speed_m_s).sum())
-        assert table.interpolation_error_m_s == told["interpolation"]["below_m_s"]
+        assert table.interpolation_error_m_s == told["below_m_s"]
+        cells = [cell for cell in tables["cells"] if cell["id"] == table.id]
+        assert len(cells) == table.exit_speed_m_s.shape[0] * table.exit_speed_m_s.shape[1]
         if not table.is_measured:
-            np.testing.assert_array_equal(told["p_overspeed"], table.reported.p_overspeed)
-            np.testing.assert_allclose(told["mean_gap_m"], table.reported.mean_gap_m, rtol=1e-12)
-        low, p, high = (np.array(told[f"p_overspeed{end}"]) for end in ("_low95", "", "_high95"))
-        assert ((low <= p) & (p <= high)).all()
-        gap_low, gap, gap_high = (np.array(told[f"mean_gap{end}_m"]) for end in ("_low95", "", "_high95"))
-        assert ((gap_low <= gap) & (gap <= gap_high)).all()
+            shape = table.exit_speed_m_s.shape
+            shares = np.array([cell["overspeed"]["value"] for cell in cells]).reshape(shape)
+            np.testing.assert_array_equal(shares, table.reported.p_overspeed)
+            gaps = np.array([cell["gap_m"]["value"] for cell in cells]).reshape(shape)
+            np.testing.assert_allclose(gaps, table.reported.mean_gap_m, rtol=1e-12)
 
 
 UNIFORM = """\
@@ -236,11 +236,11 @@ def test_passes_and_seed_of_the_command_line_count(
     assert ran.code == 0
     told = json.loads(ran.out)
     assert told == json.loads((tmp_path / "out" / "summary.json").read_bytes())
-    assert [table["chosen_on_cuts"] for table in told["tables"]] == [1000] * 4
+    assert [table["chosen_on_cuts"] for table in told["tables"]["aim-tables"]] == [1000] * 4
     assert told["config"]["numbers"]["simulation.seed"] == 7.0
-    assert told["tables"][0]["mean_gap_m"] != before["tables"][0]["mean_gap_m"]
+    assert told["tables"]["cells"][0]["gap_m"] != before["tables"]["cells"][0]["gap_m"]
     assert ", about " not in ran.out
-    assert "tables computed in" in ran.err
+    assert "tables computed" in ran.err
 
 
 def test_inspect_verify_and_export_take_what_aim_leaves(command: Command, aimed: Path, tmp_path: Path) -> None:
@@ -376,9 +376,9 @@ def test_a_position_that_runs_its_own_tables(command: Command, tmp_path: Path) -
     summary = json.loads((tmp_path / "out" / "summary.json").read_bytes())
     assert summary["config"]["tables_sha256"] == hashlib.sha256((tmp_path / "park/book.h5").read_bytes()).hexdigest()
     assert "aim.exit_std_m_s" not in summary["config"]["numbers"]
-    found = summary["tables"][0]
-    assert found["p_overspeed_low95"][0][0] <= 0.11
-    assert 5.0 < found["mean_gap_m"][0][0] < 20.0  # 11.7 m with a normal error of 0.1 m/s
+    found = summary["tables"]["cells"][0]
+    assert found["overspeed"]["low95"] <= 0.11
+    assert 5.0 < found["gap_m"]["value"] < 20.0  # 11.7 m with a normal error of 0.1 m/s
     config.write_text(BY_TABLES.replace("cars = [1]", "cars = [1, 2]"), encoding="utf-8")
     ran = command("aim", config, "-o", tmp_path / "no")
     assert ran.code == 2
@@ -425,6 +425,8 @@ def test_the_default_needs_no_file(tmp_path: Path) -> None:
     )  # fmt: skip
     assert ran.returncode == 0, ran.stderr
     summary = json.loads((tmp_path / "out" / "summary.json").read_bytes())
-    assert len(summary["tables"]) == 10
-    assert summary["tables"][0]["cars"] == [1, 2, 3, 5, 8, 15]
+    assert len(summary["tables"]["aim-tables"]) == 10
+    first = summary["tables"]["aim-tables"][0]["id"]
+    cars = {cell["cars"] for cell in summary["tables"]["cells"] if cell["id"] == first}
+    assert cars == {1, 2, 3, 5, 8, 15}
     assert "accepted: " in ran.stdout

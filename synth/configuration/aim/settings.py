@@ -11,6 +11,8 @@ from pydantic import Field
 
 from plant_models.library import YARD_CATEGORIES
 from plant_models.library.sourced_value import JUDGEMENT
+from synth.configuration.aim.simulation_settings import SimulationSettings
+from synth.frame.settings.output import OutputSettings
 from synth.frame.settings.section import Section, setting
 from synth.frame.settings.value_forms import Title
 
@@ -136,29 +138,12 @@ class AimedSettings(Section):
     tables_config: str | None = None
 
 
-class SimulationSettings(Section):
-    """Random cuts; speeds are chosen on some and judged on as many others."""
-
-    passes: int = setting(
-        20_000, "1", 1_000, 200_000, "cuts of each number of cars that speeds are chosen on; half as many others judge"
-    )
-    seed: int = setting(20261122, "1", 0, 2**53, "seed of the random streams")
-    threads: int = setting(0, "1", 0, 256, "threads that roll cuts; 0: one a processor; changes no result")
-
-
 class AimAcceptanceSettings(Section):
     """The limit that the tables must keep; exit code 1 if one does not."""
 
     p_excess: float = setting(
         0.01, "1", 0.0, 1.0, "a cell misses where its probability is above p_overspeed + this, interval included"
     )
-
-
-class AimOutputSettings(Section):
-    """What is written besides JSON, CSV, C and ST; changes no result and no hash."""
-
-    plots: bool = Field(True, description="draw the pictures")
-    report: bool = Field(True, description="write report.html")
 
 
 class AimFileSettings(Section):
@@ -176,4 +161,4 @@ class AimFileSettings(Section):
     aim: AimedSettings = AimedSettings()
     simulation: SimulationSettings = SimulationSettings()
     acceptance: AimAcceptanceSettings = AimAcceptanceSettings()
-    output: AimOutputSettings = AimOutputSettings()
+    output: OutputSettings = OutputSettings()

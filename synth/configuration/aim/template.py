@@ -26,14 +26,14 @@ from synth.configuration.aim.settings import (
     DEFAULT_TRACK,
     AimAcceptanceSettings,
     AimedSettings,
-    AimOutputSettings,
     CutsSettings,
     ResistanceSettings,
-    SimulationSettings,
     WeatherSettings,
 )
+from synth.configuration.aim.simulation_settings import SimulationSettings
 from synth.configuration.config_template import origin, quoted, source_lines, switch_lines
 from synth.frame.settings.numbers import numbers_of
+from synth.frame.settings.output import OutputSettings
 from synth.frame.settings.section import Section, setting_unit
 
 HEAD = """\
@@ -76,7 +76,7 @@ def lines(track: TrackEntry) -> Iterator[str]:
     yield from aim_lines()
     yield from ("", "[simulation]", *setting_lines("simulation", SimulationSettings()))
     yield from ("", "[acceptance]", *setting_lines("acceptance", AimAcceptanceSettings()))
-    yield from ("", "[output]", *switch_lines(AimOutputSettings))
+    yield from ("", "[output]", *switch_lines(OutputSettings))
 
 
 def track_lines(track: TrackEntry) -> Iterator[str]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import betainc
 
+from synth.frame.interval import Interval
 from synth.frame.printed_numbers import counted, percent
 from synth.yard.aim.aim_book import MadeAim
 
@@ -18,14 +19,15 @@ CHANCE = 0.025
 @dataclass(frozen=True)
 class AimVerdict:
     """One table: `missed` names the cells whose over-speeds cannot be chance; `told` of `cells` have figures, and
-    `without` have no speed at all. `worst`: the highest share of over-speed of a cell, with its 95 % interval."""
+    `without` have no speed at all. `worst`: the highest share of over-speed of a cell, of its cuts; None where no cell
+    has figures."""
 
     table: str
     cells: int
     told: int
     without: int
     missed: tuple[str, ...]
-    worst: tuple[float, float, float]
+    worst: Interval | None
 
 
 @dataclass(frozen=True)
@@ -70,11 +72,11 @@ def judge_aim(made: MadeAim, p_excess: float) -> AimVerdict:
     chance = np.where(hits > 0.0, betainc(np.maximum(hits, 1.0), n - hits + 1.0, min(limit, 1.0)), 1.0)
     over = told & (chance < CHANCE / max(int(told.sum()), 1))
     cells = [cell_name(made, tuple(int(i) for i in place)) for place in np.argwhere(over)]
-    worst = (np.nan, np.nan, np.nan)
+    worst = None
     if told.any():
         place = np.unravel_index(np.argmax(np.where(told, speeds.overspeed_low95, -1.0)), told.shape)
         low, high = speeds.overspeed_low95[place], speeds.overspeed_high95[place]
-        worst = float(speeds.overspeed[place]), float(low), float(high)
+        worst = Interval(float(speeds.overspeed[place]), float(low), float(high), int(speeds.cuts[place]))
     without = int(np.isnan(speeds.speed_m_s).sum())
     return AimVerdict(made.table.id, told.size, int(told.sum()), without, tuple(cells), worst)
 

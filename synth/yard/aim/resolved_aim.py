@@ -32,15 +32,15 @@ from synth.configuration.aim.settings import (
     AimAcceptanceSettings,
     AimedSettings,
     AimFileSettings,
-    AimOutputSettings,
-    SimulationSettings,
 )
+from synth.configuration.aim.simulation_settings import SimulationSettings
 from synth.configuration.aim.track_values import track_with_settings
 from synth.configuration.config_file import load_config
 from synth.configuration.plant_fault import in_file
 from synth.configuration.position_choice import require_held
 from synth.frame.input_error import InputError
 from synth.frame.settings.numbers import range_warnings
+from synth.frame.settings.output import OutputSettings
 from synth.yard.aim.scene import AimScene, MeasuredStretch
 from tuning_tables.canonical import canonical_json
 
@@ -87,7 +87,7 @@ class ResolvedAim:
     book: tuple[Path, Path | None] | None
     simulation: SimulationSettings
     acceptance: AimAcceptanceSettings
-    output: AimOutputSettings
+    output: OutputSettings
     parameters: tuple[SourcedValue, ...]
     notes: tuple[str, ...]
     warnings: tuple[str, ...]

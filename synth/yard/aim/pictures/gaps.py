@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from synth.frame.picture.house_style import dress, legend_below, new_figure, place
+from synth.frame.picture.series import graded, markers, named_lines
 from synth.frame.printed_numbers import counted
-from synth.present.plots.aim.series import graded, markers, named_lines
 from synth.yard.aim.aim_book import AimBook, MadeAim
 
 KNOWN = {"category": "category alone", "measured": "resistance measured"}

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from synth.frame.picture.house_style import INK, dress, legend_below, new_figure, place
+from synth.frame.picture.series import graded
 from synth.frame.printed_numbers import counted
-from synth.present.plots.aim.series import graded
 from synth.yard.aim.aim_curves import AimCurves, Floats
 
 

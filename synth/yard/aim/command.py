@@ -1,0 +1,106 @@
+"""The command `aim`: the exit speeds at which a park position lets cuts go, as tables of controllers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from synth.configuration.aim.aim_file import AimFile, parse_aim_file
+from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.exhibits import Chapter
+from synth.frame.terminal.progress import Progress
+from synth.yard.aim.options import AimOptions
+
+if TYPE_CHECKING:
+    from synth.yard.aim.aim_acceptance import AimBookVerdict
+    from synth.yard.aim.aim_book import AimBook
+    from synth.yard.aim.resolved_aim import ResolvedAim
+
+LIMITS_OF_USE = (
+    "All figures are those of a model with the parameters listed here, not of a yard. Assumed parameters are guesses; "
+    "replace them by those of your yard, then aim again.",
+    "Intervals (95 %) cover the chance of the simulated cuts only, neither the parameters nor the model.",
+    "Resistance, wind and bends are drawn once for each cut and stay for its whole way; the wind is one along the "
+    "track, and a gust or a lee is not modelled.",
+    "Standing cars are taken not to move, and the free distance to be known. A cut that stops short shortens the free "
+    "distance of all that follow it: gaps are told, their consequences are not.",
+    "The tool is not certified and claims no safety integrity. Before a table commands a position, check it with an "
+    "independent program against the hashes below, and on the track.",
+)
+
+
+@dataclass(frozen=True)
+class FoundAim:
+    """The tables, and whether they keep what is asked of them."""
+
+    book: AimBook
+    verdict: AimBookVerdict
+
+
+def resolve(asked: Asked[AimFile, AimOptions]) -> ResolvedAim:
+    """The file with what is given on the command line; a book that does not fit is refused."""
+    from synth.yard.aim.aimed_position import position_of
+    from synth.yard.aim.resolved_aim import resolve_aim
+
+    config = resolve_aim(asked.settings.with_simulation(asked.options.passes, asked.options.seed))
+    position_of(config)
+    return config
+
+
+def head(config: ResolvedAim) -> Head:
+    """What is said of the configuration."""
+    reads = () if config.book is None else tuple(path for path in config.book if path is not None)
+    return Head(
+        title=config.title,
+        canonical_json=config.canonical_json,
+        parameters=config.parameters,
+        output=config.output,
+        warnings=config.warnings,
+        reads=reads,
+    )
+
+
+def steps(config: ResolvedAim) -> Steps:
+    """A step for each weight category."""
+    return Steps(len(config.members), "aiming", "categories")
+
+
+def compute(config: ResolvedAim, progress: Progress) -> FoundAim:
+    """All tables, and the verdict on them."""
+    from synth.frame.creation_time import creation_time
+    from synth.kernels.cache import guarded
+    from synth.yard.aim.aim_acceptance import judge_aims
+    from synth.yard.aim.aim_book import aim_book
+
+    book = guarded(aim_book, config, creation_time(), progress.done)
+    progress.note(f"{len(book.tables)} tables computed")
+    return FoundAim(book, judge_aims(book.tables, config.acceptance.p_excess))
+
+
+def limits(found: FoundAim) -> Iterator[Limit]:
+    """The probability that is asked for."""
+    yield Limit(found.verdict.sentence, found.verdict.accepted)
+
+
+def show(found: FoundAim) -> Iterator[Chapter]:
+    """What is shown of it."""
+    from synth.yard.aim.shown import asked, cells, charts, files, gaps
+
+    yield Chapter("Results", (*asked(found.book, found.verdict), *gaps(found.book, found.verdict)))
+    yield Chapter("Pictures", tuple(charts(found.book)))
+    yield Chapter("Cell by cell", (*cells(found.book), *files(found.book)))
+
+
+COMMAND = Command(
+    name="aim",
+    read=parse_aim_file,
+    options=AimOptions,
+    resolve=resolve,
+    head=head,
+    steps=steps,
+    compute=compute,
+    show=show,
+    limits=limits,
+    limits_of_use=LIMITS_OF_USE,
+)
