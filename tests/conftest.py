@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import settings
 
+from tests.corpus import Corpus, shared_base
 from tests.printed_page import Page, caught
 
 settings.register_profile("ci", derandomize=True, deadline=None)
@@ -21,6 +22,12 @@ def pages() -> Iterator[list[Page]]:
     """Every page that commands have printed in this process; each is found whole at every width as it is printed."""
     with caught() as found:
         yield found
+
+
+@pytest.fixture(scope="session")
+def corpus(tmp_path_factory: pytest.TempPathFactory) -> Corpus:
+    """What commands have left, made once for all processes of this run."""
+    return Corpus(shared_base(tmp_path_factory))
 
 
 def pytest_collection_finish() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.cli import main
+from tests.corpus import Corpus, Recipe
 
 CONFIG = """\
 [retarder]
@@ -55,50 +55,47 @@ REGULATORS_AT_ANY_TIME = {
 }
 
 
-def tune(folder: Path, config: str) -> Path:
+EVERY_EXPORT = (
+    ("tune", "config.toml", "-o", "out", "--workers", "1"),
+    ("export", "out/book.h5", "--format", "st", "-o", "out/st"),
+)
+
+
+def tune(corpus: Corpus, config: str) -> Path:
     """The directory of a tune with every export."""
-    (folder / "config.toml").write_text(config)
-    out = folder / "out"
-    assert main(["tune", str(folder / "config.toml"), "-o", str(out), "--workers", "1"]) == 0
-    assert main(["export", str(out / "book.h5"), "--format", "st", "-o", str(out / "st")]) == 0
-    return out
+    made = corpus.made(Recipe(config, EVERY_EXPORT))
+    assert made.codes == (0, 0)
+    return made.folder / "out"
 
 
 @pytest.fixture(scope="session")
-def tuned_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def tuned_once(corpus: Corpus) -> Path:
     """The directory of the tune, C99 in c/ and Structured Text in st/; not to be changed."""
-    folder = tmp_path_factory.mktemp("checked")
-    return tune(folder, f"{CONFIG}[regulator]\n{FROM_THE_ENTRANCE}")
+    return tune(corpus, f"{CONFIG}[regulator]\n{FROM_THE_ENTRANCE}")
 
 
 @pytest.fixture(scope="session")
-def estimated_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def estimated_once(corpus: Corpus) -> Path:
     """The directory of the same tune with an estimator, version 2; not to be changed."""
-    folder = tmp_path_factory.mktemp("estimated")
-    return tune(folder, f"{CONFIG}[regulator]\napproach_m = 0.0\nestimator = true\n")
+    return tune(corpus, f"{CONFIG}[regulator]\napproach_m = 0.0\nestimator = true\n")
 
 
 @pytest.fixture(scope="session", params=[False, True], ids=["measured", "estimated"])
-def approached_once(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def approached_once(request: pytest.FixtureRequest, corpus: Corpus) -> Path:
     """The directory of the same tune with an approach, version 3, without and with estimator; not to be changed."""
-    folder = tmp_path_factory.mktemp("approached")
-    return tune(folder, f"{APPROACHED}estimator = {str(request.param).lower()}\n")
+    return tune(corpus, f"{APPROACHED}estimator = {str(request.param).lower()}\n")
 
 
 @pytest.fixture(scope="session")
-def gauged_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def gauged_once(corpus: Corpus) -> Path:
     """The directory of a tune of one table of version 5, with a gauge; not to be changed."""
-    folder = tmp_path_factory.mktemp("gauged")
-    return tune(folder, f"{ANY_TIME}{REGULATORS_AT_ANY_TIME['gauge']}")
+    return tune(corpus, f"{ANY_TIME}{REGULATORS_AT_ANY_TIME['gauge']}")
 
 
 @pytest.fixture(scope="session", params=REGULATORS_AT_ANY_TIME)
-def any_time_once(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def any_time_once(request: pytest.FixtureRequest, corpus: Corpus) -> Path:
     """The same with a gauge, without, and with an estimator and an approach; not to be changed."""
-    if request.param == "gauge":
-        return Path(request.getfixturevalue("gauged_once"))
-    folder = tmp_path_factory.mktemp("any_time")
-    return tune(folder, f"{ANY_TIME}{REGULATORS_AT_ANY_TIME[request.param]}")
+    return tune(corpus, f"{ANY_TIME}{REGULATORS_AT_ANY_TIME[request.param]}")
 
 
 @pytest.fixture

@@ -45,5 +45,10 @@ def found(verdict: Verdict, kind: Kind, words: str) -> bool:
 
 
 def look(path: Path) -> Verdict:
-    """The verdict with few passes: what is planted here does not need more."""
+    """The verdict with next to no passes: they have no part in what files say of one another or hold by themselves."""
+    return verify(path, 2, 1)
+
+
+def judged(path: Path) -> Verdict:
+    """The verdict with few passes, which contradict no claim that is right."""
     return verify(path, 100, 1)

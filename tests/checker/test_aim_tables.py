@@ -23,7 +23,7 @@ from synth.checker.finding import Kind
 from synth.checker.float32 import bits
 from synth.checker.verdict import verify
 from synth.cli import main
-from tests.checker.planted_fault import Document, found, look
+from tests.checker.planted_fault import Document, found, judged, look
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
@@ -67,12 +67,12 @@ def exported(exported_once: Path, tmp_path: Path) -> Path:
 
 
 def test_sound_tables_and_exports_are_confirmed(exported_once: Path, tmp_path: Path) -> None:
-    verdict = look(exported_once)
+    verdict = judged(exported_once)
     assert verdict.findings == ()
     assert verdict.code == 0
     assert {each.aim.id for each in verdict.aims} == {table.id for table in AIMS.tables}
     assert len(verdict.files) == 3 + 3 + 2 * 2 + 2
-    hard = look(write_all(tmp_path / "hard", sample_set()))
+    hard = judged(write_all(tmp_path / "hard", sample_set()))
     assert hard.findings == ()
     assert len(hard.aims) == 19
 
@@ -124,7 +124,7 @@ def test_one_changed_digit_in_an_export_is_found(
     assert count == 1
     (exported / name).write_bytes(text.encode())
     if not words:  # fewer golden aims than the export writes are still right ones
-        assert look(exported).findings == ()
+        assert judged(exported).findings == ()
         return
     damaged = ("else than", "count is", "first line")
     kind = Kind.DAMAGED if any(each in words for each in damaged) else Kind.DISAGREES
@@ -135,7 +135,7 @@ def test_a_table_more_or_less_is_found(exported: Path) -> None:
     moved = exported / "tables" / "aim-4-category.json"
     content = moved.read_bytes()
     moved.unlink()
-    verdict = look(exported)
+    verdict = judged(exported)
     for words in (
         "it holds 3 tables",
         r"holds tables for the categories \[1, 1, 4\]",
@@ -253,7 +253,7 @@ def test_more_over_speeds_than_required_are_a_claim_that_is_not_confirmed(tmp_pa
     words = (
         r"at 1 nodes more cuts over-speed than required, p = 0.1; most at 5 cars at 200 m: 0.1300 \[0.1200, 0.1400\]"
     )
-    assert found(look(tmp_path), Kind.CLAIM, words)
+    assert found(judged(tmp_path), Kind.CLAIM, words)
 
 
 @pytest.mark.parametrize(
@@ -286,7 +286,7 @@ def test_beside_controller_tables(exported: Path) -> None:
     (exported / "tables" / "a.json").write_bytes(to_json(table))
     for name, content in c_files(TableBook((table,)), ExportPrefix("AIM_2")).items():
         (exported / "c" / name).write_bytes(content)
-    verdict = look(exported)
+    verdict = judged(exported)
     assert verdict.findings == ()
     assert [each.table.id for each in verdict.tables] == ["a"]
     assert len(verdict.aims) == 3

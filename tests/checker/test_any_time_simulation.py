@@ -23,7 +23,7 @@ from synth.checker.summary import Summary, read_summary
 from synth.checker.table_reading import Table, read_table
 from synth.checker.verdict import CONFIRMED, verify
 from tests.checker.any_time_tables import approached, sloped, sound_table
-from tests.checker.planted_fault import Document, alone, found, look, rewrite
+from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
 from tuning_tables import to_json
 
 HONESTY = Honesty(0.9, 1.35)
@@ -177,7 +177,7 @@ def test_figures_at_seven_tenths_are_not_confirmed(gauged: Path) -> None:
 
 
 def test_a_prediction_at_seven_tenths_contradicts_the_validation(gauged: Path) -> None:
-    assert found(look(claimed(gauged, better_prediction)), Kind.CLAIM, "does not agree with the validated one")
+    assert found(judged(claimed(gauged, better_prediction)), Kind.CLAIM, "does not agree with the validated one")
 
 
 def plain(document: Document) -> None:
@@ -224,7 +224,7 @@ def test_what_is_not_modelled_is_said_and_not_passed(gauged: Path, section: str,
     sha256 = summary["generator"]["config_sha256"] = config_sha256(config)
     (gauged / "summary.json").write_text(json.dumps(summary, ensure_ascii=False), encoding="utf-8")
     rewrite(file, lambda document: document["generator"].update(config_sha256=sha256))
-    verdict = look(file)
+    verdict = judged(file)
     assert found(
         verdict, Kind.CLAIM, "cannot be confirmed: commands at any time are modelled only for valves that close"
     )

@@ -17,7 +17,7 @@ from synth.checker.source import read_source
 from synth.checker.table_reading import read_table
 from synth.checker.verdict import CONFIRMED
 from tests.checker.any_time_tables import approached, estimated, every_kind, leave, sloped, sound_table
-from tests.checker.planted_fault import Document, found, look, rewrite
+from tests.checker.planted_fault import Document, found, judged, look, rewrite
 from tests.tuning_tables.forged_book import forge, put
 from tuning_tables import ControllerTable, Decisions, read_book, to_json, write_book
 
@@ -41,7 +41,7 @@ def alone(left: Path) -> Path:
 def test_every_kind_passes_in_json_csv_and_book(tmp_path: Path) -> None:
     made = list(every_kind())
     out = leave([replace(table, target_speed_m_s=3.6 + 0.1 * i) for i, table in enumerate(made)], tmp_path)
-    verdict = look(out)
+    verdict = judged(out)
     assert verdict.findings == ()
     assert verdict.code == CONFIRMED
     by_id = {each.table.id: each.table for each in verdict.tables}
@@ -147,7 +147,7 @@ def test_a_stage_out_of_use_must_be_left_at_every_pressure_and_without_one(tmp_p
         table = replace(made, stages=(made.stages[0], top, last))
         file = tmp_path / "table.json"
         file.write_bytes(to_json(table))
-        verdict = look(file)
+        verdict = judged(file)
         assert found(verdict, Kind.DAMAGED, words) if words else verdict.findings == ()
 
 
@@ -161,7 +161,7 @@ def test_lines_out_of_use_keep_their_order_where_the_gauge_is_silent(tmp_path: P
                                                    upper_slope_m_s_per_kpa=None)))  # fmt: skip
     file = tmp_path / "table.json"
     file.write_bytes(to_json(table))
-    assert look(file).findings == ()
+    assert judged(file).findings == ()
     rewrite(file, of_stage(2, "upper", [11.5, 0.0]))  # at 150 kPa, the highest in the range, it is 1.17 m/s higher
     assert found(look(file), Kind.DAMAGED, r"at stage 2 the lower line is not below the upper one at s = \S+ m$")
 
@@ -209,7 +209,7 @@ def test_a_gauge_of_a_table_at_rest_is_damage(tmp_path: Path) -> None:
     made = sloped(sound_table("plain"))
     book = tmp_path / "book.h5"
     write_book([made, replace(made, id="other", target_speed_m_s=3.9)], book)
-    assert look(book).findings == ()
+    assert judged(book).findings == ()
     forge(book, cell("at_any_time", (0,), 0))
     assert found(look(book), Kind.DAMAGED, "'plain-gauge' has at_any_time 0 and has_gauge 1")
 

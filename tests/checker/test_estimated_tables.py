@@ -13,7 +13,7 @@ from synth.checker.c_export import most_breaks, words_of
 from synth.checker.finding import Kind
 from synth.checker.table_reading import read_table
 from synth.checker.verdict import CONFIRMED, verify
-from tests.checker.planted_fault import Document, alone, found, look, rewrite
+from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
 from tuning_tables import TableBook, read_book
 from tuning_tables.json_file import to_json
 from tuning_tables.table_block import block_of
@@ -150,7 +150,7 @@ def test_what_makes_no_estimator_is_damage(estimated: Path, change: Callable[[Do
 
 def test_another_estimator_in_the_json_file_is_found_in_every_export(estimated: Path) -> None:
     rewrite(min((estimated / "tables").glob("*.json")), more_brake)
-    verdict = look(estimated)
+    verdict = judged(estimated)
     assert found(verdict, Kind.DISAGREES, r"estimator.brake_m2_s2_per_kpa\[\d+\] is .* in book.h5")
     assert found(verdict, Kind.DISAGREES, r"\.csv: the row number,estimator.brake_m2_s2_per_kpa")
 

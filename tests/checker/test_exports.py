@@ -15,7 +15,7 @@ import pytest
 from synth.checker import c_export, golden_export, st_export
 from synth.checker.finding import DamagedError, Kind
 from synth.checker.table_reading import Table, read_table
-from tests.checker.planted_fault import Document, alone, found, look, rewrite
+from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
 from tests.controller_code.sample_book import FOUR_AXLES, surface_book, table_of
 from tests.controller_code.test_surface_code import at_rest
 from tuning_tables import ControllerTable, Decisions, to_json
@@ -37,7 +37,7 @@ def swap_coefficients(document: Document) -> None:
 
 def test_swapped_coefficients_are_found_in_every_export(tuned: Path) -> None:
     rewrite(min((tuned / "tables").glob("*.json")), swap_coefficients)
-    verdict = look(tuned)
+    verdict = judged(tuned)
     for words in (
         r"but .* in book.h5",
         r"retarder_table.c: word",
@@ -88,7 +88,7 @@ def test_ids_that_look_like_names_of_the_code_are_compared_as_they_are(tmp_path:
             (tmp_path / name).write_bytes(content)
     for table in tables:
         (tmp_path / f"{table.id}.json").write_bytes(to_json(table))
-    verdict = look(tmp_path)
+    verdict = judged(tmp_path)
     assert verdict.findings == ()
     assert {"bunch_table.c", "bunch_table.st", "0004_BUNCH_2_LOAD.st", "retarder_table.c"} <= set(verdict.files)
 
@@ -213,7 +213,7 @@ def test_a_book_that_points_elsewhere_is_not_followed(tuned: Path) -> None:
 
 def test_a_removed_table_is_missed(tuned: Path) -> None:
     min((tuned / "tables").glob("*.json")).unlink()
-    verdict = look(tuned)
+    verdict = judged(tuned)
     assert found(verdict, Kind.DISAGREES, "in book.h5, but has no sound JSON file")
     assert found(verdict, Kind.DISAGREES, "lists it, but it is not there")
 
@@ -227,7 +227,7 @@ def test_a_table_too_many_is_found(tuned: Path) -> None:
     table = min((tuned / "tables").glob("*.json"))
     copy = Path(shutil.copy(table, table.with_name("copy.json")))
     rewrite(copy, lambda document: document.update(id="another"))
-    verdict = look(tuned)
+    verdict = judged(tuned)
     assert found(verdict, Kind.DISAGREES, "another: it has a JSON file, but it is not in book.h5")
     assert found(verdict, Kind.DISAGREES, "it holds 2 tables, but there are 3")
 

@@ -11,7 +11,7 @@ import pytest
 
 from synth.checker.finding import Kind
 from synth.checker.verdict import CONFIRMED, verify
-from tests.checker.planted_fault import Document, alone, found, look, rewrite
+from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
 
 
 def test_a_tune_with_every_export_passes(tuned_once: Path) -> None:
@@ -26,10 +26,10 @@ def test_a_tune_with_every_export_passes(tuned_once: Path) -> None:
 def test_a_table_and_a_book_pass_alone(tuned_once: Path, tmp_path: Path) -> None:
     table = min((tuned_once / "tables").glob("*.json"))
     for file in (table, tuned_once / "book.h5"):
-        assert look(file).code == CONFIRMED
-        assert all(each.figures is not None for each in look(file).tables)
+        assert judged(file).code == CONFIRMED
+        assert all(each.figures is not None for each in judged(file).tables)
     lonely = Path(shutil.copy(table, tmp_path / "lonely.json"))
-    (each,) = look(lonely).tables
+    (each,) = judged(lonely).tables
     assert each.figures is None
     assert "no usable summary.json" in str(each.skipped)
 

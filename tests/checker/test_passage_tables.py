@@ -18,7 +18,7 @@ from synth.checker.finding import DamagedError, Kind
 from synth.checker.passages.reading import read_passage_table
 from synth.checker.passages.rule import passages_heard, wanted
 from synth.cli import main
-from tests.checker.planted_fault import Document, found, look, rewrite
+from tests.checker.planted_fault import Document, found, judged, look, rewrite
 from tests.controller_code.passage_tables import every_axle_book, passage_book
 from tests.tuning_tables.passages.made_tables import passage_tables as any_tables
 from tests.tuning_tables.passages.made_tables import table_of
@@ -49,7 +49,7 @@ def exported(exported_once: Path, tmp_path: Path) -> Path:
 
 
 def test_sound_tables_and_exports_are_confirmed(exported_once: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    verdict = look(exported_once)
+    verdict = judged(exported_once)
     assert verdict.findings == ()
     assert {each.table.id for each in verdict.passages} == {table.id for table in TABLES}
     assert len(verdict.files) == 4
@@ -148,7 +148,7 @@ def test_a_table_that_never_acts_is_found(tmp_path: Path) -> None:
             passage["switching_m_s"] = never
 
     rewrite(file, edit)
-    verdict = look(file)
+    verdict = judged(file)
     assert found(verdict, Kind.DAMAGED, "at no passage is the brake applied")
     assert found(verdict, Kind.DAMAGED, "at no passage is the highest stage left")
 
@@ -170,7 +170,7 @@ def test_claims_that_contradict_one_another_are_found(
 ) -> None:
     file = exported / "tables" / f"{TABLES[0].id}.json"
     rewrite(file, edit)
-    assert found(look(file), Kind.CLAIM, words)
+    assert found(judged(file), Kind.CLAIM, words)
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 
 import pytest
@@ -15,7 +15,7 @@ from tests.controller_code.sample_book import approaching_book, estimating_book,
 from tuning_tables.table_book import TableBook
 
 Tool = Callable[[str], str]
-ToChange = Callable[[Mapping[str, bytes], str], ChangedExport]
+ToChange = Callable[[Sequence[Mapping[str, bytes]], str], ChangedExport]
 Built = Callable[[TableBook], Controller]
 
 BOOKS: dict[str, Callable[[], TableBook]] = {
@@ -50,14 +50,17 @@ def book(request: pytest.FixtureRequest) -> TableBook:
 
 @pytest.fixture(scope="session")
 def to_change(tool: Tool, tmp_path_factory: pytest.TempPathFactory) -> ToChange:
-    """An export and the name of the file that is to be changed: all others are compiled once, however often asked."""
+    """An export with each of its self-tests and the name of the file that is to be changed.
+
+    All other files are compiled once, however often asked.
+    """
 
     @cache
-    def compiled(files: tuple[tuple[str, bytes], ...], name: str) -> ChangedExport:
+    def compiled(exports: tuple[tuple[tuple[str, bytes], ...], ...], name: str) -> ChangedExport:
         tool("gcc")
-        return changed_export(dict(files), name, tmp_path_factory.mktemp("to-change"))
+        return changed_export([dict(files) for files in exports], name, tmp_path_factory.mktemp("to-change"))
 
-    return lambda files, name: compiled(tuple(files.items()), name)
+    return lambda exports, name: compiled(tuple(tuple(files.items()) for files in exports), name)
 
 
 @pytest.fixture(scope="session")

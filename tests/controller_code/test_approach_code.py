@@ -14,7 +14,7 @@ from tests.controller_code.conftest import Built, ToChange
 from tests.controller_code.sample_book import approaching_book, table_of, with_approach
 from tuning_tables import Approach, Status
 from tuning_tables.c_source import c_files
-from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
+from tuning_tables.self_test_size import FULL, SMALL
 from tuning_tables.table_block import LAYOUT, block_of, block_size
 from tuning_tables.table_book import TableBook
 
@@ -103,13 +103,12 @@ def test_the_words_of_an_approach_come_last_and_only_where_there_is_one() -> Non
         ("&& slower->entrance_stage == faster->entrance_stage", "", 4),
     ],
 )
-@pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
 def test_the_self_test_finds_a_wrong_gate(
-    before: str, after: str, fault: int, self_test: SelfTestSize, tmp_path: Path, to_change: ToChange
+    before: str, after: str, fault: int, tmp_path: Path, to_change: ToChange
 ) -> None:
     book = approaching_book(estimators=False)
-    ran = to_change(sources_of(book, self_test), "retarder_table.c").self_test(before, after, tmp_path)
-    assert ran.returncode == fault
+    export = to_change([sources_of(book, size) for size in (FULL, SMALL)], "retarder_table.c")
+    assert [said.returncode for said in export.self_tests(before, after, tmp_path)] == [fault, fault]
 
 
 def test_the_interlock_stands_in_the_header(tmp_path: Path) -> None:

@@ -253,9 +253,9 @@ MUTANTS = (
 def test_the_self_test_finds_a_wrong_controller(
     before: str, after: str, fault: int, tmp_path: Path, to_change: ToChange
 ) -> None:
-    ran = to_change(exported(), SOURCES[0]).self_test(before, after, tmp_path)
-    assert ran.returncode == 0
-    assert ran.stdout.startswith(f"fault {fault} at")
+    (said,) = to_change([exported()], SOURCES[0]).self_tests(before, after, tmp_path)
+    assert said.returncode == 0
+    assert said.stdout.startswith(f"fault {fault} at")
 
 
 def test_names_take_the_prefix_and_equal_corrections_give_equal_bytes() -> None:

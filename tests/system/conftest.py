@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from synth.cli import main
+from tests.corpus import Corpus, Recipe
 
 CLASS = """\
 [retarder]
@@ -111,23 +112,24 @@ def measured_classes(one_class: Path) -> Path:
     return path
 
 
-def tuned_into(config: Path, directory: Path) -> tuple[Path, int]:
+def tuned_from(config: Path, corpus: Corpus) -> tuple[Path, int]:
     """(directory, exit code) of a tune by two workers."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
-        return directory, main(["tune", str(config), "-o", str(directory), "--workers", "2"])
+    command = ("tune", config.name, "-o", "out", "--workers", "2")
+    recipe = Recipe(config.read_text(encoding="utf-8"), (command,), config.name, (("SOURCE_DATE_EPOCH", EPOCH),))
+    made = corpus.made(recipe)
+    return made.folder / "out", made.codes[0]
 
 
 @pytest.fixture(scope="session")
-def tuned_once(two_classes: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
+def tuned_once(two_classes: Path, corpus: Corpus) -> tuple[Path, int]:
     """(directory, exit code) of a tune of two classes by two workers; not to be changed."""
-    return tuned_into(two_classes, tmp_path_factory.mktemp("tuned") / "out")
+    return tuned_from(two_classes, corpus)
 
 
 @pytest.fixture(scope="session")
-def measured_once(measured_classes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def measured_once(measured_classes: Path, corpus: Corpus) -> Path:
     """Directory of a tune of the same classes for the measured speed; not to be changed."""
-    directory, code = tuned_into(measured_classes, tmp_path_factory.mktemp("measured") / "out")
+    directory, code = tuned_from(measured_classes, corpus)
     assert code == 0
     return directory
 
