@@ -19,7 +19,7 @@ from synth.computer.sizing.demand_service import Service
 from synth.computer.uncertainty import UncertaintySettings
 from synth.computer.usual_money import USUAL_CHANGE, USUAL_RANGES, USUAL_TODAY, RangeSettings
 from synth.frame.settings.output import OutputSettings
-from synth.frame.settings.section import Section, choice, needed, optional, setting
+from synth.frame.settings.section import Section, choice, many, needed, optional, setting
 from synth.frame.settings.value_forms import Title
 
 
@@ -76,7 +76,7 @@ class ComputerSettings(Section):
 
     title: Title | None = Field(None, description="of the page")
     hump: str = choice("large", "whose elements are counted: one of the library, or the path of your own hump file")
-    task: tuple[TaskSettings, ...] = Field(USUAL_TASKS, min_length=1, max_length=50, strict=False)
+    task: tuple[TaskSettings, ...] = many(USUAL_TASKS, 1, 50, "tables [[task]]")
     service: Service = Service()
     cycle: Cycle = Cycle()
     position: PositionTimes = PositionTimes()
@@ -86,7 +86,7 @@ class ComputerSettings(Section):
     handling: Handling = Handling()
     rates: RatesSettings = RatesSettings()
     terms: Terms = Terms()
-    range: tuple[RangeSettings, ...] = Field(USUAL_RANGES, max_length=100, strict=False)
+    range: tuple[RangeSettings, ...] = many(USUAL_RANGES, 0, 100, "tables [[range]]")
     uncertainty: UncertaintySettings = UncertaintySettings()
     acceptance: AcceptanceSettings = AcceptanceSettings()
     output: OutputSettings = OutputSettings()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from synth.frame.settings.section import Section
+from synth.frame.settings.section import Section, many
 from synth.frame.settings.value_forms import Grade, Numbers, Pairs
 
 DEFAULT_POSITION = "knp-5-bunch"
@@ -123,7 +123,7 @@ class CutSettings(Section):
     label: str | None = Field(None, pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,60}$")
     car: str | None = None
     cars: int = Field(1, ge=1, le=60)
-    consist: tuple[CarsSettings, ...] | None = Field(None, min_length=1, max_length=60, strict=False)
+    consist: tuple[CarsSettings, ...] | None = many(None, 1, 60, "tables {car = …, cars = …, mass_per_car_t = …}")
     mass_t: float | None = None
     category: str | None = None
     allowed_stage: int | None = None

@@ -26,7 +26,7 @@ from synth.configuration.plant_settings import (
     TrackSettings,
 )
 from synth.configuration.point_sensors.settings import PointSensorSettings
-from synth.frame.settings.section import Section, setting
+from synth.frame.settings.section import Section, many, setting
 from synth.frame.settings.value_forms import Source, Title
 from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange, OverspeedLimit, Requirement
@@ -191,7 +191,7 @@ class Settings(Section):
     """A whole configuration file; an empty one is the built-in default."""
 
     title: Title | None = None
-    library: tuple[str, ...] = Field((), max_length=20, strict=False)
+    library: tuple[str, ...] = many((), 0, 20, "folders")
     sources: dict[str, Source] = Field(default_factory=dict)
     weight_categories: str = YARD_CATEGORIES
     position: PositionSettings = PositionSettings()
@@ -202,7 +202,7 @@ class Settings(Section):
     sensor: SensorSettings = SensorSettings()
     sensors: PointSensorSettings | None = None
     targets: TargetSettings = TargetSettings()
-    cut: tuple[CutSettings, ...] = Field(DEFAULT_CUTS, min_length=1, max_length=1000, strict=False)
+    cut: tuple[CutSettings, ...] = many(DEFAULT_CUTS, 1, 1000, "[[cut]] tables")
     grid: GridSettings = GridSettings()
     fit: FitSettings = FitSettings()
     regulator: RegulatorSettings = RegulatorSettings()

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator
 
-from synth.frame.settings.section import Section
+from synth.frame.settings.section import Section, many
 
 MOST_VALUES = 1000
 """Values of one range."""
@@ -86,8 +86,8 @@ class SweepSettings(Section):
     """
 
     exit_speeds_m_s: Values | None = None
-    cut: tuple[SweptCuts, ...] = Field((), max_length=MOST_VALUES, strict=False)
-    condition: tuple[dict[str, Any], ...] = Field((), max_length=MOST_VALUES, strict=False)
+    cut: tuple[SweptCuts, ...] = many((), 0, MOST_VALUES, "tables [[sweep.cut]]")
+    condition: tuple[dict[str, Any], ...] = many((), 0, MOST_VALUES, "tables [[sweep.condition]]")
     passes: int = Field(2000, ge=1000, le=50_000)
     interpolation_loss_m_s: float | None = Field(None, ge=1e-5, le=1.0)
     smallest_step_m_s: float = Field(SMALLEST_STEP_M_S, ge=0.01, le=5.0)

@@ -13,7 +13,7 @@ from plant_models.library import YARD_CATEGORIES
 from plant_models.library.sourced_value import JUDGEMENT
 from synth.configuration.aim.simulation_settings import SimulationSettings
 from synth.frame.settings.output import OutputSettings
-from synth.frame.settings.section import Section, setting
+from synth.frame.settings.section import Section, many, setting
 from synth.frame.settings.value_forms import Title
 
 DEFAULT_TRACK = "large-hump"
@@ -46,8 +46,12 @@ class AimTrackSettings(Section):
     """A track of the library; `elements` and `bends`, where given, stand in place of its own."""
 
     name: str = DEFAULT_TRACK
-    elements: tuple[ElementSettings, ...] | None = Field(None, min_length=1, max_length=MOST_PIECES, strict=False)
-    bends: tuple[BendSettings, ...] | None = Field(None, max_length=MOST_PIECES, strict=False)
+    elements: tuple[ElementSettings, ...] | None = many(
+        None, 1, MOST_PIECES, "tables {from_m = …, to_m = …, grade_permille = …}"
+    )
+    bends: tuple[BendSettings, ...] | None = many(
+        None, 0, MOST_PIECES, "tables {from_m = …, to_m = …, switches = …, turn_deg = …}"
+    )
 
 
 class AimPositionSettings(Section):
@@ -105,8 +109,8 @@ class CutsSettings(Section):
     mix: str = DEFAULT_MIX
     following_share: float | None = None
     underload_mean_t: float | None = None
-    categories: tuple[str, ...] | None = Field(None, min_length=1, max_length=31, strict=False)
-    cars: tuple[int, ...] = Field((1, 2, 3, 5, 8, 15), min_length=1, max_length=MOST_TABLES, strict=False)
+    categories: tuple[str, ...] | None = many(None, 1, 31, "weight categories")
+    cars: tuple[int, ...] = many((1, 2, 3, 5, 8, 15), 1, MOST_TABLES, "numbers of cars")
 
 
 class AimedSettings(Section):
@@ -123,11 +127,11 @@ class AimedSettings(Section):
     coupling_speed_m_s: float = setting(
         1.39, "m/s", 0.1, 5.0, "highest speed at which cars may couple", "[braking-position]: 5 km/h"
     )
-    free_distances_m: tuple[float, ...] = Field(
-        (20.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0, 400.0), min_length=1, max_length=100, strict=False
+    free_distances_m: tuple[float, ...] = many(
+        (20.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0, 400.0), 1, 100, "distances"
     )
-    knowledge: tuple[Literal["category", "measured"], ...] = Field(
-        ("category", "measured"), min_length=1, max_length=2, strict=False
+    knowledge: tuple[Literal["category", "measured"], ...] = many(
+        ("category", "measured"), 1, 2, "of 'category' and 'measured'"
     )
     speed_std_m_s: float = setting(
         0.03, "m/s", 1e-4, 1.0, "error of each speed that is measured at the ends of the stretch",
@@ -150,7 +154,7 @@ class AimFileSettings(Section):
     """A whole aim configuration; an empty one is the built-in default."""
 
     title: Title | None = None
-    library: tuple[str, ...] = Field((), max_length=20, strict=False)
+    library: tuple[str, ...] = many((), 0, 20, "folders")
     weight_categories: str = YARD_CATEGORIES
     track: AimTrackSettings = AimTrackSettings()
     position: AimPositionSettings = AimPositionSettings()

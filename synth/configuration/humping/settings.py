@@ -9,7 +9,7 @@ from pydantic import Field
 from plant_models.library import YARD_CATEGORIES
 from plant_models.library.sourced_value import JUDGEMENT
 from synth.configuration.aim.settings import DEFAULT_MIX, ResistanceSettings, WeatherSettings
-from synth.frame.settings.section import Section, setting
+from synth.frame.settings.section import Section, many, setting
 from synth.frame.settings.value_forms import Title
 
 DEFAULT_HUMP = "large"
@@ -47,8 +47,8 @@ class TrainSettings(Section):
         "most cars of a cut",
         f"{JUDGEMENT}: longer ones are rare, and half of them would be in the first position",
     )
-    category_shares: dict[str, float] | None = Field(None, min_length=1, max_length=31)
-    track_shares: dict[str, float] | None = Field(None, min_length=1, max_length=199)
+    category_shares: dict[str, float] | None = many(None, 1, 31, "shares, {L = 0.3, T = 0.7}", strict=True)
+    track_shares: dict[str, float] | None = many(None, 1, 199, "shares, {1 = 2.0, 2 = 1.0}", strict=True)
 
 
 class CarsSettings(Section):
@@ -115,9 +115,9 @@ class ExitSpeedSettings(Section):
 
     feedback: bool = True
     knowledge: KNOWN = "category"
-    lowest_m_s: tuple[float, ...] | None = Field(None, max_length=10, strict=False)
-    highest_m_s: tuple[float, ...] | None = Field(None, max_length=10, strict=False)
-    most_entry_m_s: tuple[float, ...] | None = Field(None, max_length=10, strict=False)
+    lowest_m_s: tuple[float, ...] | None = many(None, 0, 10, "speeds")
+    highest_m_s: tuple[float, ...] | None = many(None, 0, 10, "speeds")
+    most_entry_m_s: tuple[float, ...] | None = many(None, 0, 10, "speeds")
     choices: int = setting(7, "1", 2, 30, "exit speeds that are compared in each position")
     usable_share: float = setting(
         0.85, "1", 0.1, 1.0, "of the full brake of each position, what the control counts upon",
@@ -188,7 +188,7 @@ class HumpTrialSettings(Section):
     """A whole hump trial configuration; an empty one is the built-in default."""
 
     title: Title | None = None
-    library: tuple[str, ...] = Field((), max_length=20, strict=False)
+    library: tuple[str, ...] = many((), 0, 20, "folders")
     weight_categories: str = YARD_CATEGORIES
     hump: str = DEFAULT_HUMP
     lead: int | None = None
@@ -201,6 +201,6 @@ class HumpTrialSettings(Section):
     exit_speeds: ExitSpeedSettings = ExitSpeedSettings()
     aim: TrialAimSettings = TrialAimSettings()
     sensors: SensorSettings = SensorSettings()
-    position: tuple[HumpPositionSettings, ...] = Field((), max_length=10, strict=False)
+    position: tuple[HumpPositionSettings, ...] = many((), 0, 10, "tables [[position]]")
     acceptance: TrialAcceptanceSettings = TrialAcceptanceSettings()
     output: TrialOutputSettings = TrialOutputSettings()

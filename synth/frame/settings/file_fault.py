@@ -13,7 +13,7 @@ from pydantic_core import ErrorDetails
 from plant_models.errors import PlantError
 from plant_models.library.near_miss import near_miss
 from synth.frame.input_error import InputError
-from synth.frame.settings.section import Section, setting_limits
+from synth.frame.settings.section import Section, extra_of, length_limits, setting_limits
 from tuning_tables.excerpt import excerpt
 
 ALLOWED = {
@@ -27,24 +27,6 @@ ALLOWED = {
     "string_pattern_mismatch": "made of at most 61 letters, digits, dots, hyphens and underscores",
 }
 """What a value must be, by pydantic's error type."""
-
-LENGTHS = {
-    "consist": "a list of 1 to 60 tables {car = …, cars = …, mass_per_car_t = …}",
-    "library": "a list of at most 20 folders",
-    "elements": "a list of 1 to 200 tables {from_m = …, to_m = …, grade_permille = …}",
-    "bends": "a list of at most 200 tables {from_m = …, to_m = …, switches = …, turn_deg = …}",
-    "categories": "a list of 1 to 31 weight categories",
-    "cars": "a list of 1 to 64 numbers of cars",
-    "free_distances_m": "a list of 1 to 100 distances",
-    "knowledge": "a list of 'category', 'measured' or both",
-    "category_shares": "a table of 1 to 31 shares, {L = 0.3, T = 0.7}",
-    "track_shares": "a table of 1 to 199 shares, {1 = 2.0, 2 = 1.0}",
-    "position": "at most 10 tables [[position]]",
-    "lowest_m_s": "a list of at most 10 speeds",
-    "highest_m_s": "a list of at most 10 speeds",
-    "most_entry_m_s": "a list of at most 10 speeds",
-}
-"""What a list that is too long or too short must be, by its key."""
 
 Location = Sequence[str | int]
 
@@ -99,11 +81,18 @@ def allowed(fault: ErrorDetails, root: type[Section]) -> str:
     if kind == "literal_error":
         return str(context["expected"])
     if kind in ("too_short", "too_long"):
-        return LENGTHS.get(str(fault["loc"][-1]), "a list of 1 to 1000 [[cut]] tables")
-    if fault["loc"] in (("cut",), ("position",)):
+        return allowed_length(field_at(fault["loc"], root), fault["input"])
+    if kind == "tuple_type" and len(fault["loc"]) == 1 and sections_in(field_at(fault["loc"], root)):
         name = fault["loc"][0]
         return f"a list of tables: write [[{name}]], not [{name}]"
     return ALLOWED.get(kind, fault["msg"])
+
+
+def allowed_length(field: FieldInfo, value: object) -> str:
+    """How many entries a list or table must have."""
+    low, high = length_limits(field)
+    kind, number = "a table" if isinstance(value, dict) else "a list", f"{low} to {high}" if low else f"at most {high}"
+    return f"{kind} of {number} {extra_of(field, 'items')}"
 
 
 def hint(location: Location, root: type[Section]) -> str:

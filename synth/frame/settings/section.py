@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from annotated_types import Ge, Le
+from annotated_types import Ge, Le, MaxLen, MinLen
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.fields import FieldInfo
 
@@ -37,6 +37,11 @@ def choice(default: object, meaning: str) -> Any:
     return Field(default, description=meaning)
 
 
+def many(default: object, low: int, high: int, items: str, strict: bool = False) -> Any:
+    """A list of `low` to `high` entries, which sentences call `items`; `strict`: a table of them by name."""
+    return Field(default, min_length=low, max_length=high, strict=strict, json_schema_extra={"items": items})
+
+
 class Section(BaseModel):
     """A table of the file: unknown keys, wrong types, inf and nan are refused."""
 
@@ -57,6 +62,13 @@ def extra_of(field: FieldInfo, key: str) -> str:
     """What `setting` has noted of a field under `key`."""
     extra = field.json_schema_extra
     return str(extra[key]) if isinstance(extra, dict) and key in extra else ""
+
+
+def length_limits(field: FieldInfo) -> tuple[int, int]:
+    """How many entries a list made by `many` may have."""
+    low = [m.min_length for m in field.metadata if isinstance(m, MinLen)]
+    high = [m.max_length for m in field.metadata if isinstance(m, MaxLen)]
+    return low[0], high[0]
 
 
 def setting_limits(field: FieldInfo) -> tuple[float, float] | None:
