@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from plant_models.library import Kind
+    from synth.frame.settings.section import Section
 
 
 def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -> int:
@@ -24,6 +25,49 @@ def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -
     key, text = asked_for(types)
     print(json.dumps({key: text}, ensure_ascii=False) if as_json else text, end="\n" if as_json else "")
     return 0
+
+
+def schema_command(types: dict[str, str | None]) -> int:
+    """Print the JSON Schema of the configuration that is asked for, as `init_command` calls it."""
+    from synth.frame.input_error import InputError
+    from synth.frame.settings.schema import schema_of
+
+    asked = [folder for folder, name in types.items() if name is not None]
+    if len(asked) > 1 or (asked and (asked[0] not in CONFIGURATIONS or types[asked[0]])):
+        raise InputError(
+            "init --schema: there are schemas of configurations; give it alone, or with --aim, --hump or --computer"
+        )
+    kind = asked[0] if asked else ""
+    print(schema_of(model_of(kind), f"{CONFIGURATIONS[kind]} of retarder-synth"), end="")
+    return 0
+
+
+CONFIGURATIONS = {
+    "": "Configuration",
+    "aim": "Aim configuration",
+    "hump": "Hump trial configuration",
+    "computer": "Configuration of a control computer",
+}
+"""What has a schema, by what asks for it."""
+
+
+def model_of(kind: str) -> type[Section]:
+    """The declared model of a kind of configuration."""
+    if kind == "aim":
+        from synth.configuration.aim.settings import AimFileSettings
+
+        return AimFileSettings
+    if kind == "hump":
+        from synth.configuration.humping.settings import HumpTrialSettings
+
+        return HumpTrialSettings
+    if kind == "computer":
+        from synth.computer.settings import ComputerSettings
+
+        return ComputerSettings
+    from synth.configuration.settings import Settings
+
+    return Settings
 
 
 def asked_for(types: dict[str, str | None]) -> tuple[str, str]:

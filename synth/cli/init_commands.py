@@ -54,10 +54,15 @@ def with_file_options(command: Callable[..., int]) -> Callable[..., int]:
 
 def init(
     show_list: Annotated[bool, typer.Option("--list", help="Only list what the library holds.")] = False,
+    schema: Annotated[
+        bool, typer.Option("--schema", help="The JSON Schema of such a configuration instead, for editors.")
+    ] = False,
     as_json: Json = False,
     **files: str | None,
 ) -> int:
     """Print a commented configuration to start from, or the file of one type."""
-    from synth.cli.init import init_command
+    from synth.cli.init import init_command, schema_command
 
+    if schema:
+        return schema_command({FILES[name][0]: given for name, given in files.items()})
     return init_command({FILES[name][0]: given for name, given in files.items()}, show_list, as_json)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from collections.abc import Iterator
 from typing import Any
 
+import jsonschema
 import pytest
 from pydantic.fields import FieldInfo
 
 from plant_models import PlantError
 from plant_models.library.sourced_value import SET_BY_USER
+from synth.cli import main
 from synth.computer.settings import ComputerSettings
 from synth.frame.input_error import InputError
 from synth.frame.settings.changed import changed, with_inputs
@@ -134,3 +137,29 @@ def test_changed_values_are_checked_as_those_of_a_file() -> None:
 def test_templates_are_toml_whatever_they_say() -> None:
     for file in FILES:
         assert tomllib.loads(template(file, "", ""))
+
+
+@pytest.mark.parametrize("words", [(), ("--aim",), ("--hump",), ("--computer",)])
+def test_what_init_prints_is_what_its_schema_allows(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", *words, "--schema"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    assert main(["init", *words]) == 0
+    tree = tomllib.loads(capsys.readouterr().out)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    jsonschema.validate(tree, schema)
+    with pytest.raises(jsonschema.ValidationError, match="'titel' was unexpected"):
+        jsonschema.validate({**tree, "titel": "x"}, schema)
+
+
+def test_a_schema_has_limits_and_units(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", "--computer", "--schema"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    speed = schema["$defs"]["Service"]["properties"]["speed_op_s"]
+    assert (speed["minimum"], speed["maximum"], speed["unit"]) == (1.0, 1e15, "op/s")
+    with pytest.raises(jsonschema.ValidationError, match="less than the minimum"):
+        jsonschema.validate({"service": {"speed_op_s": 0.5}}, schema)
+
+
+def test_a_type_has_no_schema(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", "--car", "--schema"]) == 2
+    assert "there are schemas of configurations" in capsys.readouterr().err

@@ -92,7 +92,7 @@ def allowed_length(field: FieldInfo, value: object) -> str:
     """How many entries a list or table must have."""
     low, high = length_limits(field)
     kind, number = "a table" if isinstance(value, dict) else "a list", f"{low} to {high}" if low else f"at most {high}"
-    return f"{kind} of {number} {extra_of(field, 'items')}"
+    return f"{kind} of {number} {extra_of(field, 'entries')}"
 
 
 def hint(location: Location, root: type[Section]) -> str:

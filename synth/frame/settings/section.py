@@ -37,9 +37,9 @@ def choice(default: object, meaning: str) -> Any:
     return Field(default, description=meaning)
 
 
-def many(default: object, low: int, high: int, items: str, strict: bool = False) -> Any:
-    """A list of `low` to `high` entries, which sentences call `items`; `strict`: a table of them by name."""
-    return Field(default, min_length=low, max_length=high, strict=strict, json_schema_extra={"items": items})
+def many(default: object, low: int, high: int, entries: str, strict: bool = False) -> Any:
+    """A list of `low` to `high` `entries`, as sentences call them; `strict`: a table of them by name."""
+    return Field(default, min_length=low, max_length=high, strict=strict, json_schema_extra={"entries": entries})
 
 
 class Section(BaseModel):
