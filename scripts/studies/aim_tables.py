@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from scripts.studies.markdown_table import MarkdownTable, around, table
 from scripts.studies.options import option
 from scripts.studies.study import Findings, Method, Tell
-from synth.configuration.aim.aim_file import BUILT_IN_AIM, parse_aim_file
+from synth.configuration.aim.aim_file import parse_aim_file
 from synth.frame.creation_time import creation_time
 from synth.frame.input_error import InputError
 from synth.frame.printed_numbers import percent
+from synth.frame.settings.settings_file import BUILT_IN
 from synth.simulation.replicates import Interval
 from synth.yard.aim.aim_acceptance import judge_aims
 from synth.yard.aim.aim_book import MadeAim, aim_book
@@ -86,7 +87,7 @@ def run(options: Options, tell: Tell) -> AimTables:
         f"[simulation]\npasses = {options.passes}\n"
     )
     try:
-        config = resolve_aim(parse_aim_file(text, BUILT_IN_AIM))
+        config = resolve_aim(parse_aim_file(text, BUILT_IN))
     except InputError as fault:
         raise InputError(*(f"study aim-tables: {sentence}" for sentence in fault.sentences)) from None
     book = aim_book(config, creation_time(), tell)

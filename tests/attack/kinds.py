@@ -18,7 +18,6 @@ from synth.cli.hump import check_command
 from synth.cli.sensors_tune import read_configuration, require_room
 from synth.computer.command import COMMAND as COMPUTER
 from synth.computer.settings import ComputerSettings
-from synth.configuration.aim.aim_file import read_aim_file
 from synth.configuration.aim.template import default_aim_toml
 from synth.configuration.config_file import load_config
 from synth.configuration.hump import parse_hump
@@ -29,8 +28,7 @@ from synth.configuration.railml.write import to_railml
 from synth.frame.asked_file import asked_of
 from synth.frame.settings.template import template
 from synth.frame.terminal.telling import say
-from synth.yard.aim.aimed_position import position_of
-from synth.yard.aim.resolved_aim import resolve_aim
+from synth.yard.aim.command import COMMAND as AIM
 from synth.yard.humping.resolved_trial import resolve_trial
 from synth.yard.measured_passes.loaded_passes import loaded_passes
 from tests.attack.attempt import Kind, Reading
@@ -88,7 +86,7 @@ def read_trial(folder: Path) -> str:
 
 def read_aim(folder: Path) -> str:
     """As `aim`."""
-    position_of(resolve_aim(read_aim_file(folder / "aim.toml")))
+    AIM.resolve(asked_of(AIM, folder / "aim.toml", AIM.options(), "init --aim"))
     return ""
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from plant_models.library import CAR_MIXES, TRACKS, Kind
 from plant_models.rolling.resistance_law import LARGEST_ERLANG_ORDER, HumpNormLaw, Tb10062Law
-from synth.configuration.aim.aim_file import parse_aim_file, read_aim_file
+from synth.configuration.aim.aim_file import parse_aim_file
 from synth.configuration.aim.settings import ResistanceSettings
 from synth.configuration.aim.template import default_aim_toml
 from synth.configuration.type_template import type_toml
@@ -25,7 +25,7 @@ def resolved(text: str, place: str = "aim.toml") -> ResolvedAim:
 
 def built_in_aim() -> ResolvedAim:
     """What is asked for where no file is given."""
-    return resolve_aim(read_aim_file(None))
+    return resolve_aim(parse_aim_file("", "built-in"))
 
 
 def sentence(text: str, place: str = "aim.toml") -> str:

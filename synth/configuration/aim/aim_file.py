@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from pydantic import ValidationError
 
-from plant_models.library import BUILT_IN, Library
+from plant_models.library import Library
 from synth.configuration.aim.settings import AimFileSettings
 from synth.configuration.own_types import with_own_types
 from synth.frame.input_error import InputError
 from synth.frame.settings.file_fault import faults_in
-from synth.frame.settings.toml_file import read_text, toml_tree
-
-BUILT_IN_AIM = "built-in aim configuration"
+from synth.frame.settings.toml_file import toml_tree
 
 
 @dataclass(frozen=True)
@@ -30,13 +27,6 @@ class AimFile:
         given = {key: value for key, value in (("passes", passes), ("seed", seed)) if value is not None}
         simulation = self.settings.simulation.model_copy(update=given)
         return replace(self, settings=self.settings.model_copy(update={"simulation": simulation}))
-
-
-def read_aim_file(path: Path | None) -> AimFile:
-    """The file at `path`, or the built-in default; `InputError` on any fault of form."""
-    if path is None:
-        return AimFile(AimFileSettings(), BUILT_IN, BUILT_IN_AIM)
-    return parse_aim_file(read_text(path, "init --aim"), str(path))
 
 
 def parse_aim_file(text: str, place: str) -> AimFile:

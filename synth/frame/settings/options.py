@@ -84,7 +84,3 @@ def allowed_of(field: FieldInfo, fault: Mapping[str, Any]) -> str:
         return ALLOWED.get(fault["type"], str(fault["msg"]))
     number = "a number" if field.annotation in (float, float | None) else "a whole number"
     return f"{number} from {limits[0]:.15g} to {limits[1]:.15g}"
-
-
-class NoOptions(Options):
-    """A command without options of its own."""
