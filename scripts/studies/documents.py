@@ -2,7 +2,7 @@
 
 In a checkout docs/studies holds NAME.json, the result of a run with default options, for every study that a document
 shows. Between <!-- study NAME TABLE --> and <!-- end --> stands that table of it; between <!-- studies --> and
-<!-- end --> the list of all studies. Pictures: `document_pictures`.
+<!-- end --> the list of all studies. Pictures: `document_pictures`; keys of a configuration: `document_keys`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 
 from plant_models.library.near_miss import near_miss
+from scripts.studies.document_keys import keys_of
 from scripts.studies.document_pictures import is_stale, pictures_of, write_picture
 from scripts.studies.markdown_table import table
 from scripts.studies.named_study import study_named
@@ -23,7 +24,10 @@ from synth.frame.input_error import InputError
 KEPT = Path("docs/studies")
 END = "<!-- end -->"
 
-_MARKED = re.compile(r"<!-- (?:study (?P<study>\S+) (?P<table>\S+)|(?P<list>studies)) -->\n(?P<old>.*?)(?=<!-- )", re.S)
+_MARKED = re.compile(
+    r"<!-- (?:study (?P<study>\S+) (?P<table>\S+)|keys (?P<keys>\S+)|(?P<list>studies)) -->\n(?P<old>.*?)(?=<!-- )",
+    re.S,
+)
 
 
 def documents(root: Path) -> Iterator[Path]:
@@ -48,6 +52,8 @@ def filled(path: Path, root: Path) -> str:
             raise InputError(f"{path}: the table after {found[0].splitlines()[0]} has no {END} behind it; add it")
         if found["list"]:
             return f"<!-- studies -->\n{listed()}"
+        if found["keys"]:
+            return f"<!-- keys {found['keys']} -->\n{keys_of(found['keys'])}"
         return (
             f"<!-- study {found['study']} {found['table']} -->\n{table_of(root, path, found['study'], found['table'])}"
         )

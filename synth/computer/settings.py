@@ -7,9 +7,10 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from plant_models.errors import require
-from synth.computer.economics.economic_case import Terms
+from plant_models.library.hump_entry import hump_names
 from synth.computer.economics.hump_rates import HumpChange, HumpRates
 from synth.computer.economics.prices import Prices
+from synth.computer.economics.terms import Terms
 from synth.computer.economics.traffic import Handling, Traffic
 from synth.computer.origins import SPEED
 from synth.computer.reliability.upkeep import Upkeep
@@ -75,7 +76,9 @@ class ComputerSettings(Section):
     """A whole configuration of a control computer; an empty one is the built-in default."""
 
     title: Title | None = Field(None, description="of the page")
-    hump: str = choice("large", "whose elements are counted: one of the library, or the path of your own hump file")
+    hump: str = choice(
+        "large", f"whose elements are counted: {', '.join(hump_names())}, or the path of your own hump file"
+    )
     task: tuple[TaskSettings, ...] = many(USUAL_TASKS, 1, 50, "tables [[task]]")
     service: Service = Service()
     cycle: Cycle = Cycle()

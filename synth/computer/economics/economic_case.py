@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from plant_models.library.sourced_value import JUDGEMENT
 from synth.computer.economics.hump_rates import HumpChange, HumpRates, rates_after
 from synth.computer.economics.hump_work import HumpWork, hump_work
 from synth.computer.economics.internal_rate import InternalRate, internal_rate
 from synth.computer.economics.pay_back import (
-    TRAPEZNIKOV_INTEREST_PER_YEAR,
     PayBack,
     pay_back,
     yearly_effect,
@@ -22,35 +20,9 @@ from synth.computer.economics.present_value import (
 )
 from synth.computer.economics.prices import Prices
 from synth.computer.economics.savings import Item, operating_savings, released_capital, total
+from synth.computer.economics.terms import Terms
 from synth.computer.economics.traffic import Handling, Traffic
-from synth.computer.origins import MONEY, USUAL
-from synth.frame.settings.section import Section, setting
-
-
-class Terms(Section):
-    """What the new control costs, and by which terms it is judged.
-
-    Pay-back counts all released capital by the normative efficiency, as its formula does.
-    """
-
-    investment: float = setting(1_000_000.0, "currency", -1e15, 1e15, "what it costs more than what it replaces", USUAL)
-    running_cost_per_year: float = setting(
-        100_000.0, "currency/a", -1e15, 1e15, "upkeep more than today, losses by failures left out", USUAL
-    )
-    fixed_saving_per_year: float = setting(
-        150_000.0, "currency/a", -1e15, 1e15, "what is saved whatever the traffic", f"{JUDGEMENT}: staff"
-    )
-    normative_efficiency_per_year: float = setting(
-        0.12, "1/a", 0.0, 1.0, "yearly worth of released capital", f"{MONEY}: 0.12 to 0.15"
-    )
-    discount_per_year: float = setting(0.05, "1/a", 0.0, 1.0, "discount of later money", USUAL)
-    years: int = setting(15, "a", 1, 200, "life of the computer", USUAL)
-    cashed_share: float = setting(
-        0.0, "1", 0.0, 1.0, "part of the released capital that is sold at the start", f"{JUDGEMENT}: none"
-    )
-    interest_per_year: float = setting(
-        TRAPEZNIKOV_INTEREST_PER_YEAR, "1/a", 0.0, 1.0, "simple interest of the pay-back formula", MONEY
-    )
+from synth.frame.settings.section import Section
 
 
 class EconomicCase(Section):

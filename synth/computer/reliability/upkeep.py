@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import model_validator
 
@@ -12,9 +12,11 @@ from synth.computer.origins import MONEY
 from synth.computer.reliability.duplex import Duplex
 from synth.computer.reliability.failure_losses import HourPrices, YearlyLoss, yearly_loss
 from synth.computer.reliability.four_states import FourStates, State
-from synth.computer.reliability.maintenance_interval import CheckedComputer
 from synth.computer.reliability.rates import HOURS_PER_YEAR
 from synth.frame.settings.section import Section, choice, setting
+
+if TYPE_CHECKING:
+    from synth.computer.reliability.maintenance_interval import CheckedComputer
 
 
 class Upkeep(Section):
@@ -75,6 +77,8 @@ class Upkeep(Section):
     @property
     def checked(self) -> CheckedComputer | None:
         """One computer with checks at even times; None where an hour costs nothing, so no interval is best."""
+        from synth.computer.reliability.maintenance_interval import CheckedComputer
+
         if min(self.by_hand_per_h, self.unnoticed_per_h) <= 0.0:
             return None
         return CheckedComputer(self.failure_per_h, self.check_h, self.by_hand_per_h, self.unnoticed_per_h)

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from synth.computer.economics.economic_case import EconomicCase, Terms, evaluated
+from synth.computer.economics.economic_case import EconomicCase, evaluated
 from synth.computer.economics.hump_rates import HumpChange, HumpRates
 from synth.computer.economics.prices import Prices
+from synth.computer.economics.terms import Terms
 from synth.computer.economics.traffic import Handling, Traffic
 from synth.frame.interval import Interval
 from synth.frame.settings.changed import with_inputs

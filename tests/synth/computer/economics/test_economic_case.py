@@ -9,11 +9,11 @@ import pytest
 from plant_models.errors import PlantError
 from synth.computer.economics.economic_case import (
     EconomicCase,
-    Terms,
     evaluated,
 )
 from synth.computer.economics.hump_rates import HumpChange
 from synth.computer.economics.savings import total
+from synth.computer.economics.terms import Terms
 from synth.frame.settings.changed import changed, with_inputs
 from tests.synth.computer.economics.made_cases import CASE, TERMS
 
