@@ -81,18 +81,27 @@ def told(call: Callable[[], int]) -> int:
         say("there is not enough memory; free some, or raise the limit of it (ulimit -v), then run the command again")
         return MACHINE_FAULT
     except ValueError as fault:
-        from plant_models import PlantError
         from synth.frame.input_error import InputError
-        from tuning_tables import OtherDecisions, TableError
-        from tuning_tables.errors import InvalidLog
 
-        if not isinstance(fault, InputError | PlantError | TableError | InvalidLog):
-            return told_of_unforeseen(fault)
-        say_each(fault.sentences if isinstance(fault, InputError) else (str(fault),))
-        damaged = isinstance(fault, TableError) and not isinstance(fault, OtherDecisions)
-        return DAMAGED if damaged else INPUT_FAULT
+        if isinstance(fault, InputError):
+            say_each(fault.sentences)
+            return INPUT_FAULT
+        return told_of_value(fault)
     except Exception as fault:
         return told_of_unforeseen(fault)
+
+
+def told_of_value(fault: ValueError) -> int:
+    """Tell of a value that plant or tables refuse; the exit code."""
+    from plant_models import PlantError
+    from tuning_tables import OtherDecisions, TableError
+    from tuning_tables.errors import InvalidLog
+
+    if not isinstance(fault, PlantError | TableError | InvalidLog):
+        return told_of_unforeseen(fault)
+    say(str(fault))
+    damaged = isinstance(fault, TableError) and not isinstance(fault, OtherDecisions)
+    return DAMAGED if damaged else INPUT_FAULT
 
 
 def told_of_system(fault: OSError) -> int:

@@ -18,7 +18,8 @@ from synth.configuration.plant_settings import DEFAULT_CUTS, CutSettings
 from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.settings import Settings
 from synth.frame.input_error import InputError
-from synth.frame.settings.file_fault import ALLOWED, key_path, shown
+from synth.frame.settings.fault_words import ALLOWED, shown
+from synth.frame.settings.file_fault import key_path
 from synth.frame.settings.section import setting_limits
 from synth.frame.settings.toml_file import Tree, read_text, toml_tree
 from synth.sweep.sweep_settings import CONDITION_SECTIONS, SweepSettings, SweptCuts

@@ -13,20 +13,9 @@ from pydantic_core import ErrorDetails
 from plant_models.errors import PlantError
 from plant_models.library.near_miss import near_miss
 from synth.frame.input_error import InputError
+from synth.frame.settings.fault_words import ALLOWED, shown
 from synth.frame.settings.section import Section, extra_of, length_limits, setting_limits
 from tuning_tables.excerpt import excerpt
-
-ALLOWED = {
-    "float_type": "a number",
-    "int_type": "a whole number",
-    "string_type": "a string in quotes",
-    "bool_type": "true or false",
-    "finite_number": "a finite number",
-    "model_type": "a table",
-    "tuple_type": "a list",
-    "string_pattern_mismatch": "made of at most 61 letters, digits, dots, hyphens and underscores",
-}
-"""What a value must be, by pydantic's error type."""
 
 Location = Sequence[str | int]
 
@@ -143,9 +132,3 @@ def key_path(location: Location) -> str:
     """('cut', 0, 'mass_t') → 'cut[0].mass_t'."""
     path = "".join(f"[{part}]" if isinstance(part, int) else f".{excerpt(part)}" for part in location)
     return path.removeprefix(".")
-
-
-def shown(value: Any) -> str:
-    """A value as the file writes it, cut off if long."""
-    text = str(value).lower() if isinstance(value, bool) else repr(value)
-    return text if len(text) <= 80 else text[:77] + "…"

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from pydantic import ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
 
+from synth.frame.settings.fault_words import ALLOWED, shown
 from synth.frame.settings.section import Section, extra_of, setting_limits
 
 
@@ -66,8 +67,6 @@ def read_options(model: type[O], words: Mapping[str, str | None]) -> O:
 
 def refusals(error: ValidationError, model: type[Options]) -> Iterator[str]:
     """A sentence for each option at fault."""
-    from synth.frame.settings.file_fault import shown
-
     for fault in error.errors(include_url=False):
         field = model.model_fields[str(fault["loc"][0])]
         yield f"{flag_of(field)} is {shown(fault['input'])}; it must be {allowed_of(field, fault)}"
@@ -77,8 +76,6 @@ def allowed_of(field: FieldInfo, fault: Mapping[str, Any]) -> str:
     """What the value of an option must be."""
     if fault["type"] == "value_error":
         return str(fault["ctx"]["error"])
-    from synth.frame.settings.file_fault import ALLOWED
-
     limits = setting_limits(field)
     if limits is None:
         return ALLOWED.get(fault["type"], str(fault["msg"]))
