@@ -14,11 +14,11 @@ from synth.frame.command import Asked, Command, Head, Limit, Steps
 from synth.frame.exhibits import Chapter
 from synth.frame.settings.changed import changed
 from synth.frame.settings.settings_file import parse_settings
-from synth.frame.terminal.progress import Progress
 
 if TYPE_CHECKING:
     from synth.computer.computer_results import ComputerResults
     from synth.computer.resolved_computer import ResolvedComputer
+    from synth.frame.terminal.progress import Progress
 
 PARTS = 3
 """Sizing, what it pays at the configured values, and over all uncertain inputs."""
@@ -41,7 +41,7 @@ def resolve(asked: Asked[ComputerSettings, ComputerOptions]) -> ResolvedComputer
     """The file with what is given on the command line."""
     from synth.computer.resolved_computer import resolve_computer
 
-    given = asked.options.model_dump(exclude_none=True)
+    given = asked.options.model_dump(exclude={"config"}, exclude_none=True)
     uncertainty = changed(asked.settings.uncertainty, **given)
     return resolve_computer(changed(asked.settings, uncertainty=uncertainty), asked.folder, asked.place)
 

@@ -9,10 +9,11 @@ from synth.frame.settings.settings_file import BUILT_IN
 from synth.frame.settings.toml_file import read_text
 
 
-def asked_of(command: Command[S, O, P, R], path: Path | None, options: O, init: str) -> Asked[S, O]:
-    """The settings of the file at `path`, None: the defaults, with the `options` that were typed; `InputError`.
+def asked_of(command: Command[S, O, P, R], options: O, init: str) -> Asked[S, O]:
+    """The `options` that were typed, with the settings of their configuration, the defaults without one; `InputError`.
 
     `init`: the command that prints such a file.
     """
+    path = options.config
     text, place = ("", BUILT_IN) if path is None else (read_text(path, init), str(path))
     return Asked(command.read(text, place), options, place, Path(place).parent)

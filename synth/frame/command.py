@@ -43,9 +43,9 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class Asked(Generic[S, O]):
-    """What a user asks for: the settings of the file and the options of the command line.
+    """What a user asks for: the settings of the configuration, and the options of the command line.
 
-    `place`: what messages call the file. Paths in it begin at `folder`.
+    `place`: what messages call the configuration. Paths in it begin at `folder`.
     """
 
     settings: S
@@ -59,7 +59,7 @@ class Head:
     """What every page and summary says of a problem.
 
     `canonical_json`: all that figures depend on, the same text for the same figures. `parameters`: every number with
-    unit, range and origin. `output`: what is written. `reads`: the files that are read besides the configuration.
+    unit, range and origin. `output`: what is written. `reads`: the files that are read besides those that are typed.
     """
 
     title: str
@@ -102,7 +102,8 @@ class Command(Generic[S, O, P, R]):
     """`read` makes settings of the text of a file and of what messages call it; `resolve` refuses all else that can be
     refused (`InputError`, `PlantError`); `compute` tells each finished step.
 
-    `name`: as it is typed. `options`: a declared model. `limits_of_use`: what figures do not say.
+    `name`: as it is typed. `options`: a declared model of what is typed behind it. `limits_of_use`: what figures do not
+    say.
     """
 
     name: str

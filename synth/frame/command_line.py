@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
     from synth.frame.command import Command
-    from synth.frame.settings.options import Options
+    from synth.frame.settings.options import Options, Words
 
 
 @dataclass(frozen=True)
@@ -76,24 +76,30 @@ def loaded(listed: Listed) -> Any:
 
 
 def option_parameters(options: type[Options]) -> Iterator[Parameter]:
-    """A keyword for each declared option."""
+    """A keyword for each declared option; what must be typed has no default."""
     for key, field in options.model_fields.items():
-        yield Parameter(key, Parameter.KEYWORD_ONLY, default=None, annotation=annotation_of(field))
+        default = Parameter.empty if field.is_required() else None
+        yield Parameter(key, Parameter.KEYWORD_ONLY, default=default, annotation=annotation_of(field))
 
 
 def annotation_of(field: FieldInfo) -> Any:
     """What Typer is told of an option; its words are read by the declared model."""
-    from synth.frame.settings.options import flag_of, metavar_of
+    from synth.frame.settings.options import BY_PLACE, flag_of, metavar_of, takes_several
 
-    default = "" if field.default is None else f" [default: {field.default}]"
-    option = typer.Option(flag_of(field), metavar=metavar_of(field), help=f"{field.description}{default}")
-    return Annotated[str | None, option]
+    flag, metavar = flag_of(field), metavar_of(field)
+    word = Path if flag == BY_PLACE else str
+    words: Any = list[word] if takes_several(field) else word  # type: ignore[valid-type]  # Typer reads it as a value
+    if flag == BY_PLACE:
+        return Annotated[words | None, typer.Argument(metavar=metavar, help=field.description)]
+    unsaid = field.is_required() or field.default in (None, ())
+    default = "" if unsaid else f" [default: {field.default}]"
+    return Annotated[words | None, typer.Option(flag, metavar=metavar, help=f"{field.description}{default}")]
 
 
 def function(listed: Listed, options: tuple[Parameter, ...]) -> Callable[..., int]:
     """A function with the signature that Typer reads."""
 
-    def run(config: Path | None, output: Path, as_json: bool, **words: str | None) -> int:
+    def run(output: Path, as_json: bool, **words: Words) -> int:
         from synth.frame.settings.options import read_options
 
         typed = read_options(listed.options(), words)
@@ -101,7 +107,7 @@ def function(listed: Listed, options: tuple[Parameter, ...]) -> Callable[..., in
         from synth.frame.perform import perform
 
         command = listed.load()
-        return perform(command, asked_of(command, config, typed, listed.init), config, output, as_json)
+        return perform(command, asked_of(command, typed, listed.init), output, as_json)
 
     parameters = [*common_parameters(listed), *options]
     # mypy knows no such attribute, though every callable may have it
@@ -111,13 +117,11 @@ def function(listed: Listed, options: tuple[Parameter, ...]) -> Callable[..., in
 
 
 def common_parameters(listed: Listed) -> Iterator[Parameter]:
-    """What every command takes: a configuration, where the results go, and whether a program reads them."""
+    """What every command takes: where the results go, and whether a program reads them."""
     from synth.frame.arguments import Json, directory
 
-    source = typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")
     output = typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
     for name, default, annotation in (
-        ("config", None, Annotated[Path | None, source]),
         ("output", listed.output, Annotated[Path, output]),
         ("as_json", False, Json),
     ):

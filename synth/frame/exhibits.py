@@ -77,7 +77,10 @@ def shown_value(value: Any, form: Form) -> str:
 
 @dataclass(frozen=True)
 class Table:
-    """`name`: of its CSV file, and in JSON. `brief`: the terminal shows it too. `bad`: rows that a page marks."""
+    """`name`: of its CSV file, and in JSON. `brief`: the terminal shows it too. `bad`: rows that a page marks.
+
+    `long`: a row for every pass or cut, so a page only says where they are.
+    """
 
     name: str
     title: str
@@ -85,6 +88,12 @@ class Table:
     rows: Sequence[Row]
     brief: bool = False
     bad: Callable[[Row], bool] = never
+    long: bool = False
+
+    @property
+    def file(self) -> str:
+        """The name of its CSV file."""
+        return f"sheets/{self.name}.csv"
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ from synth.frame.creation_time import creation_time, require_date
 from synth.frame.exhibits import Chart, File, Table, exhibits_of
 from synth.frame.results_directory import SUMMARY, ResultsDirectory, results_directory
 from synth.frame.terminal.interrupt import interruptible
-from synth.frame.terminal.progress import Progress
 from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 from synth.frame.told import Told
 
@@ -23,17 +22,18 @@ if TYPE_CHECKING:
 PAGE = "report.html"
 
 
-def perform(command: Command[S, O, P, R], asked: Asked[S, O], source: Path | None, output: Path, as_json: bool) -> int:
-    """Run `command` as `asked` in the file `source`, into the directory `output`; the exit code.
+def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_json: bool) -> int:
+    """Run `command` as `asked`, into the directory `output`; the exit code.
 
     Raises `InputError` and `PlantError` before anything is written, `OSError` where the disk does.
     """
     require_date()
     problem = command.resolve(asked)
     head, steps = command.head(problem), command.steps(problem)
+    from synth.frame.terminal.progress import Progress  # rich: a refusal needs none
+
     started, created = time.monotonic(), creation_time()
-    reads = [*filter(None, [source]), *head.reads]
-    with results_directory(output, command.name, reads) as directory:
+    with results_directory(output, command.name, (*asked.options.reads, *head.reads)) as directory:
         for warning in head.warnings:
             say(f"warning: {warning}")
         with interruptible(directory, "summary"), Progress(steps.count, steps.word, steps.noun) as progress:
@@ -62,7 +62,7 @@ def write(told: Told, directory: ResultsDirectory, tell: Callable[[str], None]) 
         if isinstance(each, File):
             directory.write(each.name, each.content)
         elif isinstance(each, Table):
-            directory.write(f"sheets/{each.name}.csv", to_csv(each))
+            directory.write(each.file, to_csv(each))
     output = told.head.output
     pictures = drawn(told, tell) if output.plots or output.report else {}
     if output.plots:

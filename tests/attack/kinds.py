@@ -86,13 +86,13 @@ def read_trial(folder: Path) -> str:
 
 def read_aim(folder: Path) -> str:
     """As `aim`."""
-    AIM.resolve(asked_of(AIM, folder / "aim.toml", AIM.options(), "init --aim"))
+    AIM.resolve(asked_of(AIM, AIM.options(config=folder / "aim.toml"), "init --aim"))
     return ""
 
 
 def read_computer(folder: Path) -> str:
     """As `computer`."""
-    COMPUTER.resolve(asked_of(COMPUTER, folder / "computer.toml", COMPUTER.options(), "init --computer"))
+    COMPUTER.resolve(asked_of(COMPUTER, COMPUTER.options(config=folder / "computer.toml"), "init --computer"))
     return ""
 
 

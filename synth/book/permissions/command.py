@@ -12,10 +12,10 @@ from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.command import Asked, Command, Head, Limit, Steps
 from synth.frame.exhibits import Chapter
-from synth.frame.terminal.progress import Progress
 
 if TYPE_CHECKING:
     from synth.book.permissions.permission import AllPermissions
+    from synth.frame.terminal.progress import Progress
 
 LIMITS_OF_USE = (
     "Figures are those of a model with the parameters of this page. Assumed ones are guesses.",

@@ -14,11 +14,11 @@ from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.command import Asked, Command, Head, Steps
 from synth.frame.exhibits import Chapter
 from synth.frame.processors import available
-from synth.frame.terminal.progress import Progress
 
 if TYPE_CHECKING:
     from synth.book.sensitivity.fixed_tables import FixedTables
     from synth.book.sensitivity.sensitivity import Sensitivity, Trial
+    from synth.frame.terminal.progress import Progress
 
 LIMITS_OF_USE = (
     "Shares are told by the ranges of the library. A range that is too wide makes a number look important.",

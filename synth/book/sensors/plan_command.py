@@ -12,11 +12,11 @@ from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.command import Asked, Command, Head, Limit, Steps
 from synth.frame.exhibits import Chapter
-from synth.frame.terminal.progress import Progress
 
 if TYPE_CHECKING:
     from synth.book.sensors.layout_plan import LayoutProblem
     from synth.book.sensors.layout_results import LayoutResults
+    from synth.frame.terminal.progress import Progress
 
 LIMITS_OF_USE = (
     "The rms is predicted of the model with the parameters of this page. Assumed ones are guesses.",

@@ -57,7 +57,8 @@ def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
         case Sentence():
             return element("p", exhibit.text)
         case Table():
-            return joined((element("h3", exhibit.title), shown_table(exhibit)))
+            rows = f"{len(exhibit.rows)} rows in {exhibit.file}."
+            return joined((element("h3", exhibit.title), element("p", rows) if exhibit.long else shown_table(exhibit)))
         case Chart() if exhibit.name in pictures:
             return figure(pictures[exhibit.name])
     return Markup()

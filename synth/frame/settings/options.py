@@ -1,27 +1,28 @@
-"""Options of a command line as a declared model: flag, unit, range, meaning and default stand once.
+"""What is typed behind a command as a declared model: flag, unit, range, meaning and default stand once.
 
 A word of the command line is checked as a key of a file is, and refused in the same kind of sentence.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any, TypeVar
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final, TypeVar
 
-from pydantic import ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field, JsonValue, ValidationError
 from pydantic.fields import FieldInfo
 
 from synth.frame.settings.fault_words import ALLOWED, shown
 from synth.frame.settings.section import Section, extra_of, setting_limits
 
+BY_PLACE: Final = ""
+"""The flag of files that have none: where they are typed says which they are, in the order of the fields."""
 
-class Options(Section):
-    """The options of a command beside those of every command; values are read from words."""
+NEEDED: Final = ...
+"""The default of what must be typed."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=False, allow_inf_nan=False)
-
-
-O = TypeVar("O", bound=Options)  # noqa: E741  # the options of a command
+Words = str | Path | Sequence[str | Path] | None
+"""What was typed of an option: a word, several where it takes them, None for nothing."""
 
 
 def number_option(flag: str, metavar: str, default: float | None, low: float, high: float, meaning: str) -> Any:
@@ -44,8 +45,36 @@ def word_option(flag: str, metavar: str, default: object, meaning: str) -> Any:
     return Field(default, description=meaning, json_schema_extra={"flag": flag, "metavar": metavar})
 
 
+def words_option(flag: str, metavar: str, default: object, meaning: str) -> Any:
+    """A tuple of any length: its flag is typed again for each word, and `BY_PLACE` they follow one another."""
+    extra: dict[str, JsonValue] = {"flag": flag, "metavar": metavar, "several": True}
+    return Field(default, description=meaning, json_schema_extra=extra)
+
+
+class Options(Section):
+    """What is typed behind a command, but for what is the same of all (`-o`, `--json`); values are read from words.
+
+    A path among them is that of a file, or of a folder of files, that the command reads. `config`: the configuration;
+    a command that begins with other files declares it anew, with a flag.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=False, allow_inf_nan=False)
+
+    config: Path | None = word_option(BY_PLACE, "CONFIG.toml", None, "Built-in unless given.")
+
+    @property
+    def reads(self) -> tuple[Path, ...]:
+        """All paths that were typed."""
+        values = (getattr(self, key) for key in type(self).model_fields)
+        typed = (value if isinstance(value, tuple) else (value,) for value in values)
+        return tuple(each for words in typed for each in words if isinstance(each, Path))
+
+
+O = TypeVar("O", bound=Options)  # noqa: E741  # the options of a command
+
+
 def flag_of(field: FieldInfo) -> str:
-    """As it is typed."""
+    """As it is typed, or `BY_PLACE`."""
     return extra_of(field, "flag")
 
 
@@ -54,11 +83,16 @@ def metavar_of(field: FieldInfo) -> str:
     return extra_of(field, "metavar")
 
 
-def read_options(model: type[O], words: Mapping[str, str | None]) -> O:
-    """The options from the words that were typed, by the keys of the model; None: not typed. `InputError`."""
+def takes_several(field: FieldInfo) -> bool:
+    """Whether it is a tuple of what was typed, one word each."""
+    return extra_of(field, "several") != ""
+
+
+def read_options(model: type[O], words: Mapping[str, Words]) -> O:
+    """The options from the words that were typed, by the keys of the model. `InputError`."""
     from synth.frame.input_error import InputError
 
-    typed = {key: word for key, word in words.items() if word is not None}
+    typed = {key: word for key, word in words.items() if word is not None and word != []}
     try:
         return model.model_validate(typed)
     except ValidationError as error:
@@ -69,7 +103,7 @@ def refusals(error: ValidationError, model: type[Options]) -> Iterator[str]:
     """A sentence for each option at fault."""
     for fault in error.errors(include_url=False):
         field = model.model_fields[str(fault["loc"][0])]
-        yield f"{flag_of(field)} is {shown(fault['input'])}; it must be {allowed_of(field, fault)}"
+        yield f"{flag_of(field) or metavar_of(field)} is {shown(fault['input'])}; it must be {allowed_of(field, fault)}"
 
 
 def allowed_of(field: FieldInfo, fault: Mapping[str, Any]) -> str:

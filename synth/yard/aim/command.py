@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from synth.configuration.aim.aim_file import AimFile, parse_aim_file
 from synth.frame.command import Asked, Command, Head, Limit, Steps
 from synth.frame.exhibits import Chapter
-from synth.frame.terminal.progress import Progress
 from synth.yard.aim.options import AimOptions
 
 if TYPE_CHECKING:
+    from synth.frame.terminal.progress import Progress
     from synth.yard.aim.aim_acceptance import AimBookVerdict
     from synth.yard.aim.aim_book import AimBook
     from synth.yard.aim.resolved_aim import ResolvedAim
