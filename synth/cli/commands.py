@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from synth.cli import hump_commands, sensors_commands
 from synth.cli.arguments import (
     Config,
     ExportSource,
@@ -21,7 +22,6 @@ from synth.cli.arguments import (
 from synth.cli.init_commands import add_init_command
 from synth.cli.listed import COMMANDS
 from synth.cli.measured_commands import add_measured_commands
-from synth.cli.yard_commands import add_yard_commands
 from synth.frame.arguments import Json, directory, whole_number
 from synth.frame.command_line import add_listed, listed_group
 
@@ -98,7 +98,8 @@ def tune(
     return tune_command(config, output, workers, permissions, pareto, as_json)
 
 
-add_yard_commands(app)
+app.add_typer(hump_commands.app, name="hump")
+app.add_typer(sensors_commands.app, name="sensors")
 add_listed(app, COMMANDS)
 add_measured_commands(app)
 

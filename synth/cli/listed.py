@@ -83,6 +83,20 @@ def sensors_plan_options() -> type[Options]:
     return PlanOptions
 
 
+def watch() -> AnyCommand:
+    """See `computer`."""
+    from synth.yard.measured_passes.drift.command import COMMAND
+
+    return COMMAND
+
+
+def watch_options() -> type[Options]:
+    """Of it."""
+    from synth.yard.measured_passes.drift.options import WatchOptions
+
+    return WatchOptions
+
+
 COMMANDS: Final = (
     Listed(
         "aim",
@@ -118,6 +132,14 @@ COMMANDS: Final = (
         "init --computer",
         "Size the control computer of a hump: how fast, how reliable, and what it pays.\n\n"
         "Exit code 1 if it is slower than its tasks need, or misses a limit of the configuration.",
+    ),
+    Listed(
+        "watch",
+        watch,
+        watch_options,
+        "init",
+        "Watch measured passes of a position for drifts.\n\n"
+        "What drifted, since when, what it costs, whether to retune or to repair. Exit code 1 if something drifted.",
     ),
 )
 """By themselves."""

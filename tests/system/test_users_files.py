@@ -87,7 +87,7 @@ DIRECTORIES = (
     Writing(("hump", "speed", "trial.toml"), "train-1-locomotive.csv"),
     Writing(("hump", "draw", "hump.toml"), "hump-hump.png"),
     Writing(("identify", "log.csv", "--config", "own.toml", "--mapping", "mapping.toml"), "config.toml"),
-    Writing(("watch", "log.csv", "--config", "yard.toml", "--reference", "log.h5"), "watch.json"),
+    Writing(("watch", "log.csv", "--config", "yard.toml", "--reference", "log.h5"), "sheets/passes.csv"),
     Writing(("retune", "log.csv", "--config", "yard.toml", "--table", "book.h5"), "book.h5"),
     Writing(("replay", "log.csv", "--config", "yard.toml", "--table", "book.h5"), "report.html"),
     Writing(("export", "book.h5", "--format", "c"), "retarder_table.c", quick=True),
@@ -129,7 +129,7 @@ def inputs(tuned_once: tuple[Path, int], tmp_path_factory: pytest.TempPathFactor
     shutil.copy(tuned / "book.h5", folder)
     table = Path(shutil.copy(tuned / "tables" / f"{TABLE}.json", folder / "table.json"))
     for log in ("log.csv", "log.h5"):
-        words = (table, "--config", folder / "yard.toml", "--passes", 1000, "--log", folder / log, "--log-passes", 60)
+        words = (table, "--config", folder / "yard.toml", "--passes", 1000, "--log", folder / log, "--log-passes", 200)
         assert main(["validate", *map(str, words)]) == 0
     car = BUILT_IN.file(CARS, "gondola-4").text.encode("utf-8")
     return {**{path.name: path.read_bytes() for path in folder.iterdir()}, OWN_CAR: car}

@@ -38,14 +38,18 @@ def configured(passes: FittingPasses, parameters: Sequence[SourcedValue]) -> tup
     return values, slope_key
 
 
-def of_reference(
-    reference: FittingPasses, parameters: Sequence[SourcedValue], values: dict[str, float], threads: int
-) -> dict[str, float]:
-    """`values`, with those in their place that make the passes of `reference` most likely."""
+def require_enough(reference: FittingPasses) -> None:
+    """`InputError` for a reference that is too short."""
     if len(reference) < LEAST_REFERENCE:
         raise InputError(
             f"the reference has {len(reference)} passes; give {LEAST_REFERENCE} or more of a position in order, so "
             "that an error of its numbers is not taken for a drift"
         )
+
+
+def of_reference(
+    reference: FittingPasses, parameters: Sequence[SourcedValue], values: dict[str, float], threads: int
+) -> dict[str, float]:
+    """`values`, with those in their place that make the passes of `reference` most likely."""
     found = estimate(reference, unknowns_of(reference, parameters), threads).values
     return values | {key: value for key, value in found.items() if key in values}

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,12 +14,13 @@ from matplotlib.lines import Line2D
 
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.frame.results_directory import results_directory
-from synth.present.plots.control_charts import control_charts
-from synth.present.watch_outputs import charts_csv, write_watch
+from synth.frame.exhibits import Chart, Table
+from synth.frame.sheet import to_csv
 from synth.yard.measured_passes.drift.charts import charts_of
 from synth.yard.measured_passes.drift.diagnosis import diagnosed
 from synth.yard.measured_passes.drift.drift_size import DriftSize
+from synth.yard.measured_passes.drift.pictures import control_charts
+from synth.yard.measured_passes.drift.shown import MARKED, charts, drifted
 from synth.yard.measured_passes.drift.watch import Drift, Watch, cost_of
 from synth.yard.measured_passes.fitting_passes import fitting_passes
 from tests.synth.yard.measured_passes.test_drift_charts import normal_evidence
@@ -109,16 +108,17 @@ def test_cuts_out_of_brake_are_marked_and_move_no_median(config: ResolvedConfig)
         assert np.nanmax(np.abs(each.medians_m_s)) < 0.03
 
 
-def test_the_page_has_its_charts_under_one_heading(config: ResolvedConfig, tmp_path: Path) -> None:
-    with results_directory(tmp_path, "watch", summary="watch.json") as directory:
-        write_watch(watch_of(config, False), config, "2000-01-01T00:00:00Z", directory)
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert re.findall(r"<h[1-6][^>]*>(.*?)</h[1-6]>", page)[1:] == ["Charts"]
-    assert "Vertical lines" not in page
+@pytest.mark.parametrize("drifts", [False, True])
+def test_marks_and_causes_are_told_where_there_is_a_drift(config: ResolvedConfig, drifts: bool) -> None:
+    found = watch_of(config, drifts)
+    (chart,) = (each for each in charts(found) if isinstance(each, Chart))
+    assert chart.caption.endswith(MARKED) == drifts
+    assert [each.name for each in drifted(found) if isinstance(each, Table)] == ["exits", "causes"] * drifts
 
 
 def test_no_cut_id_is_a_formula_in_the_sheet(config: ResolvedConfig) -> None:
-    rows = list(csv.reader(io.StringIO(charts_csv(watch_of(config, False)).decode(), newline="")))
+    (sheet,) = (each for each in charts(watch_of(config, False)) if isinstance(each, Table) and each.name == "passes")
+    rows = list(csv.reader(io.StringIO(to_csv(sheet).decode(), newline="")))
     assert [row[1] for row in rows[1:7]] == ["'=HYPERLINK(1)", "'+1-2", "'@a", "'-b", "+15", "cut-00005"]
-    assert [row[3] for row in rows[1:]] == [str(int(number in FULL)) for number in range(PASSES)]
+    assert [row[3] for row in rows[1:]] == [str(number in FULL).lower() for number in range(PASSES)]
     assert any(float(row[2]) < 0.0 for row in rows[1:])

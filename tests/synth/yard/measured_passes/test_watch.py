@@ -133,17 +133,23 @@ def test_a_size_lies_where_the_likelihood_is_highest(config: ResolvedConfig, tab
         assert total(found.size) - total(end) == pytest.approx(1.9207, abs=0.01)
 
 
+def drift_in(folder: Path) -> dict[str, Any]:
+    """The drift that a watch has told."""
+    found: dict[str, Any] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["figures"]["drift"]
+    return found
+
+
 def test_the_command_tells_a_day(config: ResolvedConfig, table: ControllerTable, tmp_path: Path) -> None:
     log = tmp_path / "day.csv"
     write_log(day(config, table, SLOW_EXHAUST, 30), log)
     assert main(["watch", str(log), "-o", str(tmp_path / "out")]) == 1
-    told = json.loads((tmp_path / "out" / "watch.json").read_text(encoding="utf-8"))
-    assert told["drift"]["cause"] == "exhaust constant"
-    assert told["drift"]["remedy"] == "repair"
-    assert told["drift"]["begin"] == CALM + 1
-    assert told["drift"]["begin_cut"] == f"cut-{CALM}"
+    told = drift_in(tmp_path / "out")
+    assert (told["cause"], told["remedy"]) == ("exhaust constant", "repair")
+    assert told["begin"]["value"] == CALM + 1
+    assert told["begin_cut"] == f"cut-{CALM}"
+    assert told["size"]["n"] == 30
     assert "REPAIR" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-    rows = (tmp_path / "out" / "charts.csv").read_text(encoding="utf-8").splitlines()
+    rows = (tmp_path / "out" / "sheets" / "passes.csv").read_text(encoding="utf-8").splitlines()
     assert len(rows) == CALM + 30 + 1
     assert math.isfinite(float(rows[-1].split(",")[2]))
     write_log(day(config, table, IN_ORDER, 30), log)
@@ -168,16 +174,16 @@ def test_drifts_are_counted_from_the_reference(
 
     def told(out: str, *words: str) -> dict[str, Any]:
         assert main(["watch", str(tmp_path / "day.csv"), *words, "-o", str(tmp_path / out)]) == 1
-        drift: dict[str, Any] = json.loads((tmp_path / out / "watch.json").read_text(encoding="utf-8"))["drift"]
+        drift = drift_in(tmp_path / out)
         assert drift["cause"] == "sensor bias"
         return drift
 
     against_reference = told("by-reference", "--reference", str(tmp_path / "reference.csv"))
-    assert against_reference["begin"] == 31
-    assert against_reference["size"] == pytest.approx(-0.1, abs=0.005)
+    assert against_reference["begin"]["value"] == 31
+    assert against_reference["size"]["value"] == pytest.approx(-0.1, abs=0.005)
     against_configuration = told("by-configuration")
-    assert against_configuration["begin"] == 1
-    assert against_configuration["size"] > 0.02
+    assert against_configuration["begin"]["value"] == 1
+    assert against_configuration["size"]["value"] > 0.02
 
     write_log(reference.taken(np.arange(59)), tmp_path / "reference.csv")
     words = ["--reference", str(tmp_path / "reference.csv"), "-o", str(tmp_path / "short")]
