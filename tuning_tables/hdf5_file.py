@@ -74,6 +74,14 @@ def write_book(tables: Sequence[AnyTable], path: str | os.PathLike[str], generat
     Raises `InvalidTable` for no tables, an id given twice, generators that differ, tables of two kinds; `OSError`, also
     where the file does not read back as it was written; `ImportError` without h5py.
     """
+    content = book_bytes(tables, generator)
+    with replacing(path) as part:
+        part.write_bytes(content)
+        _require_read_back(part, book_layout(tables).arrays_of(tables))
+
+
+def book_bytes(tables: Sequence[AnyTable], generator: Generator | None = None) -> bytes:
+    """The file that `write_book` writes, for a caller that writes files himself; raises as it does."""
     layout = book_layout(tables)
     arrays = layout.arrays_of(tables)
     origin = generator or _common_generator(tables)
@@ -86,9 +94,7 @@ def write_book(tables: Sequence[AnyTable], path: str | os.PathLike[str], generat
     }
     attributes["payload_sha256"] = payload_sha256(attributes, arrays, layout)
     body = _body(attributes, arrays, layout)
-    with replacing(path) as part:
-        part.write_bytes(body + seal_of(body))
-        _require_read_back(part, arrays)
+    return body + seal_of(body)
 
 
 def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:

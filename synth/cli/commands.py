@@ -21,7 +21,6 @@ from synth.cli.arguments import (
 )
 from synth.cli.init_commands import add_init_command
 from synth.cli.listed import COMMANDS
-from synth.cli.measured_commands import add_measured_commands
 from synth.frame.arguments import Json, directory, whole_number
 from synth.frame.command_line import add_listed, listed_group
 
@@ -101,7 +100,6 @@ def tune(
 app.add_typer(hump_commands.app, name="hump")
 app.add_typer(sensors_commands.app, name="sensors")
 add_listed(app, COMMANDS)
-add_measured_commands(app)
 
 
 @app.command()

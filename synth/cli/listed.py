@@ -97,6 +97,48 @@ def watch_options() -> type[Options]:
     return WatchOptions
 
 
+def identify() -> AnyCommand:
+    """See `computer`."""
+    from synth.yard.measured_passes.identify_command import COMMAND
+
+    return COMMAND
+
+
+def replay() -> AnyCommand:
+    """See `computer`."""
+    from synth.yard.measured_passes.replay.command import COMMAND
+
+    return COMMAND
+
+
+def replay_options() -> type[Options]:
+    """Of it."""
+    from synth.yard.measured_passes.replay.options import ReplayOptions
+
+    return ReplayOptions
+
+
+def retune() -> AnyCommand:
+    """See `computer`."""
+    from synth.yard.measured_passes.retune.command import COMMAND
+
+    return COMMAND
+
+
+def retune_options() -> type[Options]:
+    """Of it."""
+    from synth.yard.measured_passes.retune.options import RetuneOptions
+
+    return RetuneOptions
+
+
+def log_options() -> type[Options]:
+    """Of a command that only reads logs and a configuration."""
+    from synth.yard.measured_passes.log_options import LogOptions
+
+    return LogOptions
+
+
 COMMANDS: Final = (
     Listed(
         "aim",
@@ -140,6 +182,30 @@ COMMANDS: Final = (
         "init",
         "Watch measured passes of a position for drifts.\n\n"
         "What drifted, since when, what it costs, whether to retune or to repair. Exit code 1 if something drifted.",
+    ),
+    Listed(
+        "identify",
+        identify,
+        log_options,
+        "init",
+        "Tell the numbers of a position from its measured passes, and write them as a configuration.\n\n"
+        "Exit code 1 if a test says that the model does not hold for these passes.",
+    ),
+    Listed(
+        "replay",
+        replay,
+        replay_options,
+        "init",
+        "Tell what other tables would have commanded in measured passes, and how the cuts would have left.\n\n"
+        "Exit code 1 if the measured exits are not those that the configuration predicts for the tables of the log.",
+    ),
+    Listed(
+        "retune",
+        retune,
+        retune_options,
+        "init",
+        "Make new tables for what measured passes say of the plant, and tell what they gain.\n\n"
+        "Exit code 1, and no book, if the gain is within noise in every case; also 1 if a case has no new table.",
     ),
 )
 """By themselves."""

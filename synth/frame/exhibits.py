@@ -5,6 +5,7 @@ An exhibit holds what was computed and computes nothing. Terminal, page, CSV and
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Row = Mapping[str, Any]
-"""The figures of a row by the keys of the columns: numbers, `Interval`s, words, truth values; None is none."""
+"""The figures of a row by the keys of the columns: numbers, `Interval`s, words, truth values; None and NaN are none."""
 
 Form = Callable[[float], str]
 """How a number is printed."""
@@ -72,7 +73,7 @@ def shown_value(value: Any, form: Form) -> str:
             return f"{form(value.value)} [{form(value.low95)}, {form(value.high95)}]"
         case tuple() | list():
             return ", ".join(shown_value(each, form) for each in value)
-    return form(float(value))
+    return ABSENT if math.isnan(value) else form(float(value))
 
 
 @dataclass(frozen=True)

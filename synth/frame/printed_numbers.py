@@ -94,6 +94,11 @@ def per_cent(value: float) -> str:
     return f"{100.0 * value:.3g} %" if math.isfinite(value) else three_figures(value)
 
 
+def four_figures(value: float) -> str:
+    """As many as the ends of an interval need."""
+    return f"{value:.4g}"
+
+
 def six_figures(value: float) -> str:
     """Six figures, all of them before the point where there are more; thousands apart."""
     if not math.isfinite(value):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -54,4 +55,5 @@ def cell(value: Any) -> str:
             return value
         case list() | tuple():
             return " ".join(cell(each) for each in value)
-    return repr(value.item() if hasattr(value, "item") else value)
+    number = value.item() if hasattr(value, "item") else value
+    return "" if isinstance(number, float) and math.isnan(number) else repr(number)

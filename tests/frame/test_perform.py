@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,12 @@ from typer.testing import CliRunner
 
 from plant_models import PlantError
 from synth.frame.command_line import Listed, add_listed, listed_group
+from synth.frame.exhibits import Column, Table
 from synth.frame.input_error import InputError
+from synth.frame.page.told_page import shown
+from synth.frame.printed_numbers import ABSENT
+from synth.frame.sheet import to_csv
+from synth.frame.summary import plain, rows_of
 from tests.frame.results import results_in
 from tests.frame.small_command import COMMAND, CoinOptions
 
@@ -126,6 +132,23 @@ def test_a_refusal_is_one_sentence_and_leaves_nothing(
         run(app, str(tmp_path / "c.toml"), "-o", str(tmp_path / "out"), *words)
     assert str(caught.value).endswith(sentence)
     assert not (tmp_path / "out").exists()
+
+
+def test_no_medium_tells_of_what_is_not_a_number() -> None:
+    column = Column("rms", "rms")
+    table = Table("cases", "Cases", (column,), [{"rms": math.nan}, {"rms": None}])
+    assert {column.text(row) for row in table.rows} == {ABSENT}
+    assert to_csv(table).splitlines()[1:] == to_csv(Table("cases", "Cases", (column,), [{}, {}])).splitlines()[1:]
+    assert plain(rows_of(table)) == [{"rms": None}] * 2
+
+
+def test_a_long_table_is_named_on_the_page_and_not_shown() -> None:
+    table = Table(
+        "passes", "Every pass", (Column("cut", "cut", words=True),), [{"cut": "A-1"}, {"cut": "A-2"}], long=True
+    )
+    page = shown(table, {})
+    assert f"2 rows in {table.file}." in page
+    assert "A-1" not in page
 
 
 def test_the_help_tells_what_is_declared(app: typer.Typer) -> None:

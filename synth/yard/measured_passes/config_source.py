@@ -21,6 +21,11 @@ class ConfigSource:
     tree: Tree
     library: Library
 
+    @property
+    def reads(self) -> tuple[Path, ...]:
+        """The files of his own types."""
+        return tuple(Path(each.place) for each in self.library.own)
+
     def resolved(self) -> ResolvedConfig:
         """Every default filled in."""
         return resolve(valid_settings(self.tree, self.place), self.place, self.library)

@@ -65,10 +65,14 @@ class Identified:
         return f"{len(self.passes)} passes"
 
 
-def identify(passes: FittingPasses, config: ResolvedConfig, threads: int) -> Identified:
-    """Everything about one log; passes stopped by hand tell as much as others. `InputError` for too few passes."""
+def require_enough(passes: FittingPasses) -> None:
+    """`InputError` for too few passes."""
     if len(passes) < LEAST_PASSES:
         raise InputError(f"identify: the log has {len(passes)} sound passes; {LEAST_PASSES} are needed at least")
+
+
+def identify(passes: FittingPasses, config: ResolvedConfig, threads: int) -> Identified:
+    """Everything about one log; passes stopped by hand tell as much as others."""
     unknowns = unknowns_of(passes, config.parameters)
     found = estimate(passes, unknowns, threads)
     start = values_at(unknowns, np.zeros(len(unknowns)))

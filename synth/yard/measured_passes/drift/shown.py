@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Any, Final
 
@@ -171,8 +170,8 @@ def exit_rows(drift: Drift) -> Iterator[Row]:
         yield {
             "time": time,
             "passes": cost.passes,
-            "rms_m_s": known(cost.rms_m_s),
-            "overspeed": known(cost.overspeed),
+            "rms_m_s": cost.rms_m_s,
+            "overspeed": cost.overspeed,
         }
 
 
@@ -225,15 +224,10 @@ def pass_rows(found: Watch) -> Iterator[Row]:
         yield {
             "pass": number(found, index),
             "cut_id": found.passes.log.cut_id[index],
-            "exit_error_m_s": known(float(found.errors_m_s[index])),
+            "exit_error_m_s": float(found.errors_m_s[index]),
             "full_brake": bool(found.full_brake[index]),
             **dict(zip(names, sums, strict=True)),
         }
-
-
-def known(value: float) -> float | None:
-    """None for NaN."""
-    return None if math.isnan(value) else value
 
 
 def _pictures() -> Any:

@@ -44,7 +44,8 @@ class CaseGain:
     """One case: rms of exit − target under both tables on the identified plants, m/s, and new / old.
 
     `ratio_ci95` holds the chance of the passes and what the estimate leaves open; it is of this case alone. `p_value`:
-    of as small a ratio or a smaller one where the new table is no better (Student's law, one side).
+    of as small a ratio or a smaller one where the new table is no better (Student's law, one side). `plants`: so many
+    were drawn.
     """
 
     label: str
@@ -54,6 +55,7 @@ class CaseGain:
     ratio: float
     ratio_ci95: tuple[float, float]
     p_value: float
+    plants: int
 
     @property
     def case(self) -> Case:
@@ -108,7 +110,8 @@ def case_gain(
     middle, spread = float(of_log.mean()), float(of_log.std(ddof=1)) * math.sqrt(1.0 + 1.0 / len(plants))
     half = student_quantile(len(plants) - 1) * spread
     ends = (math.exp(middle - half), math.exp(middle + half))
-    return CaseGain(*case, old, new, math.exp(middle), ends, no_better(middle, spread, len(plants) - 1))
+    chance = no_better(middle, spread, len(plants) - 1)
+    return CaseGain(*case, old, new, math.exp(middle), ends, chance, len(plants))
 
 
 def no_better(log_ratio: float, spread: float, freedom: int) -> float:

@@ -11,14 +11,13 @@ import pytest
 
 from plant_models.pressure_gauge import USUAL_NOISE_KPA
 from scripts.studies.identification.truths import text_of_classes
+from synth.cli import main
 from synth.cli.arguments import GaugeStd
-from synth.cli.identify import identify_command
 from synth.cli.validate import asked_log
-from synth.frame.input_error import InputError
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.identifiability import Finding
-from synth.yard.measured_passes.identify_summary import bias_sentences
+from synth.yard.measured_passes.identify_shown import bias_sentences
 from synth.yard.measured_passes.residual_tests import MOTION, ResidualTest, residual_tests, wrong
 from synth.yard.measured_passes.unknowns import BIAS, GAUGE_NOISE, RANGES
 from tuning_tables.pass_log.log_files import write_log
@@ -43,24 +42,26 @@ def test_a_log_becomes_a_configuration(
 ) -> None:
     (tmp_path / "my.toml").write_text(text_of_classes() + "[output]\nplots = true\n", encoding="utf-8")
     write_log(passes.log, tmp_path / "day.csv")
-    code = identify_command([tmp_path / "day.csv"], None, tmp_path / "my.toml", tmp_path / "out", as_json=False)
-    assert code == 0
+    assert main(words(tmp_path)) == 0
     summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
-    assert summary["passes"] == len(passes)
+    assert summary["figures"]["passes"] == len(passes)
     assert {"config.toml", "report.html", "plots/identify-numbers.png"} <= summary["files"].keys()
-    numbers = {each["key"]: each for each in summary["numbers"]}
-    low, high = numbers["sensor.noise_m_s"]["ci95"]
-    assert low < 0.05 < high
+    numbers = {each["key"]: each["value"] for each in summary["tables"]["numbers"]}
+    assert numbers["sensor.noise_m_s"]["low95"] < 0.05 < numbers["sensor.noise_m_s"]["high95"]
+    assert {each["n"] for each in numbers.values()} == {len(passes)}
     assert "identified from 80 passes" in (tmp_path / "out" / "config.toml").read_text(encoding="utf-8")
     report, printed = (tmp_path / "out" / "report.html").read_text(encoding="utf-8"), capsys.readouterr().out
-    assert [test["matters_from"] for test in summary["tests"]] == [2.0, 5.0, 10.0, 0.01, 3.0]
-    for test in summary["tests"]:
-        assert not test["model_wrong"]
-        low, high = test["ci95"]
-        assert low < test["size"] < high
-        told = f"{test['looks_for']}, by {test['size']:+.2g} [{low:+.2g}, {high:+.2g}] {test['unit']}; it matters from"
-        assert f"{test['verdict']}: {told} {test['matters_from']:g}\n" in printed
-        assert f"<td>{low:+.2g} to {high:+.2g}</td><td>{test['matters_from']:g}</td><td>{test['unit']}</td>" in report
+    tests = summary["tables"]["tests"]
+    assert [test["matters_from"] for test in tests] == [2.0, 5.0, 10.0, 0.01, 3.0]
+    for test in tests:
+        assert test["verdict"] in ("holds", "not decided")
+        size = test["size"]
+        told = f"{size['value']:+.2g} [{size['low95']:+.2g}, {size['high95']:+.2g}]"
+        assert f"<td>{told}</td><td>{test['matters_from']:g}</td>" in report
+        (line,) = (line for line in printed.splitlines() if line.startswith(test["looks_for"]))
+        assert told in line
+        assert line.endswith(test["verdict"])
+    assert "accepted: none of 5 tests says that the model does not hold" in printed
 
 
 def test_a_rehearsal_and_its_identification_begin_with_one_gauge() -> None:
@@ -71,11 +72,17 @@ def test_a_rehearsal_and_its_identification_begin_with_one_gauge() -> None:
     assert option.help == f"Noise of the logged pressure; {USUAL_NOISE_KPA:g} unless given."
 
 
-def test_too_few_passes_are_refused(passes: FittingPasses, tmp_path: Path) -> None:
+def words(folder: Path) -> list[str]:
+    """What is typed where the log and the configuration are in `folder`."""
+    return ["identify", str(folder / "day.csv"), "--config", str(folder / "my.toml"), "-o", str(folder / "out")]
+
+
+def test_too_few_passes_are_refused(passes: FittingPasses, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "my.toml").write_text(text_of_classes(), encoding="utf-8")
     write_log(passes.log.taken(np.arange(12)), tmp_path / "day.csv")
-    with pytest.raises(InputError, match="the log has 12 sound passes; 40 are needed at least"):
-        identify_command([tmp_path / "day.csv"], None, tmp_path / "my.toml", tmp_path / "out", as_json=False)
+    assert main(words(tmp_path)) == 2
+    assert "the log has 12 sound passes; 40 are needed at least" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(("bias_m_s", "told"), [(0.002, False), (0.03, True), (-0.03, True)])

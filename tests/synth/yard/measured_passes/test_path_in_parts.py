@@ -10,7 +10,7 @@ import pytest
 from scripts.studies.identification.truths import TRUTHS, Yard
 from synth.yard.measured_passes.estimate import posterior
 from synth.yard.measured_passes.fitting_passes import FittingPasses
-from synth.yard.measured_passes.identify_summary import log_sentences
+from synth.yard.measured_passes.identify_shown import log_sentences
 from synth.yard.measured_passes.pass_rows import pass_rows
 from synth.yard.measured_passes.unknowns import unknowns_of
 from tuning_tables.pass_log.pass_log import PassLog

@@ -14,7 +14,7 @@ PLANTS, CASES, FAMILIES = 16, 30, 2000
 
 
 def gain(number: int, p_value: float) -> CaseGain:
-    return CaseGain(f"class {number}", 3.0, 0.05, 0.04, 0.8, (0.7, 0.9), p_value)
+    return CaseGain(f"class {number}", 3.0, 0.05, 0.04, 0.8, (0.7, 0.9), p_value, PLANTS)
 
 
 def test_a_p_value_belongs_to_the_interval() -> None:

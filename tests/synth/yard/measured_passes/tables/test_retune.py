@@ -12,12 +12,17 @@ import pytest
 from synth.book.failed_case import FailedCase
 from synth.book.watcher import Teller
 from synth.cli import main
+from synth.frame.command import Limit
+from synth.frame.exhibits import File, Table
+from synth.frame.summary import rows_of
 from synth.simulation.closed_loop import TableController, simulate
 from synth.simulation.logged_passes import LoggedClass, mixed_log
 from synth.simulation.stratified_passes import stratified_passes
 from synth.yard.measured_passes.fitting_passes import fitting_passes
+from synth.yard.measured_passes.retune.predicted_gain import GainOrder
 from synth.yard.measured_passes.retune.retune import Retuned, RetuneOrder, retune
-from tuning_tables import ControllerTable, read_book, write_book
+from synth.yard.measured_passes.retune.shown import files
+from tuning_tables import ControllerTable, from_json, read_book, write_book
 from tuning_tables.pass_log.log_files import write_log
 from tuning_tables.pass_log.pass_log import PassLog
 
@@ -69,6 +74,16 @@ def test_the_new_book_states_the_identified_plant(retuned: Retuned) -> None:
         assert table.validated is not None
 
 
+def test_the_files_of_a_gain_are_its_book_and_each_of_its_tables(retuned: Retuned, tmp_path: Path) -> None:
+    written = {each.name: each.content for each in files(retuned) if isinstance(each, File)}
+    assert set(written) == {"book.h5", *(f"tables/{table.id}.json" for table in retuned.tables)}
+    (tmp_path / "book.h5").write_bytes(written["book.h5"])
+    assert read_book(tmp_path / "book.h5") == retuned.tables
+    write_book(retuned.tables, tmp_path / "again.h5")
+    assert (tmp_path / "again.h5").read_bytes() == written["book.h5"]
+    assert tuple(from_json(written[f"tables/{table.id}.json"]) for table in retuned.tables) == retuned.tables
+
+
 def test_what_a_log_gave_is_not_offered_again(
     retuned: Retuned, known: Yard, worse: Yard, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -82,8 +97,9 @@ def test_what_a_log_gave_is_not_offered_again(
     assert "within noise" in capsys.readouterr().out
     assert not (out / "book.h5").exists()
     summary = json.loads((out / "summary.json").read_text())
-    assert summary["refused"]
-    assert not any(case["changed"] for case in summary["cases"])
+    assert not summary["accepted"]
+    assert [case["table"] for case in summary["tables"]["cases"]] == ["kept: within noise"] * len(CASES)
+    assert {case["ratio"]["n"] for case in summary["tables"]["cases"]} == {GainOrder().sets}
     assert {"report.html", "plots/retune-gains.png"} <= set(summary["files"])
 
 
@@ -94,13 +110,15 @@ def test_a_replay_of_the_own_tables_commands_what_they_did(assumed: Yard, tmp_pa
     words = ["--table", str(tmp_path / "old.h5"), "--config", str(tmp_path / "c.toml")]
     assert main(["replay", str(tmp_path / "log.h5"), *words, "--own", words[1], "-o", str(tmp_path / "again")]) == 0
     told = json.loads((tmp_path / "again" / "summary.json").read_text())
-    assert told["agreement"]["own"]["rows"]["same"] == told["agreement"]["own"]["rows"]["asked"] > 0
+    own, _ = told["tables"]["agreement"]
+    assert own["rows_same"] == own["rows_asked"] > 0
     assert main(["replay", str(tmp_path / "nothing.h5"), *words]) == 2
 
 
 def test_a_case_without_a_new_table_keeps_its_old_one_and_is_told(retuned: Retuned, known: Yard) -> None:
+    from synth.yard.measured_passes.retune.command import limits
     from synth.yard.measured_passes.retune.retune import book_of
-    from synth.yard.measured_passes.retune.retune_summary import retune_sentences, retune_summary
+    from synth.yard.measured_passes.retune.shown import gained
 
     first, second = CASES
     new = {first: retuned.new[first]}
@@ -111,10 +129,9 @@ def test_a_case_without_a_new_table_keeps_its_old_one_and_is_told(retuned: Retun
     assert list(book_of(CASES, {first: known.tables[first]}, new, {first})[0]) == [first]  # nowhere a second one
     found = replace(retuned, failed=(FailedCase(*second, "the grid is too coarse"),))
     told = "S-1 to 3 m/s: no new table, the old one is kept: the grid is too coarse"
-    assert retune_sentences(found)[-1] == told
-    assert retune_summary(found, {})["failed"] == [
-        {"label": "S-1", "target_m_s": 3.0, "reason": "the grid is too coarse"}
-    ]
+    assert list(limits(found))[-1] == Limit(told, False)
+    (failed,) = (each for each in gained(found) if isinstance(each, Table) and each.name == "failed")
+    assert rows_of(failed) == [{"label": "S-1", "target_m_s": 3.0, "reason": "the grid is too coarse"}]
 
 
 def test_a_mixed_book_keeps_lines_without_a_proven_gain(retuned: Retuned, known: Yard, tmp_path: Path) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -17,29 +15,11 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.frame.picture.picture import Picture
-from synth.present.plots.picture_book import picture
 from synth.solver.tabulate import lines_of
 from synth.yard.measured_passes.retune.predicted_gain import CaseGain
 from synth.yard.measured_passes.retune.retune import Retuned
 
 NODES = 201
-
-
-def retune_pictures(found: Retuned) -> Iterator[Picture]:
-    """All of them."""
-    yield picture(
-        gains(found), "retune-gains", "What is gained", "rms after over rms before",
-        "rms of exit less target under the new table over that under the old one, on the plants the passes leave "
-        "likely; bars: 95 % intervals of each case alone, of passes and estimate. Grey: within noise when all cases "
-        "are judged together (Holm), the case keeps its table.",
-    )  # fmt: skip
-    most = min(found.changed or found.gains, key=lambda gain: gain.ratio)
-    yield picture(
-        before_after(found, most), "retune-lines", "What is gained", "Lines before and after",
-        f"{most.label} to {most.target_m_s:g} m/s, where most is gained: lines above which a stage is raised, before "
-        "and after.",
-    )  # fmt: skip
 
 
 def gains(found: Retuned) -> Figure:

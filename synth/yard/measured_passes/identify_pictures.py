@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -10,8 +9,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from synth.frame.picture.house_style import BLUE, GREY, INK, PALE_GREY, VERMILLION, dress, new_figure, place
-from synth.frame.picture.picture import Picture
-from synth.present.plots.picture_book import picture
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.identify import Identified
 
@@ -19,26 +16,6 @@ AFTER_S, BIN_S = 1.5, 0.05
 """How long after a command pressures are shown, and of how much time a point is the mean."""
 
 Floats = NDArray[np.float64]
-
-
-def identify_pictures(found: Identified) -> Iterator[Picture]:
-    """All of them."""
-    yield picture(
-        numbers(found), "identify-numbers", "Numbers", "What was taken before, and what the passes say",
-        "Distance from what was taken before, in standard deviations of what was known (grey band: one of them), "
-        "with 95 % intervals. Hollow: the passes do not tell the number, and it stays as it was.",
-    )  # fmt: skip
-    if found.passes.log.has_gauge:
-        yield picture(
-            pressures(found), "identify-pressures", "Drive", "Pressure after a command",
-            "Mean gauge pressure after the commands of each kind (points), and what the numbers before "
-            "(dashed) and the identified ones (lines) make of the same commands.",
-        )  # fmt: skip
-    yield picture(
-        friction(found), "identify-friction", "Friction", "Friction of the cuts, and surprises of the readings",
-        "Left: friction of each cut as its own pass tells it, and the identified law of what passes tell. "
-        "Right: surprises of the readings over what is expected, and the normal law that they follow if all is right.",
-    )  # fmt: skip
 
 
 def numbers(found: Identified) -> Figure:

@@ -2,35 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from matplotlib.figure import Figure
 
 from synth.frame.picture.house_style import BLUE, GREY, INK, VERMILLION, dress, legend_below, new_figure, place
-from synth.frame.picture.picture import Picture
-from synth.present.plots.picture_book import picture
 from synth.yard.measured_passes.replay.replay import Replay
 
 BINS = 10
 TAILS = (0.002, 0.998)
-
-
-def replay_pictures(found: Replay) -> Iterator[Picture]:
-    """Those that there is something to draw for."""
-    if found.uniformity.n:
-        yield picture(
-            measured_over_predicted(found), "replay-measured", "Measured and predicted", "Measured over predicted",
-            "Left: exit less target, as measured and as predicted for any cut of its class as fast, under the "
-            "tables that drove the log. Right: ranks of the measured exits among those; level where log and "
-            "configuration agree, dotted: where 95 % of the bars stay then.",
-        )  # fmt: skip
-    if found.difference.passes:
-        yield picture(
-            own_and_other(found), "replay-tables", "The other tables", "Exits under both tables",
-            "Predicted exit less target of the same cuts under the tables that drove the log and the others: mean "
-            "and 80 % band of each pass, sorted by the mean under the tables of the log.",
-        )  # fmt: skip
 
 
 def measured_over_predicted(found: Replay) -> Figure:
