@@ -9,6 +9,7 @@ One command at a time holds a directory.
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import os
 import re
@@ -66,13 +67,15 @@ class ResultsDirectory:
                 raise InputError(not_own(file))
 
     def write(self, name: str, content: bytes) -> Path:
-        """Make `content` the content of the file `name`; it appears complete or not at all."""
-        target = self.path / name
-        if self._own.content_of(name) == hashlib.sha256(content).hexdigest():  # a run may begin from its own results
+        """Make `content` the content of the file `name`; it appears as it was written or not at all."""
+        target, digest = self.path / name, hashlib.sha256(content).hexdigest()
+        if self._own.content_of(name) == digest:  # a run may begin from its own results
             self.retain(name)
             return target
         with self.writing(name) as part:
             part.write_bytes(content)
+            if sha256_of(part) != digest:
+                raise OSError(errno.EIO, "what was written does not read back", str(target))
         return target
 
     def write_all(self, contents: Mapping[str, bytes]) -> list[Path]:
@@ -135,8 +138,7 @@ class ResultsDirectory:
         own = {self.path / name for name in (MARKER, *self._own)}
         for folder in sorted({file.parent for file in own}):
             for part in folder.glob(".*.part"):
-                named = LEFTOVER.fullmatch(part.name)
-                if named and folder / named[1] in own:
+                if folder / finished_name(part.name) in own:
                     part.unlink(missing_ok=True)
 
     def _note(self, name: str, content: str) -> None:
@@ -183,6 +185,13 @@ def results_directory(
             os.fsync(descriptor)
         yield results
         own.tidy()
+
+
+def finished_name(name: str) -> str:
+    """The name that an unfinished file would have got: whoever writes one may write it from an unfinished file, too."""
+    while named := LEFTOVER.fullmatch(name):
+        name = named[1]
+    return name
 
 
 def require_own(path: Path, command: str) -> None:

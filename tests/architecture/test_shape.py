@@ -22,7 +22,7 @@ SOURCES = {
     for path in sorted((ROOT / package).rglob("*.py"))
 }
 
-MOST_ROOMS = 13
+MOST_ROOMS = 14
 MOST_LINES, MOST_FUNCTION_LINES, MOST_ARGUMENTS = 300, 60, 8
 KERNEL_FUNCTION_LINES, KERNEL_ARGUMENTS = 88, 36
 """What the longest kernel has; lower these when it becomes shorter."""

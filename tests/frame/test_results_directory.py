@@ -286,3 +286,23 @@ def test_no_order_of_events_costs_a_byte_of_the_users(tmp_path: Path) -> None:
             found = files(path) if path.exists() else {}
             assert {name: found[name] for name in mine} == mine
     assert ran > 60
+
+
+def test_an_unfinished_file_of_an_unfinished_file_goes_too(tmp_path: Path) -> None:
+    """As a book that is written to the part of its name leaves one where it is interrupted."""
+    run(tmp_path, {"book.h5": b"x"})
+    mine, other = (tmp_path / f"..{name}.{'a' * 16}.part.{'b' * 16}.part" for name in ("book.h5", "users.h5"))
+    for part in (mine, other):
+        part.write_bytes(b"half")
+    run(tmp_path, {"book.h5": b"x"})
+    assert (mine.exists(), other.exists()) == (False, True)
+
+
+def test_a_disk_that_keeps_other_bytes_is_found_before_the_file_has_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = Path.write_bytes
+    monkeypatch.setattr(Path, "write_bytes", lambda path, content: whole(path, content[:-1]))
+    with pytest.raises(OSError, match="does not read back"):
+        run(tmp_path, {"tables/a.json": b"abc"})
+    assert not (tmp_path / "tables" / "a.json").exists()

@@ -166,9 +166,10 @@ def test_permissions_of_the_other_cases_are_told(command: Command, tmp_path: Pat
     ran = command("permissions", config, "-o", out)
     assert ran.code == 1
     summary = json.loads((out / "summary.json").read_bytes())
-    (case,), (failed,) = summary["cases"], summary["failed"]
-    assert (case["target_speed_m_s"], failed["target_m_s"]) == (1.5, 2.5)
-    assert set(case["permissions_failed"]) == set(WITHOUT_SURFACES)
+    (case,), missing = summary["tables"]["permissions"], summary["tables"]["missing"]
+    failed = [row["target_m_s"] for row in missing if row["permission"] is None]
+    assert (case["target_m_s"], failed) == (1.5, [2.5])
+    assert {row["permission"] for row in missing if row["target_m_s"] == 1.5} == set(WITHOUT_SURFACES)
     assert f"{BAD}: no table: {REASON}" in ran.out
     assert f"gondola-4-22t to 1.5 m/s, {WITHOUT_SURFACES[0]}: no surfaces on this grid" in ran.out
     assert [line[:5] for line in ran.err.splitlines() if line.startswith("[")] == ["[1/2]", "[2/2]"]

@@ -28,6 +28,7 @@ FIGURES = (
     Column("switchings", "commands a cut"),
     Column("time_s", "time", "s"),
 )
+MISSING = (*CASE, Column("permission", "permission", words=True), Column("reason", "reason", words=True))
 AS_CONFIGURED = "as configured"
 
 
@@ -49,8 +50,7 @@ def permissions(title: str, told: AllPermissions) -> Iterator[Exhibit]:
         {"median_ratios": median_ratios(told.cases)},
         brief=True,
     )
-    for failed in told.failed:
-        yield Sentence(failed.sentence, brief=True)
+    yield from missing(told)
     yield Chart(
         "permissions",
         "What permissions of the hardware would give",
@@ -58,6 +58,19 @@ def permissions(title: str, told: AllPermissions) -> Iterator[Exhibit]:
         lambda: _picture().ratio_rows(title, told.cases),
     )
     yield Table("figures", "Every figure", FIGURES, [row for case in told.cases for row in figures(case)])
+
+
+def missing(told: AllPermissions) -> Iterator[Exhibit]:
+    """What cannot be told, and why; nothing where all is told."""
+    rows: list[Row] = [
+        {"case": case.label, "target_m_s": case.target_speed_m_s, "permission": each.permission.value,
+         "reason": each.reason}
+        for case in told.cases
+        for each in case.failed
+    ]  # fmt: skip
+    rows += [{"case": each.label, "target_m_s": each.target_m_s, "reason": each.reason} for each in told.failed]
+    if rows:
+        yield Table("missing", "What cannot be told; without a permission: the case has no table", MISSING, rows, True)
 
 
 def ratios(case: CasePermissions) -> Row:

@@ -12,7 +12,7 @@ from plant_models import Plant
 from synth.book.case_result import PolicyMap
 from synth.book.sensors.anywhere import policy_anywhere
 from synth.book.sensors.candidate_places import LayoutCase
-from synth.book.sensors.layout import rule_layout
+from synth.book.sensors.layout import rule_layout, with_layout
 from synth.book.sensors.layout_plan import JudgedLayout, LayoutProblem, PlannedLayout, fewest_for, plan_layouts
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution, finer_for_check
@@ -54,6 +54,11 @@ class LayoutResults:
     def radar_mean_rms_m_s(self) -> float:
         """Root of the mean square over all cases and aims."""
         return root_mean_square(self.radar_rms_m_s)
+
+    def places_of(self, layout: JudgedLayout) -> tuple[float, ...]:
+        """The places of all sensors of a layout, with the one behind the exit of the longest cut."""
+        exit_m = max(case.plant.exit_m for case in self.problem.cases)
+        return with_layout(self.problem.sensors, layout.deciding_m, exit_m).path_m
 
 
 def root_mean_square(rms_m_s: Sequence[Sequence[float]]) -> float:

@@ -7,7 +7,6 @@ from matplotlib.lines import Line2D
 
 from synth.book.sensors.layout_results import LayoutResults
 from synth.book.sensors.plan_map import plan_map
-from synth.book.sensors.plan_shown import all_places
 from synth.frame.picture.house_style import (
     BLUE,
     ENTRANCE_STYLE,
@@ -75,7 +74,7 @@ def places_by_number(results: LayoutResults) -> Figure:
         axes.axvspan(start, end, color=GREY, alpha=0.18, linewidth=0)
     axes.axvline(0.0, color=INK, linewidth=0.8, linestyle=ENTRANCE_STYLE)
     for row, (_, layout, colour) in enumerate(rows):
-        *deciding, last = all_places(results, layout)
+        *deciding, last = results.places_of(layout)
         axes.plot(deciding, [row] * len(deciding), color=colour, marker="|", markersize=11, linestyle="none", mew=2)
         axes.plot([last], [row], color=GREY, marker="|", markersize=11, linestyle="none", mew=2)
     axes.set_yticks(range(len(rows)), [name for name, _, _ in rows])

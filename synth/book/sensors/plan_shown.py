@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
 from plant_models import every_axle
-from synth.book.sensors.layout import with_layout
 from synth.book.sensors.layout_plan import JudgedLayout
 from synth.book.sensors.layout_results import LayoutResults
 from synth.frame.exhibits import Chart, Column, Exhibit, File, Row, Sentence, Table
@@ -63,7 +62,7 @@ def layouts(found: LayoutResults) -> Iterator[tuple[str, JudgedLayout]]:
 def layout_rows(found: LayoutResults) -> Iterator[Row]:
     """The layouts, and the radar."""
     for name, layout in layouts(found):
-        places = all_places(found, layout)
+        places = found.places_of(layout)
         yield {"layout": name, "sensors": len(places), "rms_m_s": layout.rms_m_s, "path_m": places}
     yield {"layout": "radar", "rms_m_s": found.radar_mean_rms_m_s}
 
@@ -83,15 +82,9 @@ def rms_rows(found: LayoutResults, head: Row, rms_m_s: Sequence[Sequence[float]]
             yield {**head, "case": label, "target_m_s": aim.target_speed_m_s, "rms_m_s": value}
 
 
-def all_places(found: LayoutResults, layout: JudgedLayout) -> tuple[float, ...]:
-    """The places of all sensors, with the one behind the exit of the longest cut."""
-    exit_m = max(case.plant.exit_m for case in found.problem.cases)
-    return with_layout(found.problem.sensors, layout.deciding_m, exit_m).path_m
-
-
 def section_of(found: LayoutResults, layout: JudgedLayout) -> str:
     """A layout as lines for the section [sensors] of a configuration."""
-    places = ", ".join(f"{place:g}" for place in all_places(found, layout))
+    places = ", ".join(f"{place:g}" for place in found.places_of(layout))
     head = f"# made by retarder-synth sensors plan: predicted rms {layout.rms_m_s:.4f} m/s"
     return f"{head}\n[sensors]\npath_m = [{places}]\n"
 
