@@ -8,9 +8,11 @@ from typing import Annotated
 
 import typer
 
+from synth.cli.listed import HUMP
 from synth.frame.arguments import Json, directory, whole_number
+from synth.frame.command_line import add_listed, listed_group
 
-app = typer.Typer(help="Check, list and draw a hump; hump whole trains over it.")
+app = typer.Typer(cls=listed_group(HUMP), help="Check, list and draw a hump; hump whole trains over it.")
 
 Trial = Annotated[
     Path | None,
@@ -145,3 +147,6 @@ def report(
     from synth.cli.hump_trial import report_command
 
     return report_command(path, as_json)
+
+
+add_listed(app, HUMP)

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from inspect import Parameter, Signature
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -25,15 +26,25 @@ if TYPE_CHECKING:
 class Listed:
     """A command as the program lists it.
 
-    `words`: as it is typed, "sensors plan"; `load` imports the command, `options` its options alone; `init`: what
-    prints a configuration; `help`: what it does, a paragraph or two.
+    `words`: as it is typed, "sensors plan"; `place` of the `Command` and `options_place` of its options alone, each
+    "module:NAME"; `init`: what prints a configuration; `help`: what it does, a paragraph or two.
     """
 
     words: str
-    load: Callable[[], Command[Any, Any, Any, Any]]
-    options: Callable[[], type[Options]]
+    place: str
+    options_place: str
     init: str
     help: str
+
+    def load(self) -> Command[Any, Any, Any, Any]:
+        """The command, imported."""
+        command: Command[Any, Any, Any, Any] = resolve_name(self.place)
+        return command
+
+    def options(self) -> type[Options]:
+        """The model of its options, imported."""
+        options: type[Options] = resolve_name(self.options_place)
+        return options
 
     @property
     def name(self) -> str:

@@ -22,9 +22,14 @@ from synth.frame.printed_numbers import ABSENT
 from synth.frame.sheet import to_csv
 from synth.frame.summary import plain, rows_of
 from tests.frame.results import results_in
-from tests.frame.small_command import COMMAND, CoinOptions
 
-LISTED = Listed("throw coins", lambda: COMMAND, lambda: CoinOptions, "init --coin", "Throw coins.\n\nFor nothing.")
+LISTED = Listed(
+    "throw coins",
+    "tests.frame.small_command:COMMAND",
+    "tests.frame.small_command:CoinOptions",
+    "init --coin",
+    "Throw coins.\n\nFor nothing.",
+)
 
 
 @pytest.fixture

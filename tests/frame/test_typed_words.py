@@ -18,7 +18,6 @@ from synth.frame.settings.options import (
     word_option,
     words_option,
 )
-from tests.frame.small_command import COMMAND
 
 
 class TapeOptions(Options):
@@ -31,7 +30,9 @@ class TapeOptions(Options):
     speed: float = number_option("--speed", "CM_S", 4.75, 1.0, 100.0, "Of the tape.")
 
 
-TAPES = Listed("play tapes", lambda: COMMAND, lambda: TapeOptions, "init", "Play tapes.")
+TAPES = Listed(
+    "play tapes", "tests.frame.small_command:COMMAND", "tests.frame.test_typed_words:TapeOptions", "init", "Play tapes."
+)
 
 
 def test_words_become_the_values_that_are_declared() -> None:
