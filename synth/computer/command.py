@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from synth.computer.settings import ComputerSettings
 from synth.computer.uncertainty import ComputerOptions
-from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.settings.changed import changed
 from synth.frame.settings.settings_file import parse_settings
@@ -18,7 +18,6 @@ from synth.frame.settings.settings_file import parse_settings
 if TYPE_CHECKING:
     from synth.computer.computer_results import ComputerResults
     from synth.computer.resolved_computer import ResolvedComputer
-    from synth.frame.terminal.progress import Progress
 
 PARTS = 3
 """Sizing, what it pays at the configured values, and over all uncertain inputs."""
@@ -56,11 +55,11 @@ def steps(config: ResolvedComputer) -> Steps:
     return Steps(PARTS, "computing", "parts")
 
 
-def compute(config: ResolvedComputer, progress: Progress) -> ComputerResults:
+def compute(config: ResolvedComputer, work: Work) -> ComputerResults:
     """Everything."""
     from synth.computer.computer_results import computer_results
 
-    return computer_results(config, progress.done)
+    return computer_results(config, work.progress.done)
 
 
 def limits(found: ComputerResults) -> Iterator[Limit]:

@@ -18,6 +18,7 @@ from synth.frame.exhibits import Chapter
 from synth.frame.settings.options import Options
 
 if TYPE_CHECKING:
+    from synth.frame.results_directory import ResultsDirectory
     from synth.frame.terminal.progress import Progress
 
 
@@ -92,6 +93,17 @@ class Steps:
     noun: str
 
 
+@dataclass(frozen=True)
+class Work:
+    """What a command is given while it computes.
+
+    `progress` is told each finished step; in `directory` it stores what its next run may go on from.
+    """
+
+    progress: Progress
+    directory: ResultsDirectory
+
+
 def no_limits(result: object) -> Iterator[Limit]:
     """The limits of a command that judges nothing."""
     return iter(())
@@ -112,7 +124,7 @@ class Command(Generic[S, O, P, R]):
     resolve: Callable[[Asked[S, O]], P]
     head: Callable[[P], Head]
     steps: Callable[[P], Steps]
-    compute: Callable[[P, Progress], R]
+    compute: Callable[[P, Work], R]
     show: Callable[[R], Iterator[Chapter]]
     limits: Callable[[R], Iterable[Limit]] = no_limits
     limits_of_use: Sequence[str] = ()

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, O, P, R, S, Verdict
+from synth.frame.command import Asked, Command, O, P, R, S, Verdict, Work
 from synth.frame.creation_time import creation_time, require_date
 from synth.frame.exhibits import Chart, File, Table, exhibits_of
 from synth.frame.results_directory import SUMMARY, ResultsDirectory, results_directory
@@ -37,7 +37,7 @@ def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_j
         for warning in head.warnings:
             say(f"warning: {warning}")
         with interruptible(directory, "summary"), Progress(steps.count, steps.word, steps.noun) as progress:
-            result = command.compute(problem, progress)
+            result = command.compute(problem, Work(progress, directory))
             verdict = Verdict(tuple(command.limits(result)))
             chapters = tuple(command.show(result))
             told = Told(command.name, head, created, verdict, chapters, command.limits_of_use)

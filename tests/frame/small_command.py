@@ -11,7 +11,7 @@ from pydantic import Field
 from scipy.stats import binomtest
 
 from plant_models.errors import PlantError
-from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter, Chart, Column, File, Sentence, Table
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals
@@ -20,7 +20,6 @@ from synth.frame.settings.options import Options, configured
 from synth.frame.settings.output import OutputSettings
 from synth.frame.settings.section import Section, choice, optional, setting
 from synth.frame.settings.settings_file import parse_settings
-from synth.frame.terminal.progress import Progress
 from tuning_tables.canonical import canonical_json
 
 
@@ -77,7 +76,7 @@ def resolve(asked: Asked[CoinFile, CoinOptions]) -> Game:
     return Game(settings, throws, head)
 
 
-def compute(game: Game, progress: Progress) -> dict[str, Interval]:
+def compute(game: Game, work: Work) -> dict[str, Interval]:
     """Shares by player."""
     found = {}
     for number, player in enumerate(game.settings.players):
@@ -85,7 +84,7 @@ def compute(game: Game, progress: Progress) -> dict[str, Interval]:
         wins = sum(dice.random() < game.settings.coin.heads for _ in range(game.throws))
         told = binomtest(wins, game.throws).proportion_ci()
         found[player] = Interval(wins / game.throws, told.low, told.high, game.throws)
-        progress.done(player)
+        work.progress.done(player)
     return found
 
 

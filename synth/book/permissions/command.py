@@ -10,12 +10,11 @@ from synth.book.configured import head_of, require_room, sensors_left_aside
 from synth.book.permissions.options import PermissionsOptions
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 
 if TYPE_CHECKING:
     from synth.book.permissions.permission import AllPermissions
-    from synth.frame.terminal.progress import Progress
 
 LIMITS_OF_USE = (
     "Figures are those of a model with the parameters of this page. Assumed ones are guesses.",
@@ -60,7 +59,7 @@ def steps(asked: AskedPermissions) -> Steps:
     return Steps(len(asked.config.problems()), "comparing", "cases")
 
 
-def compute(asked: AskedPermissions, progress: Progress) -> FoundPermissions:
+def compute(asked: AskedPermissions, work: Work) -> FoundPermissions:
     """All permissions of all cases; `InputError` where no case has a table."""
     from synth.book.permissions.case_permissions import permissions_of
     from synth.book.tables_refused import require_a_table, tables_refused
@@ -68,7 +67,7 @@ def compute(asked: AskedPermissions, progress: Progress) -> FoundPermissions:
     from synth.kernels.cache import guarded
 
     with tables_refused(asked.place, asked.config):
-        told = guarded(permissions_of, asked.config, creation_time(), asked.workers, progress)
+        told = guarded(permissions_of, asked.config, creation_time(), asked.workers, work.progress)
         require_a_table(told.cases, told.failed)
     return FoundPermissions(asked.config.title, told)
 

@@ -11,7 +11,7 @@ from synth.book.configured import head_of
 from synth.book.sensitivity.options import SensitivityOptions
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.frame.command import Asked, Command, Head, Steps
+from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.processors import available
 
@@ -64,11 +64,11 @@ def steps(asked: AskedSensitivity) -> Steps:
     return Steps(len(asked.given) if asked.given else 2 * len(asked.config.cuts), "simulating", "steps")
 
 
-def compute(asked: AskedSensitivity, progress: Progress) -> Sensitivity:
+def compute(asked: AskedSensitivity, work: Work) -> Sensitivity:
     """Tune the tables unless they are given, and let the plant vary under them."""
     from synth.kernels.cache import guarded
 
-    return guarded(shared_out, asked, progress)
+    return guarded(shared_out, asked, work.progress)
 
 
 def shared_out(asked: AskedSensitivity, progress: Progress) -> Sensitivity:

@@ -10,13 +10,12 @@ from synth.book.configured import head_of
 from synth.book.sensors.plan_options import PlanOptions
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 
 if TYPE_CHECKING:
     from synth.book.sensors.layout_plan import LayoutProblem
     from synth.book.sensors.layout_results import LayoutResults
-    from synth.frame.terminal.progress import Progress
 
 LIMITS_OF_USE = (
     "The rms is predicted of the model with the parameters of this page. Assumed ones are guesses.",
@@ -52,12 +51,14 @@ def steps(asked: AskedPlan) -> Steps:
     return Steps(3, "planning", "steps")
 
 
-def compute(asked: AskedPlan, progress: Progress) -> LayoutResults:
+def compute(asked: AskedPlan, work: Work) -> LayoutResults:
     """The plans, the rule and the radar."""
     from synth.book.sensors.layout_results import layout_results
 
     options = asked.options
-    return layout_results(asked.problem, asked.labels, options.sensors, options.rms_m_s, options.workers, progress.done)
+    return layout_results(
+        asked.problem, asked.labels, options.sensors, options.rms_m_s, options.workers, work.progress.done
+    )
 
 
 def limits(found: LayoutResults) -> Iterator[Limit]:

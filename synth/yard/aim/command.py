@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from synth.configuration.aim.aim_file import AimFile, parse_aim_file
-from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.yard.aim.options import AimOptions
 
 if TYPE_CHECKING:
-    from synth.frame.terminal.progress import Progress
     from synth.yard.aim.aim_acceptance import AimBookVerdict
     from synth.yard.aim.aim_book import AimBook
     from synth.yard.aim.resolved_aim import ResolvedAim
@@ -66,15 +65,15 @@ def steps(config: ResolvedAim) -> Steps:
     return Steps(len(config.members), "aiming", "categories")
 
 
-def compute(config: ResolvedAim, progress: Progress) -> FoundAim:
+def compute(config: ResolvedAim, work: Work) -> FoundAim:
     """All tables, and the verdict on them."""
     from synth.frame.creation_time import creation_time
     from synth.kernels.cache import guarded
     from synth.yard.aim.aim_acceptance import judge_aims
     from synth.yard.aim.aim_book import aim_book
 
-    book = guarded(aim_book, config, creation_time(), progress.done)
-    progress.note(f"{len(book.tables)} tables computed")
+    book = guarded(aim_book, config, creation_time(), work.progress.done)
+    work.progress.note(f"{len(book.tables)} tables computed")
     return FoundAim(book, judge_aims(book.tables, config.acceptance.p_excess))
 
 

@@ -6,13 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.yard.measured_passes.config_source import ConfigSource, source_of_text
 from synth.yard.measured_passes.log_options import LogOptions
 
 if TYPE_CHECKING:
-    from synth.frame.terminal.progress import Progress
     from synth.yard.measured_passes.asked_passes import AskedPasses
     from synth.yard.measured_passes.identify import Identified
 
@@ -61,7 +60,7 @@ def steps(asked: AskedNumbers) -> Steps:
     return Steps(1, "identifying", "logs")
 
 
-def compute(asked: AskedNumbers, progress: Progress) -> FoundNumbers:
+def compute(asked: AskedNumbers, work: Work) -> FoundNumbers:
     """The numbers, and whether the model holds."""
     from synth.frame.processors import available
     from synth.kernels.cache import guarded
@@ -69,7 +68,7 @@ def compute(asked: AskedNumbers, progress: Progress) -> FoundNumbers:
     from synth.yard.measured_passes.identify import identify
 
     found = guarded(identify, asked.asked.passes, asked.asked.config, available())
-    progress.done(f"{len(found.findings)} numbers told by {found.origin}")
+    work.progress.done(f"{len(found.findings)} numbers told by {found.origin}")
     return FoundNumbers(found, identified(asked.source, found.estimate, found.origin))
 
 

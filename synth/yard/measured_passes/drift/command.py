@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.yard.measured_passes.drift.options import WatchOptions
 
@@ -58,11 +58,11 @@ def steps(asked: AskedWatch) -> Steps:
     return Steps(1 if asked.reference is None else 2, "watching", "steps")
 
 
-def compute(asked: AskedWatch, progress: Progress) -> Watch:
+def compute(asked: AskedWatch, work: Work) -> Watch:
     """The charts, and what is behind the first alarm."""
     from synth.kernels.cache import guarded
 
-    return guarded(watched, asked, progress)
+    return guarded(watched, asked, work.progress)
 
 
 def watched(asked: AskedWatch, progress: Progress) -> Watch:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from synth.book.tables_refused import require_a_table, tables_refused
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.yard.measured_passes.replay.options import ReplayOptions
 
@@ -73,13 +73,13 @@ def steps(asked: AskedReplay) -> Steps:
     return Steps(cases + 1, "replaying", "steps")
 
 
-def compute(asked: AskedReplay, progress: Progress) -> FoundReplay:
+def compute(asked: AskedReplay, work: Work) -> FoundReplay:
     """The passes under both books; the own one is tuned unless it is given."""
     from synth.kernels.cache import guarded
 
-    own, failed = (asked.own, ()) if asked.own is not None else guarded(own_tables, asked.asked, progress)
+    own, failed = (asked.own, ()) if asked.own is not None else guarded(own_tables, asked.asked, work.progress)
     found = guarded(replayed, asked, own)
-    progress.done(f"{len(found.passes)} passes run again")
+    work.progress.done(f"{len(found.passes)} passes run again")
     return FoundReplay(found, failed)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.yard.measured_passes.config_source import ConfigSource, source_of_text
 from synth.yard.measured_passes.retune.options import RetuneOptions
@@ -14,7 +14,6 @@ from synth.yard.measured_passes.retune.options import RetuneOptions
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from synth.frame.terminal.progress import Progress
     from synth.yard.measured_passes.asked_passes import AskedPasses
     from synth.yard.measured_passes.retune.retune import Retuned
     from synth.yard.measured_passes.retune.tuned_books import Case
@@ -64,7 +63,7 @@ def steps(asked: AskedRetune) -> Steps:
     return Steps(len(asked.asked.config.problems()), "tuning", "cases")
 
 
-def compute(asked: AskedRetune, progress: Progress) -> Retuned:
+def compute(asked: AskedRetune, work: Work) -> Retuned:
     """The new tables, and what they gain."""
     from synth.book.tables_refused import tables_refused
     from synth.frame.creation_time import creation_time
@@ -74,7 +73,7 @@ def compute(asked: AskedRetune, progress: Progress) -> Retuned:
 
     order = RetuneOrder(asked.old, creation_time(), threads=available())
     with tables_refused(asked.asked.place, asked.asked.config):
-        return guarded(retune, asked.asked.passes, asked.source, order, progress)
+        return guarded(retune, asked.asked.passes, asked.source, order, work.progress)
 
 
 def limits(found: Retuned) -> Iterator[Limit]:
