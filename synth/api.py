@@ -210,7 +210,7 @@ def trace(
 @_as_a_command
 def plot_table(table: ControllerTable, problem: Problem | None = None, seed: int = 1) -> Figure:
     """Lines of `table`, one panel a stage; with a problem also passes of three cuts of different friction."""
-    from synth.present.plots.table_picture import drawn_passes, table_lines
+    from synth.book.pictures.table_picture import drawn_passes, table_lines
 
     return table_lines(table, None if problem is None else drawn_passes(table, problem.plant, seed))
 
@@ -218,7 +218,7 @@ def plot_table(table: ControllerTable, problem: Problem | None = None, seed: int
 @_as_a_command
 def plot_passes(table: ControllerTable, problem: Problem, seed: int = 1) -> Figure:
     """Three passes over path and time, and the histogram of the exit speeds of 5000."""
-    from synth.present.plots.table_picture import drawn_passes, table_passes
+    from synth.book.pictures.table_picture import drawn_passes, table_passes
 
     return table_passes(table, drawn_passes(table, problem.plant, seed))
 

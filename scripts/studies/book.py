@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from scripts.studies.cases import of_masses
 from scripts.studies.markdown_table import MarkdownTable, around, table
 from scripts.studies.options import option
 from scripts.studies.study import Findings, Method, Tell
-from synth.book.acceptance import judge
-from synth.book.summary import summary_of
+from synth.book.acceptance import CaseVerdict, judged
+from synth.book.case_result import CaseResult
+from synth.book.off_nominal.outcome import Outcome
 from synth.book.tune import tune
 from synth.book.tuned_table import read_back
 from synth.book.watcher import Teller
@@ -139,49 +139,38 @@ def run(options: Options, tell: Tell) -> Results:
     """Tune the book."""
     config = of_masses(load_config(options.config), options.masses_t)
     book = tune(config, read_back, Teller(tell))
-    summary = summary_of(book, judge(book.whole, config.acceptance), {})
-    rows = tuple(map(row_of, summary["cases"]))
+    rows = tuple(map(row_of, book.whole, judged(book.whole, config.acceptance)))
     return Results(config.sha256, config.validation.seed, config.validation.passes, rows)
 
 
-def row_of(case: Mapping[str, Any]) -> Row:
-    """One case of a summary."""
-    found, power = case["simulated"], case["brake_power"]
-    best = case["best_baseline"]
-    baseline = case["comparison"][best]
+def row_of(case: CaseResult, verdict: CaseVerdict) -> Row:
+    """One case of a book."""
+    table, found, power = case.comparison.table, case.comparison.table.statistics, case.brake_power
+    best, compared = case.comparison.best_baseline, case.comparison
+    assert best is not None
+    assert power.rms_within_m_s is not None
+    assert power.rms_within_ci95_m_s is not None
     return Row(
-        label=case["label"],
-        target_m_s=case["target_speed_m_s"],
-        feasible=bool(case["feasible"]),
-        rms=measure(found, "rms_m_s"),
-        p95=measure(found, "p95_m_s"),
-        p99=measure(found, "p99_m_s"),
-        out_of_brake=measure(power, "out_of_brake"),
-        rms_within=measure(power, "rms_within_m_s"),
-        predicted_rms_m_s=found["predicted_rms_m_s"],
-        honesty=measure(case, "honesty"),
-        regret=None if case["regret"] is None else measure(case, "regret"),
-        best_baseline=best,
-        baseline_rms=measure(baseline, "rms_m_s"),
-        off_nominal=tuple(map(changed, filter(is_possible, case["off_nominal"].values()))),
+        label=case.label,
+        target_m_s=case.target_speed_m_s,
+        feasible=verdict.feasible,
+        rms=Measure(found.rms_m_s, found.rms_ci95_m_s),
+        p95=Measure(found.p95_m_s, found.p95_ci95_m_s),
+        p99=Measure(found.p99_m_s, found.p99_ci95_m_s),
+        out_of_brake=Measure(power.out_of_brake, power.out_of_brake_ci95),
+        rms_within=Measure(power.rms_within_m_s, power.rms_within_ci95_m_s),
+        predicted_rms_m_s=table.predicted_rms_m_s,
+        honesty=Measure(table.honesty, table.honesty_ci95),
+        regret=Measure(compared.regret, compared.regret_ci95) if compared.has_reference else None,
+        best_baseline=best.name,
+        baseline_rms=Measure(best.statistics.rms_m_s, best.statistics.rms_ci95_m_s),
+        off_nominal=tuple(changed(each.name, each.outcome) for each in case.off_nominal if each.outcome),
     )
 
 
-def is_possible(found: Mapping[str, Any]) -> bool:
-    """Whether there are figures of a condition of a summary."""
-    return "impossible" not in found
-
-
-def changed(found: Mapping[str, Any]) -> Changed:
-    """One condition of a summary."""
-    return Changed(found["name"], measure(found, "rms_m_s"), found["overspeed"], found["stalled"])
-
-
-def measure(found: Mapping[str, Any], name: str) -> Measure:
-    """`name` and its interval; 'rms_m_s' has 'rms_ci95_m_s' beside it, 'honesty' 'honesty_ci95'."""
-    interval = name.replace("_m_s", "_ci95_m_s") if name.endswith("_m_s") else f"{name}_ci95"
-    low, high = found[interval]
-    return Measure(found[name], (low, high))
+def changed(name: str, found: Outcome) -> Changed:
+    """One condition."""
+    return Changed(name, Measure(found.rms_m_s, found.rms_ci95_m_s), found.overspeed, found.stalled)
 
 
 METHOD = Method(Options, Options(masses_t=(52.0,)), Results, run)

@@ -21,8 +21,7 @@ from scripts.studies.markdown_table import Interval, MarkdownTable, around, tabl
 from scripts.studies.options import option
 from scripts.studies.side_by_side import THREADS
 from scripts.studies.study import Findings, Method, Tell
-from synth.book.acceptance import judge
-from synth.book.summary import plain, summary_of
+from synth.book.configured import head_of
 from synth.book.tune import tune
 from synth.book.tuned_table import read_back
 from synth.book.watcher import Teller
@@ -33,6 +32,7 @@ from synth.checker.statistics import figures_of
 from synth.checker.summary import read_summary
 from synth.checker.table_reading import Table, read_table
 from synth.configuration.config_file import load_config
+from synth.frame.summary import plain, summary_head
 from tuning_tables import write_json
 
 FACTORS = (1.0, 0.5, 0.8, 1.25)
@@ -98,8 +98,8 @@ def run(options: Options, tell: Tell) -> Verification:
         book = tune(config, read_back, Teller(tell))
         for case in book.whole:
             write_json(case.table, directory / "tables" / f"{case.table.id}.json")
-        summary = plain(summary_of(book, judge(book.whole, config.acceptance), {}))
-        (directory / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+        summary = {**summary_head("tune", head_of(config), book.created), "tables": {"cases": []}, "files": {}}
+        (directory / "summary.json").write_text(json.dumps(plain(summary)), encoding="utf-8")
         names = sorted(path.name for path in (directory / "tables").glob("*.json"))
         with get_context("spawn").Pool(THREADS) as pool:
             rows = pool.map(partial(row_of, directory, options), names, 1)

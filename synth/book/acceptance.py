@@ -1,16 +1,16 @@
-"""Whether a book of tables keeps the limits that its configuration sets: the verdict, case by case, with reasons."""
+"""Whether a book of tables keeps the limits that its configuration sets: case by case, with reasons."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
 from synth.book.failed_case import FailedCase, told_together
 from synth.book.judgement import Judgement, interval_text, judgement
-from synth.book.off_nominal.worst import worst_of
 from synth.configuration.settings import AcceptanceSettings
+from synth.frame.command import Limit
 from synth.frame.printed_numbers import counted
 from synth.simulation.exit_statistics import ExitStatistics
 from synth.simulation.replicates import share_of
@@ -48,72 +48,49 @@ class CaseVerdict:
         return self.judgement.word if self.feasible else "infeasible"
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """`accepted`: no case has `failed`, there are feasible cases, and all of them keep every limit; `sentence` says it
-    in words.
-
-    Infeasible cases do not count, but the sentence names them.
-    """
-
-    accepted: bool
-    sentence: str
-    cases: tuple[CaseVerdict, ...]
-    failed: tuple[FailedCase, ...] = ()
+def judged(cases: Sequence[CaseResult], limits: AcceptanceSettings) -> tuple[CaseVerdict, ...]:
+    """What the simulated passes of each case say of `limits`."""
+    return tuple(judge_case(case, limits) for case in cases)
 
 
-def judge(cases: Sequence[CaseResult], limits: AcceptanceSettings, failed: tuple[FailedCase, ...] = ()) -> Verdict:
-    """The verdict on the simulated passes of `cases`, where other cases have `failed`.
-
-    Its sentence ends with the worst of the feasible ones off nominal, which the verdict does not depend on.
-    """
-    judged = tuple(judge_case(case, limits) for case in cases)
-    verdict = verdict_on(judged, [case.comparison.table.statistics for case in cases], limits, failed)
-    worst = worst_of([case for case, each in zip(cases, judged, strict=True) if each.feasible])
-    return verdict if worst is None else replace(verdict, sentence=f"{verdict.sentence}; {worst.told}")
-
-
-def verdict_on(
-    judged: tuple[CaseVerdict, ...],
+def limits_of(
+    verdicts: Sequence[CaseVerdict],
     found: Sequence[ExitStatistics],
     limits: AcceptanceSettings,
-    failed: tuple[FailedCase, ...],
-) -> Verdict:
-    """What the verdicts on all cases, of which `found` was simulated, come to where others have `failed`."""
-    feasible = [(each, verdict) for each, verdict in zip(found, judged, strict=True) if verdict.feasible]
-    bad = [verdict for _, verdict in feasible if verdict.judgement.missed]
-    open_ones = [verdict for _, verdict in feasible if verdict.judgement.word == "not decidable"]
-    if not feasible:
-        sentence = "no case is feasible, so there is nothing to accept"
-    elif bad:
-        sentence = f"a limit is missed in {len(bad)} of {counted(len(feasible), 'feasible case')} ({told(bad)})"
-    elif open_ones:
-        sentence = (
-            f"no limit is missed, but the passes are too few to decide {len(open_ones)} of "
-            f"{counted(len(feasible), 'feasible case')} ({told(open_ones)}); raise validation.passes"
-        )
-    else:
-        worst, of_worst = max(feasible, key=lambda pair: pair[0].rms_m_s)
-        sentence = (
-            f"the limits are kept in {counted(len(feasible), 'feasible case')}; the worst rms is {worst.rms_m_s:.4f} "
-            f"{interval_text(worst.rms_ci95_m_s)} m/s ({of_worst.name}) where {limits.rms_m_s:g} m/s are allowed"
-        )
-    outside = [f"{verdict.name} ({verdict.obstacle})" for verdict in judged if not verdict.feasible]
-    if outside:
-        sentence += f"; infeasible and outside this verdict: {', '.join(outside)}"
+    failed: Sequence[FailedCase],
+) -> Iterator[Limit]:
+    """A limit for each case that does not keep all of `limits`, or one that tells the worst case.
+
+    `found`: what was simulated of the cases of these `verdicts`; `failed`: cases without a table. Infeasible cases do
+    not count.
+    """
     if failed:
-        every = counted(len(judged) + len(failed), "case")
-        sentence = (
-            f"there is no table for {len(failed)} of {every} ({told_together(failed)}); of the others: {sentence}"
-        )
-    return Verdict(bool(feasible) and not bad and not open_ones and not failed, sentence, judged, failed)
+        every = counted(len(verdicts) + len(failed), "case")
+        yield Limit(f"there is no table for {len(failed)} of {every} ({told_together(failed)})", False)
+    feasible = [(each, verdict) for each, verdict in zip(found, verdicts, strict=True) if verdict.feasible]
+    if not feasible:
+        yield Limit("no case is feasible, so there is nothing to accept", False)
+        return
+    open_ones = [verdict for _, verdict in feasible if verdict.word != "accepted"]
+    for verdict in open_ones:
+        yield Limit(f"{verdict.name}: {', '.join(verdict.phrases)}", False if verdict.judgement.missed else None)
+    if open_ones:
+        return
+    worst, of_worst = max(feasible, key=lambda pair: pair[0].rms_m_s)
+    yield Limit(
+        f"the limits are kept in {counted(len(feasible), 'feasible case')}; the worst rms is {worst.rms_m_s:.4f} "
+        f"{interval_text(worst.rms_ci95_m_s)} m/s ({of_worst.name}) where {limits.rms_m_s:g} m/s are allowed",
+        True,
+    )
 
 
-def told(verdicts: Sequence[CaseVerdict]) -> str:
-    """Cases with what is missed or undecided in them, and what to change in any of them."""
-    cases = "; ".join(f"{each.name}: {', '.join(each.phrases)}" for each in verdicts)
-    ways = tuple(dict.fromkeys(way for each in verdicts for way in each.advice))
-    return f"{cases}; try {', '.join(ways)}" if ways else cases
+def advice_of(verdicts: Sequence[CaseVerdict]) -> str:
+    """What to change where limits are missed or undecided, in a sentence; nothing where there is no need."""
+    feasible = [each for each in verdicts if each.feasible]
+    ways = list(dict.fromkeys(way for each in feasible for way in each.advice))
+    if any(each.word == "not decidable" for each in feasible):
+        ways.append("a larger validation.passes where a limit is not decidable")
+    return f"Try {', '.join(ways)}." if ways else ""
 
 
 def judge_case(case: CaseResult, limits: AcceptanceSettings) -> CaseVerdict:

@@ -15,7 +15,6 @@ from synth.book.feasibility import Feasibility
 from synth.book.grid_check import GridCheck
 from synth.book.off_nominal.outcome import OffNominal
 from synth.book.pareto.pareto_front import ParetoFront
-from synth.book.permissions.permission import CasePermissions
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
 from synth.problem.requirement_found import Finding
@@ -77,8 +76,7 @@ class CaseResult:
     the lines of least cost were found; `grid`: whether the grid of the design for the measured speed and commands at
     rest is to be believed; `finding`: what the criterion's requirement took; `estimate`: where an estimator
     is asked for, how its lines were designed. `exit_speeds_m_s` simulated, stalls as 0, and `exit_weight`: how many
-    cuts each pass stands for; `brake_power`: what of their error is for want of it; `permissions`: where they are asked
-    for, what those of the hardware would give; `front`: where it is asked for,
+    cuts each pass stands for; `brake_power`: what of their error is for want of it; `front`: where it is asked for,
     what less time in the position costs; `off_nominal`: what the table does on other plants than its own.
     """
 
@@ -96,7 +94,6 @@ class CaseResult:
     comparison: Comparison
     feasibility: Feasibility
     study: CaseStudy
-    permissions: CasePermissions | None
     front: ParetoFront | None
     off_nominal: tuple[OffNominal, ...]
 

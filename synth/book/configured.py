@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
-from plant_models import PlantError
+from plant_models import Plant, PlantError
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.command import Head
 from synth.frame.input_error import InputError
+from synth.problem.resolution import Resolution
 
 
 def head_of(config: ResolvedConfig, warnings: tuple[str, ...] = (), reads: tuple[Path, ...] = ()) -> Head:
@@ -31,10 +33,15 @@ def sensors_left_aside(config: ResolvedConfig) -> tuple[str, ...]:
 
 def require_room(config: ResolvedConfig, place: str, workers: int) -> None:
     """`InputError` about the file `place` if the grid would not fit into memory."""
+    for label, plant in config.plants():
+        require_memory_for(label, plant, config.grids(plant), place, workers)
+
+
+def require_memory_for(label: str, plant: Plant, grids: Sequence[Resolution], place: str, workers: int) -> None:
+    """`InputError` about the file `place` if `grids` of the class `label` would not fit into memory."""
     from synth.solver.chain.grid import require_memory
 
-    for label, plant in config.plants():
-        try:
-            require_memory(label, plant, config.grids(plant), workers)
-        except PlantError as error:
-            raise InputError(f"{place}: {str(error).replace('grid: ', 'grid.', 1)}") from None
+    try:
+        require_memory(label, plant, grids, workers)
+    except PlantError as error:
+        raise InputError(f"{place}: {str(error).replace('grid: ', 'grid.', 1)}") from None

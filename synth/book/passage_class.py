@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from plant_models import Approach, Plant, PointSensors, every_axle, first_axle
 from synth.book.highest_stage import highest_stage
-from synth.book.validate_table import alike, numbers
+from synth.book.validation.revalidation import alike, numbers
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.input_error import InputError
 from tuning_tables.passages.passage_table import PassageTable

@@ -15,9 +15,6 @@ from synth.book.failed_case import FailedCase, require_none
 from synth.book.off_nominal.trial import trials
 from synth.book.pareto.case_front import pareto_front
 from synth.book.pareto.pareto_front import ParetoFront, told
-from synth.book.permissions.case_permissions import asking
-from synth.book.permissions.overview import HINT, Overview, overview_of
-from synth.book.permissions.refusal import tellable
 from synth.book.tune_case import CaseOrder, tune_case
 from synth.book.tuned_table import Store, solutions
 from synth.book.watcher import Watcher
@@ -55,11 +52,6 @@ class Book:
         return self.cases
 
     @property
-    def permissions(self) -> Overview | None:
-        """What permissions of the hardware would give, where that was asked for."""
-        return overview_of(case.permissions for case in self.cases)
-
-    @property
     def fronts(self) -> tuple[ParetoFront, ...]:
         """What less time in the position costs, by case, where that was asked for."""
         return tuple(case.front for case in self.cases if case.front is not None)
@@ -69,22 +61,14 @@ class Book:
         """The same in one line; nothing where nobody asked."""
         return told(self.fronts) if self.fronts else ""
 
-    @property
-    def permissions_line(self) -> str:
-        """The same in one line; how to ask for it, where it was not; nothing where it would be refused."""
-        found = self.permissions
-        if found is not None:
-            return found.line
-        return HINT if tellable(self.config) else ""
-
 
 @dataclass(frozen=True)
 class TuneRun:
     """What all classes of a tune share.
 
     `passes`: that every table is validated on; `tuning`: that baselines are tuned on. `watcher` is told a sentence
-    whenever a case has ended, `case_done` given its result if it has a table. With `permissions` each case also tells
-    what those of the hardware would give, with `pareto` what less time costs.
+    whenever a case has ended, `case_done` given its result if it has a table. With `pareto` each case also tells what
+    less time costs.
     """
 
     config: ResolvedConfig
@@ -94,7 +78,6 @@ class TuneRun:
     store: Store
     watcher: Watcher
     case_done: CaseDone
-    permissions: bool
     pareto: bool
 
 
@@ -108,15 +91,13 @@ def tune(
     watcher: Watcher,
     workers: int = 2,
     case_done: CaseDone = no_notice,
-    permissions: bool = False,
     pareto: bool = False,
 ) -> Book:
     """Tune every cut class and target of `config`; each table is handed to `store` as soon as it is made.
 
     Work runs on `workers` threads (the kernels release the interpreter); the result does not depend on how
-    many. `watcher` is told a sentence whenever a case has ended, `case_done` given its result. `permissions`: each case
-    also tells what those of the hardware would give; for configurations that `require_tellable` lets pass; `pareto`:
-    and what less time in the position costs. A case that no table can be made for is told of in the book, and the
+    many. `watcher` is told a sentence whenever a case has ended, `case_done` given its result. `pareto`: each case also
+    tells what less time in the position costs. A case that no table can be made for is told of in the book, and the
     others are made.
     """
     plants = config.plants()
@@ -130,7 +111,6 @@ def tune(
         store=store,
         watcher=watcher,
         case_done=case_done,
-        permissions=permissions,
         pareto=pareto,
     )
     heaviest_first = sorted(range(len(plants)), key=lambda i: -plants[i][1].top_stage * plants[i][1].cut.mass_t)
@@ -161,11 +141,10 @@ def case_orders(run: TuneRun, label: str, plant: Plant) -> list[CaseOrder]:
     aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
     entries, rehearsal = entry_sweep(setup.passes), setup.passes.of_others(run.tuning)
     off_nominal = trials(setup.passes)
-    asks = [asking(config, setup, aim) if run.permissions else None for aim in aims]
     fronts = [partial(pareto_front, config, setup, aim) if run.pareto else None for aim in aims]
     return [
-        CaseOrder(setup, solution, entries, config.acceptance.rms_m_s, rehearsal, off_nominal, run.store, ask, front)
-        for solution, ask, front in zip(solutions(setup.design, aims), asks, fronts, strict=True)
+        CaseOrder(setup, solution, entries, config.acceptance.rms_m_s, rehearsal, off_nominal, run.store, front)
+        for solution, front in zip(solutions(setup.design, aims), fronts, strict=True)
     ]
 
 
@@ -179,8 +158,7 @@ def case_task(run: TuneRun, order: CaseOrder) -> CaseResult | FailedCase:
     figures = result.comparison.table.statistics
     low, high = figures.rms_ci95_m_s
     rms = f"rms {figures.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {figures.passes} passes"
-    told = [f"{label} to {target:g} m/s: {rms}", result.permissions.told if result.permissions else ""]
-    run.watcher.done("; ".join(filter(None, told)))
+    run.watcher.done(f"{label} to {target:g} m/s: {rms}")
     for warning in result.warnings:
         run.watcher.note(f"warning: {label} to {target:g} m/s: {warning}")
     if result.finding is not None:

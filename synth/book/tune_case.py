@@ -16,7 +16,6 @@ from synth.book.comparison.served_entry import EntrySweep, feasibility_of
 from synth.book.estimation.estimated_table import controller_of
 from synth.book.off_nominal.trial import Trials
 from synth.book.pareto.case_front import Front
-from synth.book.permissions.case_permissions import Ask
 from synth.book.policy_map import policy_map
 from synth.book.tuned_table import Store, TunedTable, ValidatedTable, tuned_table, validated_table
 from synth.problem.problem import Problem
@@ -39,9 +38,8 @@ class CaseOrder:
     """What to do for one case, and with what.
 
     `solution` on the design chain; `entries`: what the position can do by entry speed; `limit_m_s`: the rms that makes
-    a case feasible; `tuning`: passes that baselines are tuned on; `trials`: those off nominal; `ask`: where it is
-    wanted, what tells what permissions of the hardware would give; `front`: where it is wanted, what makes the curve of
-    accuracy against time.
+    a case feasible; `tuning`: passes that baselines are tuned on; `trials`: those off nominal; `front`: where it is
+    wanted, what makes the curve of accuracy against time.
     """
 
     setup: ClassSetup
@@ -51,7 +49,6 @@ class CaseOrder:
     tuning: CommonPasses
     trials: Trials
     store: Store
-    ask: Ask | None
     front: Front | None
 
 
@@ -76,7 +73,6 @@ def tune_case(order: CaseOrder) -> CaseResult:
         comparison=comparison(order, tuned, validated, told),
         feasibility=feasibility_of(setup.passes, order.entries, solution.aim.target_speed_m_s, order.limit_m_s),
         study=case_study(order, validated),
-        permissions=None if order.ask is None else order.ask(tuned, validated.sample),
         front=None if order.front is None else order.front(),
         off_nominal=order.trials.of(validated.table, validated.sample),
     )

@@ -16,7 +16,6 @@ from synth.checker.passages.reading import PassageTable
 from synth.checker.plant import Plant, Reader, UnusableConfigError, config_sha256, plant_of
 from synth.checker.source_file import content_of
 from synth.checker.stated_off_nominal import off_nominal_faults
-from synth.checker.stated_permissions import permission_faults
 from synth.checker.table_reading import Table
 
 DEFAULT_HONESTY: Final = Honesty(0.9, 1.1)
@@ -24,13 +23,18 @@ DEFAULT_HONESTY: Final = Honesty(0.9, 1.1)
 CARRIERS: Final = ("book.h5", "tables/", "c/", "st/")
 """What files that hold tables are called; pictures and report may go without a word."""
 FIGURES: Final = ("rms_m_s", "bias_m_s", "p_overspeed", "switchings", "p_stall", "passes")
+"""What a table predicts of itself; in a summary each name begins with `predicted_`."""
+RADAR_TUNE: Final = "tune"
+MAKERS: Final = (RADAR_TUNE, "sensors tune", "sweep")
+"""Commands whose summaries tell of tables."""
 
 
 @dataclass(frozen=True)
 class Summary:
     """What the file holds; `config_sha256` is what it says of its configuration.
 
-    `tells_off_nominal`: its cases must say what their tables do off nominal, as those of a tune with radar do.
+    `off_nominal`: what its tables do off nominal, by label and target of the case; None where it need not say so, as
+    only a tune with radar must.
     """
 
     path: Path
@@ -38,7 +42,7 @@ class Summary:
     config_sha256: str
     cases: Mapping[str, Mapping[str, Any]]
     files: Mapping[str, str]
-    tells_off_nominal: bool
+    off_nominal: Mapping[tuple[Any, Any], list[Any]] | None
 
     def config_fault(self) -> str | None:
         """Why the configuration is not the one that the tables were made from, if it is not."""
@@ -97,25 +101,23 @@ class Summary:
         raise UnusableConfigError("the configuration beside it has no cut of its category, mass and axles")
 
     def case_faults(self, table: Table | PassageTable) -> Iterator[str]:
-        """Where the summary states other figures than the table, or of permissions what cannot be."""
+        """Where the summary states other figures than the table, or of its off-nominal plants what cannot be."""
         case = self.cases.get(table.id)
         if case is None:
             yield "summary.json does not tell of it"
             return
-        stated, predicted = case.get("predicted"), table.document["predicted"]
-        of = stated if isinstance(stated, dict) else {}
+        predicted = table.document["predicted"]
         for name in FIGURES:
-            said, other = predicted.get(name), of.get(name)
+            said, other = predicted.get(name), case.get(f"predicted_{name}")
             if said != other:
                 yield f"its predicted {name} is {shown(said)}, but summary.json says {shown(other)}"
-        simulated, validated = case.get("simulated"), table.document["validated"] or {}
-        of = simulated if isinstance(simulated, dict) else {}
-        for name in validated:
-            if of.get(name) != validated[name]:
-                yield f"its validated {name} is {shown(validated[name])}, but summary.json says {shown(of.get(name))}"
-        yield from permission_faults(case)
-        if self.tells_off_nominal:
-            yield from off_nominal_faults(case)
+        stated = rms_of(case)
+        for name, value in (table.document["validated"] or {}).items():
+            if stated.get(name) != value:
+                yield f"its validated {name} is {shown(value)}, but summary.json says {shown(stated.get(name))}"
+        if self.off_nominal is not None:
+            rows = self.off_nominal.get((case.get("label"), case.get("target_speed_m_s")), [])
+            yield from off_nominal_faults(rows, stated.get("passes"))
 
     def file_faults(self) -> Iterator[tuple[str, str]]:
         """(file, sentence) for each file with tables that is not what the summary lists."""
@@ -150,23 +152,50 @@ def require_fit(plant: Plant, table: Table | PassageTable) -> None:
         raise UnusableConfigError("the configuration beside it describes no possible plant")
 
 
+class OtherSummaryError(Exception):
+    """A summary of a command whose figures the checker knows nothing of."""
+
+
 def read_summary(path: Path) -> Summary:
-    """The summary in the file `path`; `DamagedError` for whatever is not one."""
+    """The summary in the file `path`; `DamagedError` for what is no summary, `OtherSummaryError`."""
     document = parse_json(content_of(path), 64 * 2**20)
     match document:
         case {
-            "format": "retarder-summary" | "sensor-summary",
+            "format": "retarder-synth-summary",
+            "command": str(command),
             "config": dict(config),
             "generator": {"config_sha256": str(sha256)},
-            "cases": list(cases),
+            "tables": {"cases": list(cases)} as tables,
             "files": dict(files),
-        }:
+        } if command in MAKERS:
             canonical_form(document)  # nothing in it that JSON cannot hold faithfully
             named = {case["id"]: case for case in cases if isinstance(case, dict) and isinstance(case.get("id"), str)}
             hashes = {name: sha for name, sha in files.items() if isinstance(sha, str) and is_inside(name)}
-            tells = document["format"] == "retarder-summary" and document.get("made_by") != "sweep"
-            return Summary(path, config, sha256, named, hashes, tells)
+            off_nominal = by_case(tables.get("off_nominal")) if command == RADAR_TUNE else None
+            return Summary(path, config, sha256, named, hashes, off_nominal)
+        case {"format": "retarder-synth-summary", "command": str(command)} if command not in MAKERS:
+            raise OtherSummaryError(command)
     raise DamagedError("it is no summary of a tune")
+
+
+def rms_of(case: Mapping[str, Any]) -> dict[str, Any]:
+    """The simulated rms of a case in the names of a table: passes, rms and its interval."""
+    rms = case.get("rms_m_s")
+    if not isinstance(rms, dict):
+        return {}
+    ends = [rms.get("low95"), rms.get("high95")]
+    return {"passes": rms.get("n"), "rms_m_s": rms.get("value"), "rms_ci95_m_s": ends}
+
+
+def by_case(rows: Any) -> dict[tuple[Any, Any], list[Any]]:
+    """The rows of a table by the case that they tell of."""
+    found: dict[tuple[Any, Any], list[Any]] = {}
+    for row in rows if isinstance(rows, list) else []:
+        of = row if isinstance(row, dict) else {}
+        label, target = of.get("label"), of.get("target_speed_m_s")
+        if isinstance(label, str) and isinstance(target, int | float):
+            found.setdefault((label, target), []).append(row)
+    return found
 
 
 def is_inside(name: str) -> bool:

@@ -21,7 +21,7 @@ from synth.checker.passages.simulation import simulate as simulate_passages
 from synth.checker.plant import UnusableConfigError
 from synth.checker.source import Source, read_source
 from synth.checker.statistics import ExitFigures, figures_of
-from synth.checker.summary import DEFAULT_HONESTY, Summary, read_summary
+from synth.checker.summary import DEFAULT_HONESTY, OtherSummaryError, Summary, read_summary
 from synth.checker.table_reading import Table
 from synth.checker.table_sense import exit_gap_m_s, sense
 
@@ -186,6 +186,8 @@ def summary_beside(source: Source) -> tuple[Summary | None, list[Finding]]:
         return None, []
     try:
         summary = read_summary(file)
+    except OtherSummaryError:
+        return None, []
     except DamagedError as fault:
         return None, [Finding(Kind.DAMAGED, "summary.json", str(fault))] if source.folder else []
     fault_of_config = summary.config_fault()

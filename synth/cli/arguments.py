@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Annotated
 
 import typer
-
-from synth.frame.arguments import whole_number
 
 LARGEST_STD_KPA = 100.0
 """What a pressure gauge takes."""
@@ -24,37 +21,6 @@ Config = Annotated[
     Path | None, typer.Option("--config", metavar="C", help="Configuration with the plant; built-in unless given.")
 ]
 
-
-LogFile = Annotated[
-    Path | None, typer.Option("--log", metavar="FILE.csv|.h5", help="Also log passes as a controller would.")
-]
-
-
-def pressure_std(word: str) -> float:
-    """Standard deviation in kPa; NaN for the word `none`: there is no gauge, and readings are NaN."""
-    if word == "none":
-        return math.nan
-    try:
-        value = float(word)
-    except ValueError:
-        value = math.nan
-    if not 0.0 <= value <= LARGEST_STD_KPA:
-        raise typer.BadParameter(f"it is {str(word)[:40]!r}; give 0 to {LARGEST_STD_KPA:g} kPa, or none")
-    return value
-
-
-LogPasses = Annotated[
-    int | None,
-    typer.Option(
-        "--log-passes", parser=whole_number(1, 100_000), metavar="N", help="Logged of each table; 200 unless given."
-    ),
-]
-GaugeStd = Annotated[
-    float | None,
-    typer.Option(
-        "--gauge-std", parser=pressure_std, metavar="KPA|none", help="Noise of the logged pressure; 2 unless given."
-    ),
-]
 
 NAME_OPTIONS = (
     "--retarder", "--position", "--car", "--sensor", "--wheel-sensor", "--sensors", "--weight-categories", "--aim",

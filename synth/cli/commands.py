@@ -12,10 +12,6 @@ from synth.cli import hump_commands, sensors_commands
 from synth.cli.arguments import (
     Config,
     ExportSource,
-    GaugeStd,
-    LogFile,
-    LogPasses,
-    Source,
     SourceOrDirectory,
     with_names,
 )
@@ -68,35 +64,6 @@ def common(
     """Designs the controller of a hump-yard car retarder: switching lines, controller tables, and their proof."""
 
 
-@app.command()
-def tune(
-    config: Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")] = None,
-    output: Annotated[
-        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
-    ] = Path("out"),
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            parser=whole_number(1, 256), metavar="N", help="Cut classes solved at once; by default one a processor."
-        ),
-    ] = None,
-    permissions: Annotated[
-        bool, typer.Option("--permissions", help="Also tell what permissions of the hardware would give; takes long.")
-    ] = False,
-    pareto: Annotated[
-        bool, typer.Option("--pareto", help="Also tell what less time in the position costs; takes long.")
-    ] = False,
-    as_json: Json = False,
-) -> int:
-    """Make a book of tables, its pictures and report.
-
-    Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.
-    """
-    from synth.cli.tune import tune_command
-
-    return tune_command(config, output, workers, permissions, pareto, as_json)
-
-
 app.add_typer(hump_commands.app, name="hump")
 app.add_typer(sensors_commands.app, name="sensors")
 add_listed(app, COMMANDS)
@@ -131,38 +98,6 @@ def sweep(
     from synth.cli.sweep import sweep_command
 
     return sweep_command(words, output, workers, scheduler, as_json)
-
-
-@app.command()
-def validate(
-    source: Source,
-    config: Config = None,
-    passes: Annotated[
-        int | None,
-        typer.Option(
-            parser=whole_number(1000, 100_000_000),
-            metavar="N",
-            help="Passes of each table; as configured unless given.",
-        ),
-    ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option(
-            parser=whole_number(0, 2**63 - 1), metavar="N", help="Of the random numbers; as configured unless given."
-        ),
-    ] = None,
-    log: LogFile = None,
-    log_passes: LogPasses = None,
-    gauge_std: GaugeStd = None,
-    as_json: Json = False,
-) -> int:
-    """Simulate exported tables once more.
-
-    Nothing is solved. Exit code 1 if a table misses a limit of the configuration.
-    """
-    from synth.cli.validate import asked_log, validate_command
-
-    return validate_command(source, config, passes, seed, asked_log(log, log_passes, gauge_std), as_json)
 
 
 @app.command()

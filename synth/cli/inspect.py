@@ -16,6 +16,7 @@ from synth.book.forms.passage_file import read_passages
 from synth.book.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
 from synth.cli.inspect_aim import aim_document, aim_page
 from synth.cli.inspect_passages import passage_document, passage_page
+from synth.frame.command import Limit, Verdict
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.printed_page import Exhibit, print_page
 from synth.frame.terminal.printed_table import Column, PrintedTable
@@ -205,5 +206,7 @@ def checked_summary(directory: Path) -> dict[str, Any] | None:
         if hashlib.sha256(file.read_bytes()).hexdigest() != sha256:
             raise DamagedTable(f"{file}: its SHA-256 is not the one in summary.json; tune again")
     accepted = "accepted" if document.get("accepted") else "not accepted"
-    sentence = f"all {len(listed)} files that it lists are there unchanged; {accepted}: {document.get('verdict')}"
+    limits = document.get("limits")
+    verdict = Verdict(tuple(Limit(**each) for each in limits) if isinstance(limits, list) else ())
+    sentence = f"all {len(listed)} files that it lists are there unchanged; {accepted}: {verdict.sentence}"
     return {"files": len(listed), "accepted": document.get("accepted"), "sentence": sentence}

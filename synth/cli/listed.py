@@ -12,6 +12,14 @@ from synth.frame.command_line import Listed
 
 COMMANDS: Final = (
     Listed(
+        "tune",
+        "synth.book.tune_command:COMMAND",
+        "synth.book.tune_options:TuneOptions",
+        "init",
+        "Make a book of tables, its pictures and report.\n\n"
+        "Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.",
+    ),
+    Listed(
         "aim",
         "synth.yard.aim.command:COMMAND",
         "synth.yard.aim.options:AimOptions",
@@ -19,6 +27,14 @@ COMMANDS: Final = (
         "Make aim tables: the exit speeds at which a park position lets cuts go.\n\n"
         "Random cuts roll to the standing cars; the tables keep a required probability of coupling too fast. Exit code "
         "1 if a table misses it.",
+    ),
+    Listed(
+        "validate",
+        "synth.book.validation.command:COMMAND",
+        "synth.book.validation.options:ValidateOptions",
+        "init",
+        "Simulate exported tables once more.\n\nNothing is solved. Exit code 1 if a table misses a limit of the "
+        "configuration.",
     ),
     Listed(
         "sensitivity",
@@ -82,6 +98,14 @@ COMMANDS: Final = (
 """By themselves."""
 
 SENSORS: Final = (
+    Listed(
+        "sensors tune",
+        "synth.book.sensors.tune_command:COMMAND",
+        "synth.book.sensors.tune_options:SensorsTuneOptions",
+        "init --sensors",
+        "Make tables that decide where axles pass point sensors, with their code, pictures and report.\n\n"
+        "Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.",
+    ),
     Listed(
         "sensors plan",
         "synth.book.sensors.plan_command:COMMAND",

@@ -34,8 +34,8 @@ def loop_command(source: Path, output: Path, config_path: Path | None, as_json: 
 
     config = load_config(config_path)
     closings = [closing(table, config, str(config_path or BUILT_IN)) for table in any_tables(source)]
-    from synth.book.summary import plain
     from synth.frame.picture.figure_file import figure_files
+    from synth.frame.summary import plain
 
     loops: list[AnyLoop] = []
     files: list[str] = []
@@ -73,7 +73,7 @@ def closing(table: AnyTable, config: ResolvedConfig, source: str) -> Callable[[]
     from synth.book.control_loop import control_loop
     from synth.book.passage_class import passage_class
     from synth.book.passage_control_loop import passage_control_loop
-    from synth.book.validate_table import plant_for
+    from synth.book.validation.revalidation import plant_for
     from tuning_tables.decisions import Decisions
     from tuning_tables.passages.passage_table import PassageTable
 
@@ -90,10 +90,10 @@ def closing(table: AnyTable, config: ResolvedConfig, source: str) -> Callable[[]
 def pictures(loop: AnyLoop) -> dict[str, Figure]:
     """The pictures of a loop by the end of their name."""
     from synth.book.passage_control_loop import PassageControlLoop
-    from synth.present.plots.loop_cycle import loop_cycle
-    from synth.present.plots.loop_portrait import loop_portrait
-    from synth.present.plots.loop_response import loop_response
-    from synth.present.plots.loop_structure import loop_structure
+    from synth.book.pictures.loop_cycle import loop_cycle
+    from synth.book.pictures.loop_portrait import loop_portrait
+    from synth.book.pictures.loop_response import loop_response
+    from synth.book.pictures.loop_structure import loop_structure
 
     if isinstance(loop, PassageControlLoop):
         return {"response": loop_response(loop), "structure": loop_structure(loop)}

@@ -24,8 +24,8 @@ Drawn = TypeVar("Drawn")
 def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
     from synth.book.forms.table_file import file_stem, files_at
+    from synth.book.tables_configuration import configuration_for
     from synth.cli.loop import any_tables
-    from synth.cli.tables_configuration import configuration_for
     from synth.frame.results_directory import results_directory
     from synth.frame.terminal.interrupt import interruptible
     from tuning_tables.passages.passage_table import PassageTable
@@ -76,8 +76,8 @@ def figures_of(table: AnyTable, around: Surroundings) -> Mapping[str, Figure]:
 
 def line_figures(table: ControllerTable, around: Surroundings) -> Mapping[str, Figure]:
     """The pictures of a table with lines by the end of their names."""
-    from synth.book.validate_table import plant_for
-    from synth.present.plots.table_picture import Passes, drawn_passes, table_lines, table_passes, table_surfaces
+    from synth.book.pictures.table_picture import Passes, drawn_passes, table_lines, table_passes, table_surfaces
+    from synth.book.validation.revalidation import plant_for
 
     def simulate() -> Passes:
         plant = plant_for(table, around.config, around.place)[1]
@@ -91,10 +91,10 @@ def line_figures(table: ControllerTable, around: Surroundings) -> Mapping[str, F
 def passage_figures(table: PassageTable, around: Surroundings) -> Mapping[str, Figure]:
     """The pictures of a table for point sensors by the end of their names."""
     from synth.book.passage_class import passage_class
+    from synth.book.pictures.table_picture import FACTORS, subject
+    from synth.book.sensors.pictures.passes_with_readings import passes_figure
+    from synth.book.sensors.pictures.switching_speeds import switching_speeds
     from synth.book.sensors.sensor_class import sensor_passes
-    from synth.present.plots.sensors.passes_with_readings import passes_figure
-    from synth.present.plots.sensors.switching_speeds import switching_speeds
-    from synth.present.plots.table_picture import FACTORS, subject
     from synth.simulation.passage_controller import of_table
     from synth.simulation.passage_sample import PassageTrace
     from synth.simulation.stratified_passes import stratified_passes

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from plant_models.library import SourcedValue
-from synth.frame.exhibits import Chapter
+from synth.frame.exhibits import Chapter, Chart
 from synth.frame.settings.options import Options
 
 if TYPE_CHECKING:
@@ -97,16 +97,23 @@ class Steps:
 class Work:
     """What a command is given while it computes.
 
-    `progress` is told each finished step; in `directory` it stores what its next run may go on from.
+    `progress` is told each finished step; in `directory` it stores what its next run may go on from; `begin` starts to
+    draw a chart that `show` will hold, where there are processes for it.
     """
 
     progress: Progress
     directory: ResultsDirectory
+    begin: Callable[[Chart], None]
 
 
 def no_limits(result: object) -> Iterator[Limit]:
     """The limits of a command that judges nothing."""
     return iter(())
+
+
+def in_this_process(problem: object) -> int:
+    """How many processes draw the few charts of most commands."""
+    return 1
 
 
 @dataclass(frozen=True)
@@ -115,7 +122,7 @@ class Command(Generic[S, O, P, R]):
     refused (`InputError`, `PlantError`); `compute` tells each finished step.
 
     `name`: as it is typed. `options`: a declared model of what is typed behind it. `limits_of_use`: what figures do not
-    say.
+    say. `drawing`: how many processes draw its charts, which are pickled where there is more than one.
     """
 
     name: str
@@ -128,6 +135,7 @@ class Command(Generic[S, O, P, R]):
     show: Callable[[R], Iterator[Chapter]]
     limits: Callable[[R], Iterable[Limit]] = no_limits
     limits_of_use: Sequence[str] = ()
+    drawing: Callable[[P], int] = in_this_process
 
 
 @dataclass(frozen=True)

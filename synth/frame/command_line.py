@@ -89,7 +89,7 @@ def loaded(listed: Listed) -> Any:
 def option_parameters(options: type[Options]) -> Iterator[Parameter]:
     """A keyword for each declared option; what must be typed has no default."""
     for key, field in options.model_fields.items():
-        default = Parameter.empty if field.is_required() else None
+        default = Parameter.empty if field.is_required() else False if field.annotation is bool else None
         yield Parameter(key, Parameter.KEYWORD_ONLY, default=default, annotation=annotation_of(field))
 
 
@@ -100,6 +100,8 @@ def annotation_of(field: FieldInfo) -> Any:
     flag, metavar = flag_of(field), metavar_of(field)
     word = Path if flag == BY_PLACE else str
     words: Any = list[word] if takes_several(field) else word  # type: ignore[valid-type]  # Typer reads it as a value
+    if field.annotation is bool:
+        return Annotated[bool, typer.Option(flag, help=field.description)]
     if flag == BY_PLACE:
         return Annotated[words | None, typer.Argument(metavar=metavar, help=field.description)]
     unsaid = field.is_required() or field.default in (None, ())

@@ -53,9 +53,17 @@ class Column:
         """The heading with its unit."""
         return f"{self.heading}, {self.unit}" if self.unit else self.heading
 
+    def has(self, row: Row) -> bool:
+        """Whether `row` holds such a figure."""
+        return shown_value(row.get(self.key), self.form) != ABSENT
+
     def text(self, row: Row) -> str:
         """What people read in `row`."""
         return shown_value(row.get(self.key), self.form)
+
+    def brief(self, row: Row) -> str:
+        """What they read where there is little room."""
+        return brief_value(row.get(self.key), self.form)
 
 
 def shown_value(value: Any, form: Form) -> str:
@@ -76,11 +84,26 @@ def shown_value(value: Any, form: Form) -> str:
     return ABSENT if math.isnan(value) else form(float(value))
 
 
+def brief_value(value: Any, form: Form) -> str:
+    """`shown_value`, but an interval by its wider half, where that says enough; of what was never met the bound."""
+    if not isinstance(value, Interval):
+        return shown_value(value, form)
+    if value.value == value.low95 == 0.0 and value.high95 > 0.0:
+        return f"below {form(value.high95)}"
+    half = form(value.half_width).lstrip("+")
+    return (
+        shown_value(value, form)
+        if half in (form(0.0).lstrip("+"), form(math.inf).lstrip("+"))
+        else f"{form(value.value)} ±{half}"
+    )
+
+
 @dataclass(frozen=True)
 class Table:
     """`name`: of its CSV file, and in JSON. `brief`: the terminal shows it too. `bad`: rows that a page marks.
 
-    `long`: a row for every pass or cut, so a page only says where they are.
+    `long`: a row for every pass or cut, so a page only says where they are. People do not see a column without any
+    figure; CSV and JSON have all.
     """
 
     name: str
@@ -95,6 +118,11 @@ class Table:
     def file(self) -> str:
         """The name of its CSV file."""
         return f"sheets/{self.name}.csv"
+
+    @property
+    def seen(self) -> tuple[Column, ...]:
+        """The columns in which some row has a figure."""
+        return tuple(column for column in self.columns if any(column.has(row) for row in self.rows) or not self.rows)
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 from synth.frame.command import Asked, Command, O, P, R, S, Verdict, Work
 from synth.frame.creation_time import creation_time, require_date
 from synth.frame.exhibits import Chart, File, Table, exhibits_of
+from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.results_directory import SUMMARY, ResultsDirectory, results_directory
 from synth.frame.terminal.interrupt import interruptible
 from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 from synth.frame.told import Told
 
 if TYPE_CHECKING:
-    from synth.frame.picture.picture import Picture
+    from synth.frame.picture.studio import Studio
 
 PAGE = "report.html"
 
@@ -30,18 +31,24 @@ def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_j
     require_date()
     problem = command.resolve(asked)
     head, steps = command.head(problem), command.steps(problem)
+    from synth.frame.picture.studio import Studio
     from synth.frame.terminal.progress import Progress  # rich: a refusal needs none
 
     started, created = time.monotonic(), creation_time()
     with results_directory(output, command.name, (*asked.options.reads, *head.reads)) as directory:
         for warning in head.warnings:
             say(f"warning: {warning}")
-        with interruptible(directory, "summary"), Progress(steps.count, steps.word, steps.noun) as progress:
-            result = command.compute(problem, Work(progress, directory))
+        processes = command.drawing(problem) if head.output.plots or head.output.report else 1
+        with (
+            interruptible(directory, "summary"),
+            Progress(steps.count, steps.word, steps.noun) as progress,
+            Studio(processes) as studio,
+        ):
+            result = command.compute(problem, Work(progress, directory, studio.begin))
             verdict = Verdict(tuple(command.limits(result)))
             chapters = tuple(command.show(result))
             told = Told(command.name, head, created, verdict, chapters, command.limits_of_use)
-            write(told, directory, progress.note)
+            write(told, directory, studio, progress.note)
             progress.note(f"all files written after {time.monotonic() - started:.1f} s")
         names = (*directory.written,)
     if as_json:
@@ -53,7 +60,7 @@ def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_j
     return OK if verdict.accepted else LIMITS_MISSED
 
 
-def write(told: Told, directory: ResultsDirectory, tell: Callable[[str], None]) -> None:
+def write(told: Told, directory: ResultsDirectory, studio: Studio, tell: Callable[[str], None]) -> None:
     """Write files, tables, pictures, page, and last of all the summary."""
     from synth.frame.sheet import to_csv
     from synth.frame.summary import summary_of
@@ -64,10 +71,8 @@ def write(told: Told, directory: ResultsDirectory, tell: Callable[[str], None]) 
         elif isinstance(each, Table):
             directory.write(each.file, to_csv(each))
     output = told.head.output
-    pictures = drawn(told, tell) if output.plots or output.report else {}
+    pictures = drawn(told, studio, tell) if output.plots or output.report else {}
     if output.plots:
-        from synth.frame.picture.picture import picture_files
-
         directory.write_all(picture_files(pictures.values(), "plots"))
     if output.report:
         from synth.frame.page.told_page import page_of
@@ -76,15 +81,16 @@ def write(told: Told, directory: ResultsDirectory, tell: Callable[[str], None]) 
     directory.finish(summary_of(told, directory.written))
 
 
-def drawn(told: Told, tell: Callable[[str], None]) -> dict[str, Picture]:
+def drawn(told: Told, studio: Studio, tell: Callable[[str], None]) -> dict[str, Picture]:
     """The charts by name, drawn."""
-    from synth.frame.picture.figure_file import draw  # matplotlib
-    from synth.frame.picture.picture import Picture
-
-    found: dict[str, Picture] = {}
-    for chapter in told.chapters:
-        for each in chapter.exhibits:
-            if isinstance(each, Chart):
-                found[each.name] = Picture(each.name, chapter.heading, each.title, each.caption, draw(each.draw()))
-    tell(f"{len(found)} pictures drawn")
+    charts = [
+        (chapter.heading, each) for chapter in told.chapters for each in chapter.exhibits if isinstance(each, Chart)
+    ]
+    drawings = [studio.drawing(each) for _, each in charts]
+    found = {
+        each.name: Picture(each.name, heading, each.title, each.caption, drawing.result())
+        for (heading, each), drawing in zip(charts, drawings, strict=True)
+    }
+    if found:
+        tell(f"{len(found)} pictures drawn")
     return found

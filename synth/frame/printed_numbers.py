@@ -56,6 +56,11 @@ def ten_thousand(share: float, ends: Sequence[float | None]) -> str:
     return f"{few(1e4 * share)} ±{few(max(1e4 * share - low, high - 1e4 * share))}"
 
 
+def of_ten_thousand(share: float) -> str:
+    """A share as cuts of 10 000."""
+    return few(1e4 * share) if math.isfinite(share) else three_figures(share)
+
+
 def few(number: float) -> str:
     """A number of cuts: two figures below 10."""
     return f"{number:#.2g}" if number < 9.95 else f"{number:.0f}"

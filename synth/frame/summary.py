@@ -10,6 +10,7 @@ from enum import Enum
 from importlib.metadata import version
 from typing import Any, Final
 
+from synth.frame.command import Head
 from synth.frame.exhibits import Sentence, Table, exhibits_of
 from synth.frame.interval import Interval
 from synth.frame.told import Told
@@ -25,17 +26,9 @@ def summary_of(told: Told, hashes: Mapping[str, str]) -> bytes:
     `figures`: those of the sentences by name; `tables`: rows by the keys of the columns. A time that never comes, and a
     figure that is not there, is null.
     """
-    head, exhibits = told.head, tuple(exhibits_of(told.chapters))
+    exhibits = tuple(exhibits_of(told.chapters))
     document = {
-        "format": FORMAT,
-        "version": VERSION,
-        "command": told.command,
-        "created": told.created,
-        "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": head.sha256},
-        "title": head.title,
-        "config": json.loads(head.canonical_json),
-        "warnings": head.warnings,
-        "parameters_assumed": [value.key for value in head.parameters if value.assumed],
+        **summary_head(told.command, told.head, told.created),
         "accepted": told.verdict.accepted,
         "limits": [asdict(limit) for limit in told.verdict.limits],
         "figures": {
@@ -45,6 +38,21 @@ def summary_of(told: Told, hashes: Mapping[str, str]) -> bytes:
         "files": dict(hashes),
     }
     return canonical_json(plain(document)) + b"\n"
+
+
+def summary_head(command: str, head: Head, created: str) -> dict[str, Any]:
+    """What every such document begins with."""
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "command": command,
+        "created": created,
+        "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": head.sha256},
+        "title": head.title,
+        "config": json.loads(head.canonical_json),
+        "warnings": head.warnings,
+        "parameters_assumed": [value.key for value in head.parameters if value.assumed],
+    }
 
 
 def rows_of(table: Table) -> list[dict[str, Any]]:

@@ -86,6 +86,12 @@ def cache_in_use() -> Path | None:
     return directory if ours else None
 
 
+def first_time() -> bool:
+    """Whether no kernel is kept for this machine, so that all that are needed will be compiled."""
+    directory = cache_in_use()
+    return directory is None or next(directory.rglob("*.nbi"), None) is None
+
+
 def kernel_sources(root: Path) -> list[str]:
     """The files below `root` that kernels are compiled from, sorted, as POSIX paths relative to it."""
     return sorted({path.relative_to(root).as_posix() for pattern in _KERNEL_SOURCES for path in root.glob(pattern)})

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from synth.book.summary import Document
 from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.results_directory import ResultsDirectory
 from synth.present.hump_page.hump_page import hump_page
@@ -51,7 +51,7 @@ def judged(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes, create
     return TrialResult(config, trial, found, figures, judge_trains(figures, config.settings.acceptance), created)
 
 
-def write_trains(result: TrialResult, directory: ResultsDirectory, say: Say) -> Document:
+def write_trains(result: TrialResult, directory: ResultsDirectory, say: Say) -> dict[str, Any]:
     """Write everything but batches and inputs; the summary as written. Raises `OSError`.
 
     What all trains came to is on the disk before anything is made of the one that is shown: it cannot cost the figures.

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from synth.book.summary import Document, plain
 from synth.frame.picture.picture import drawing_files
 from synth.frame.results_directory import ResultsDirectory
+from synth.frame.summary import plain
 from synth.yard.humping.speed_program import SpeedProgram, locomotive_csv, uncoupler_csv
 
 
@@ -29,9 +30,9 @@ def write_program(program: SpeedProgram, directory: ResultsDirectory) -> list[Pa
     return directory.write_all(contents)
 
 
-def program_document(program: SpeedProgram, files: Sequence[Path]) -> Document:
+def program_document(program: SpeedProgram, files: Sequence[Path]) -> dict[str, Any]:
     """The program for programs."""
-    document: Document = plain(
+    document: dict[str, Any] = plain(
         {
             "train": program.number + 1,
             "mean_hump_speed_m_s": program.mean_m_s,

@@ -39,8 +39,7 @@ def bind(file: SweepFile, plan: Plan, created: str, directory: HeldSweep, failur
     books = [bound(file, plan, condition, created, directory, failed) for condition in plan.conditions]
     results.remove_others()
     for book in books:
-        summary = book_summary(book, created)
-        results.write(within(book.condition, SUMMARY), canonical_json(summary) + b"\n")
+        results.write(within(book.condition, SUMMARY), book_summary(book, created))
     summary = sweep_summary(books, created)
     results.finish(canonical_json(summary) + b"\n")
     return Outcome(summary, tuple(failure for book in books for failure in book.failures))

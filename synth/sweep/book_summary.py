@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from statistics import median
 from typing import Any
 
+from synth.book.comparison.measured import honesty_of
+from synth.book.configured import head_of
+from synth.book.exit_figures import loop_row, power_row, told
+from synth.book.shown.cases import promise_row
+from synth.frame.summary import plain, summary_head
 from synth.sweep.refinement import Gap
 from synth.sweep.sweep_file import Condition
 from synth.sweep.unit_result import Row
 from tuning_tables import ControllerTable
+from tuning_tables.canonical import canonical_json
 
 Document = dict[str, Any]
 
@@ -58,7 +63,7 @@ class BookFigures:
 
 def case_of(label: str, row: Row, table: ControllerTable) -> Document:
     """One table's figures, keys as in the summary of a tune."""
-    rms = row.simulated["rms_m_s"]
+    found = row.statistics
     return {
         "id": table.id,
         "label": label,
@@ -67,36 +72,32 @@ def case_of(label: str, row: Row, table: ControllerTable) -> Document:
         "target_speed_m_s": table.target_speed_m_s,
         "missed_limits": list(row.judgement.missed),
         "undecided_limits": list(row.judgement.undecided),
-        "predicted": asdict(table.predicted),
-        "simulated": {**row.simulated, "predicted_rms_m_s": table.predicted.rms_m_s},
-        "honesty": table.predicted.rms_m_s / rms if rms else None,
+        **promise_row(table),
+        **loop_row(found),
+        **power_row(row.brake_power, found.passes),
+        "honesty": told(*honesty_of(table.predicted.rms_m_s, table.predicted.passes, found), found.passes),
     }
 
 
-def book_summary(figures: BookFigures, created: str) -> Document:
-    """The document of one book. `accepted` is null: without a bound for each case a sweep cannot judge any."""
+def book_summary(figures: BookFigures, created: str) -> bytes:
+    """summary.json of one book. `accepted` is null: without a bound for each case a sweep cannot judge any."""
     config = figures.condition.config
-    return {
-        "format": "retarder-summary",
-        "version": 1,
-        "made_by": "sweep",
-        "created": created,
-        "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config.sha256},
-        "title": config.title,
+    document = {
+        **summary_head("sweep", head_of(config), created),
         "condition": figures.condition.name or None,
-        "config": json.loads(config.canonical_json()),
-        "warnings": list(config.warnings),
-        "parameters_assumed": [value.key for value in config.parameters if value.assumed],
-        "criterion": config.criterion.sentence,
         "accepted": None,
         "verdict": verdict(figures),
-        "cases": figures.cases,
-        "interpolation": interpolation(figures.gaps),
-        "failed": [asdict(failure) for failure in figures.failures],
+        "criterion": config.criterion.sentence,
+        "tables": {
+            "cases": figures.cases,
+            "interpolation": interpolation(figures.gaps),
+            "failed": [asdict(failure) for failure in figures.failures],
+        },
         "shadowed_tables": figures.shadowed,
         "no_controller_code": figures.no_code or None,
         "files": figures.files,
     }
+    return canonical_json(plain(document)) + b"\n"
 
 
 def verdict(figures: BookFigures) -> str:
@@ -126,7 +127,7 @@ def interpolation(gaps: list[tuple[str, Gap]]) -> Document | None:
 
 
 def sweep_summary(books: list[BookFigures], created: str) -> Document:
-    """The document of the whole sweep."""
+    """The figures of the whole sweep, plain values."""
     return {
         "format": "retarder-sweep-summary",
         "version": 1,
@@ -141,7 +142,7 @@ def sweep_summary(books: list[BookFigures], created: str) -> Document:
 
 def condition_of(book: BookFigures) -> Document:
     """The figures of one condition."""
-    rms = [case["simulated"]["rms_m_s"] for case in book.cases]
+    rms = [case["rms_m_s"].value for case in book.cases]
     measured = interpolation(book.gaps)
     return {
         "name": book.condition.name or None,

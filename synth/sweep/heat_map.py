@@ -32,7 +32,7 @@ def heat_map(cases: list[dict[str, Any]], refused: set[tuple[str, float]], condi
     figure = new_figure(8.0, height + 1.5, "Exit-speed error of every table", subject)
     place(figure, left=1.7, right=1.5, bottom=0.75, top=0.75)
     axes = figure.subplots()
-    rms = [1e3 * case["simulated"]["rms_m_s"] for case in cases]
+    rms = [1e3 * case["rms_m_s"].value for case in cases]
     low, high = min(rms), max(rms)
     norm = LogNorm(low * 0.999, max(high, 1.05 * low))
     found = {(case["label"], case["target_speed_m_s"]): case for case in cases}
@@ -49,7 +49,7 @@ def heat_map(cases: list[dict[str, Any]], refused: set[tuple[str, float]], condi
                 empty.append(cell)
                 continue
             cells.append(cell)
-            values.append(1e3 * case["simulated"]["rms_m_s"])
+            values.append(1e3 * case["rms_m_s"].value)
             if case["missed_limits"]:
                 dots.append((target, row))
     painted = PatchCollection(cells, cmap=COLOURS, norm=norm, edgecolor="white", linewidth=0.4)

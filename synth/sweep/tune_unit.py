@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -123,7 +123,8 @@ def row_of(config: ResolvedConfig, setup: ClassSetup, table: ControllerTable) ->
     over = overspeed_of(counted, table.target_speed_m_s, limits.overspeed_margin_m_s)
     return Row(
         table=found.table,
-        simulated={**asdict(found.statistics), **asdict(found.brake_power)},
+        statistics=found.statistics,
+        brake_power=found.brake_power,
         judgement=judgement(found.statistics, over, table.predicted, limits),
     )
 

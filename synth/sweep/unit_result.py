@@ -8,13 +8,14 @@ from typing import Any, cast
 
 from synth.book.failed_case import FailedCase
 from synth.book.judgement import Judgement
+from synth.simulation.exit_statistics import BrakePower, ExitStatistics
 from synth.sweep.refinement import Gap
 from tuning_tables import ControllerTable, DamagedTable, TableError
 from tuning_tables.canonical import canonical_json
 from tuning_tables.document import from_document, to_document
 from tuning_tables.seal import seal_of, unsealed
 
-FORMAT, VERSION = "retarder-sweep-unit", 4
+FORMAT, VERSION = "retarder-sweep-unit", 5
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,8 @@ class Row:
     """One table with the figures of its closed loop, and what they say of the limits of [acceptance]."""
 
     table: ControllerTable
-    simulated: dict[str, Any]
+    statistics: ExitStatistics
+    brake_power: BrakePower
     judgement: Judgement
 
 
@@ -50,7 +52,12 @@ def to_bytes(result: UnitResult) -> bytes:
         "condition": result.condition,
         "label": result.label,
         "rows": [
-            {"table": to_document(row.table), "simulated": row.simulated, **asdict(row.judgement)}
+            {
+                "table": to_document(row.table),
+                "statistics": asdict(row.statistics),
+                "brake_power": asdict(row.brake_power),
+                **asdict(row.judgement),
+            }
             for row in result.rows
         ],
         "gaps": [asdict(gap) for gap in result.gaps],
@@ -83,6 +90,11 @@ def from_bytes(content: bytes, source: str) -> UnitResult:
 
 def row_from(row: dict[str, Any], source: str) -> Row:
     """One row of the file."""
-    simulated = {name: tuple(value) if isinstance(value, list) else value for name, value in row["simulated"].items()}
     judgement = Judgement(tuple(row["missed"]), tuple(row["undecided"]))
-    return Row(from_document(row["table"], source), simulated, judgement)
+    statistics, power = ExitStatistics(**with_tuples(row["statistics"])), BrakePower(**with_tuples(row["brake_power"]))
+    return Row(from_document(row["table"], source), statistics, power, judgement)
+
+
+def with_tuples(figures: dict[str, Any]) -> dict[str, Any]:
+    """Figures with the ends of intervals as tuples."""
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in figures.items()}

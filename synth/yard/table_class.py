@@ -15,7 +15,7 @@ from plant_models import Plant, PressingForce
 from plant_models.cut import ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
-from synth.book.validate_table import plant_for
+from synth.book.validation.revalidation import plant_for
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.kernels.loop import closed_loop as kernel
 from synth.simulation.closed_loop import ClosedLoop, close_loop

@@ -14,8 +14,9 @@ from typing import Final
 import h5py
 import numpy as np
 
+from synth.book.sensors.tune_command import COMMAND as SENSORS_TUNE
+from synth.book.sensors.tune_options import SensorsTuneOptions
 from synth.cli.hump import check_command
-from synth.cli.sensors_tune import read_configuration, require_room
 from synth.computer.command import COMMAND as COMPUTER
 from synth.computer.settings import ComputerSettings
 from synth.configuration.aim.template import default_aim_toml
@@ -98,8 +99,8 @@ def read_computer(folder: Path) -> str:
 
 def read_sensors(folder: Path) -> str:
     """As `sensors tune`."""
-    place, config, sensors = read_configuration(folder / "sensors.toml")
-    require_room(config, sensors, place, 1)
+    typed = SensorsTuneOptions(config=folder / "sensors.toml", workers=1)
+    SENSORS_TUNE.resolve(asked_of(SENSORS_TUNE, typed, "init --sensors"))
     return ""
 
 

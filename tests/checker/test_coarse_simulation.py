@@ -90,7 +90,7 @@ def test_lost_readings_come_in_bursts_as_stated(plant: Plant, share: float, burs
 
 def test_lost_readings_cost_here_what_they_cost_in_the_simulator(summary: Summary, table: Table, plant: Plant) -> None:
     """Two simulators that know nothing of one another, without and with a third of the readings lost."""
-    from synth.book.validate_table import plant_for
+    from synth.book.validation.revalidation import plant_for
     from synth.configuration.config_file import parse_config
     from synth.configuration.plant_values import with_values
     from synth.simulation.closed_loop import TableController

@@ -26,7 +26,6 @@ from synth.book.feasibility import Feasibility
 from synth.book.grid_check import GridCheck
 from synth.book.off_nominal.condition import CONDITIONS
 from synth.book.off_nominal.outcome import OffNominal, Outcome
-from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
@@ -111,7 +110,6 @@ def make_case(
             traces=tuple(make_trace(plant, target, factor) for factor in (0.8, 1.0, 1.2)),
             trace_factors=(0.8, 1.0, 1.2),
         ),
-        permissions=None,
         front=None,
         off_nominal=make_off_nominal(spread),
     )
@@ -146,18 +144,6 @@ def make_feasibility(feasible: bool) -> Feasibility:
         entry_rms_m_s=np.full(5, rms_m_s),
         served_m_s=(5.0, 6.5) if feasible else None,
     )
-
-
-def make_permissions(case: CaseResult, *asked: Permission) -> CasePermissions:
-    """What `asked` would give: each about a twentieth less than the one before it."""
-    found, target = case.comparison.table, case.target_speed_m_s
-    table = make_sample(target, 0.04, 0)
-    results = []
-    for place, permission in enumerate(asked):
-        sample = make_sample(target, 0.04 * (1.0 - 0.05 * place), place + 1)
-        ratio, ci95 = rms_ratio(sample, table, target)
-        results.append(PermissionResult(permission, exit_statistics(sample, target), ratio, ci95, 0.04))
-    return CasePermissions(case.label, target, found.statistics, found.predicted_rms_m_s, tuple(results))
 
 
 def make_polynomials(plant: Plant) -> PolynomialLines:

@@ -8,11 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.book.acceptance import judge
+from synth.book.acceptance import advice_of, judge_case, judged, limits_of
 from synth.book.case_result import CaseResult
 from synth.book.comparison.measured import honesty_of
 from synth.book.judgement import judgement
+from synth.book.off_nominal.worst import worst_of
 from synth.configuration.settings import AcceptanceSettings
+from synth.frame.command import Limit
 from synth.simulation.exit_statistics import ExitStatistics, overspeed_of
 from synth.simulation.passes import ExitSample
 from synth.simulation.unavoidable_error import UnavoidableError
@@ -38,37 +40,38 @@ def statistics(**changes: object) -> ExitStatistics:
     return replace(ideal, **changes)  # type: ignore[arg-type]  # fields by name
 
 
+def limits(*cases: CaseResult, of: AcceptanceSettings = LIMITS) -> list[Limit]:
+    """What the verdict on a book of these cases is made of."""
+    return list(limits_of(judged(cases, of), [case.comparison.table.statistics for case in cases], of, ()))
+
+
 def test_a_book_that_keeps_the_limits() -> None:
-    verdict = judge([honest_case(), honest_case("gondola-22t")], LIMITS)
-    assert verdict.accepted
-    assert [case.word for case in verdict.cases] == ["accepted", "accepted"]
-    assert verdict.sentence.startswith("the limits are kept in 2 feasible cases; the worst rms is 0.0499 [")
-    assert "infeasible" not in verdict.sentence
-    assert "; off nominal, for which there is no limit, the worst is gondola-36t, target 3 m/s with a third" in (
-        verdict.sentence
-    )
+    (limit,) = limits(honest_case(), honest_case("gondola-22t"))
+    assert limit.kept
+    assert limit.sentence.startswith("the limits are kept in 2 feasible cases; the worst rms is 0.0499 [")
 
 
 def test_one_bad_case_refuses_the_book_and_says_why() -> None:
-    verdict = judge([honest_case(), make_case("gondola-85t", 2.0, spread=0.15)], LIMITS)
-    assert not verdict.accepted
-    assert [case.word for case in verdict.cases] == ["accepted", "missed"]
-    assert "missed in 1 of 2 feasible cases (gondola-85t, target 2 m/s: rms 0.14" in verdict.sentence
-    assert "allowed 0.1" in verdict.sentence
-    assert verdict.sentence.partition("; off nominal")[0].endswith(
-        "which the position does not forbid: the rms that no regulator avoids is 0.0200 [0.0196, 0.0204] m/s; "
-        'try regulator.estimator = true, regulator.commands = "any_time", another fit.degree or another target)'
+    bad = make_case("gondola-85t", 2.0, spread=0.15)
+    (limit,) = limits(honest_case(), bad)
+    assert limit.kept is False
+    assert limit.sentence.startswith("gondola-85t, target 2 m/s: rms 0.14")
+    assert limit.sentence.endswith(
+        "which the position does not forbid: the rms that no regulator avoids is 0.0200 [0.0196, 0.0204] m/s"
+    )
+    assert advice_of(judged([honest_case(), bad], LIMITS)) == (
+        'Try regulator.estimator = true, regulator.commands = "any_time", another fit.degree or another target.'
     )
 
 
 def test_what_is_to_be_changed_follows_from_what_is_asked_for_and_what_is_missed() -> None:
     bad = make_case("gondola-85t", 2.0, spread=0.15)
-    advice = judge([replace(bad, table=replace(bad.table, decisions=Decisions.AT_ANY_TIME))], LIMITS).cases[0].advice
+    advice = judge_case(replace(bad, table=replace(bad.table, decisions=Decisions.AT_ANY_TIME)), LIMITS).advice
     assert advice == ("regulator.estimator = true", "another fit.degree or another target")
-    assert judge([honest_case()], LIMITS).cases[0].advice == ()
-    assert judge([honest_case(feasible=False)], LIMITS).cases[0].advice == ()
+    assert judge_case(honest_case(), LIMITS).advice == ()
+    assert judge_case(honest_case(feasible=False), LIMITS).advice == ()
     slow = replace(honest_case(), table=replace(honest_case().table, predicted=Predicted(0.5, 0.0, 0.0, 9.0)))
-    verdict = judge([slow], LIMITS).cases[0]
+    verdict = judge_case(slow, LIMITS)
     assert (verdict.word, verdict.advice) == ("missed", ())  # another limit than that of the rms
 
 
@@ -78,33 +81,39 @@ def test_a_tuned_law_that_keeps_the_limit_shows_that_the_position_can() -> None:
     for high, words in ((0.1, "can: a tuned energy rule has 0.0900 m/s"), (0.101, "does not forbid: the rms that")):
         good = replace(best, statistics=statistics(rms_m_s=0.09, rms_ci95_m_s=(0.08, high)))
         case = replace(bad, comparison=replace(bad.comparison, baselines=(*others, good)))
-        assert f"which the position {words}" in judge([case], LIMITS).sentence
+        assert f"which the position {words}" in limits(case)[0].sentence
 
 
 def test_cuts_that_are_too_slow_without_any_braking_are_named_so() -> None:
     bad = honest_case(feasible=False)
     error = replace(bad.feasibility.unavoidable, too_fast=False)
-    verdict = judge([replace(bad, feasibility=replace(bad.feasibility, unavoidable=error))], LIMITS)
-    assert verdict.cases[0].obstacle == "leaves too slow"
+    verdict = judge_case(replace(bad, feasibility=replace(bad.feasibility, unavoidable=error)), LIMITS)
+    assert verdict.obstacle == "leaves too slow"
 
 
-def test_infeasible_cases_are_named_and_do_not_count() -> None:
+def test_infeasible_cases_do_not_count() -> None:
     bad = honest_case("gondola-85t", 2.0, feasible=False)
-    verdict = judge([honest_case(), bad], LIMITS)
-    assert verdict.accepted
-    assert verdict.cases[1].word == "infeasible"
-    assert verdict.cases[1].judgement.missed  # still told
-    assert "in 1 feasible case;" in verdict.sentence
-    judged, _, off_nominal = verdict.sentence.partition("; off nominal")
-    assert "gondola-85t" not in off_nominal  # nor does an infeasible case count there
-    assert judged.endswith("infeasible and outside this verdict: gondola-85t, target 2 m/s (out of brake power)")
+    verdict = judge_case(bad, LIMITS)
+    assert verdict.word == "infeasible"
+    assert verdict.judgement.missed  # still told
+    (limit,) = limits(honest_case(), bad)
+    assert limit.kept
+    assert "in 1 feasible case;" in limit.sentence
+
+
+def test_the_worst_off_nominal_is_told_of_the_cases_that_count() -> None:
+    worst = worst_of([honest_case()])
+    assert worst is not None
+    assert worst.told.startswith(
+        "Off nominal, for which there is no limit, the worst is gondola-36t, target 3 m/s with a third"
+    )
+    assert worst_of([]) is None
 
 
 def test_a_book_without_a_feasible_case_is_not_accepted() -> None:
-    verdict = judge([honest_case(feasible=False)], LIMITS)
-    assert not verdict.accepted
-    assert "nothing to accept" in verdict.sentence
-    assert "off nominal" not in verdict.sentence
+    (limit,) = limits(honest_case(feasible=False))
+    assert limit.kept is False
+    assert "nothing to accept" in limit.sentence
 
 
 RMS = "rms 0.0990 [0.0971, 0.1010] m/s, allowed 0.1"
@@ -166,20 +175,19 @@ def test_a_simulated_prediction_is_uncertain_too() -> None:
 
 
 def test_a_book_that_the_passes_cannot_judge_says_so() -> None:
-    limits = AcceptanceSettings(rms_m_s=0.05)
-    verdict = judge([honest_case()], limits)
-    assert not verdict.accepted
-    assert [case.word for case in verdict.cases] == ["not decidable"]
-    assert verdict.sentence.startswith("no limit is missed, but the passes are too few to decide 1 of 1 feasible case")
+    of = AcceptanceSettings(rms_m_s=0.05)
+    (limit,) = limits(honest_case(), of=of)
+    assert limit.kept is None
+    assert limit.sentence.startswith("gondola-36t, target 3 m/s: not decidable with these passes: rms 0.0499 [")
+    assert advice_of(judged([honest_case()], of)) == ("Try a larger validation.passes where a limit is not decidable.")
 
 
 def test_a_miss_does_not_count_where_the_passes_cannot_tell_whether_the_case_is_feasible() -> None:
     bad = make_case("gondola-85t", 2.0, spread=0.15)
     unsure = replace(bad, feasibility=replace(bad.feasibility, unavoidable=UnavoidableError(0.1, (0.09, 0.11), True)))
-    verdict = judge([honest_case(), unsure], LIMITS)
-    assert [case.word for case in verdict.cases] == ["accepted", "not decidable"]
-    assert not verdict.accepted
-    assert "0.1000 [0.0900, 0.1100] m/s, too near to the limit to tell whether the case is feasible" in verdict.sentence
+    (limit,) = limits(honest_case(), unsure)
+    assert limit.kept is None
+    assert "0.1000 [0.0900, 0.1100] m/s, too near to the limit to tell whether the case is feasible" in limit.sentence
 
 
 def test_overspeed_is_counted_beyond_the_configured_margin() -> None:

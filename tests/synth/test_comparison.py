@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from synth.book.summary import overall
+from synth.book.shown.results import overall
 from tests.synth.case_factory import make_case
+from tests.synth.test_report import found_book
 
 
 @pytest.mark.parametrize(
@@ -38,5 +39,5 @@ def test_a_regulator_that_is_beaten_is_no_reference(
 def test_the_median_of_the_summary_is_over_cases_with_a_reference() -> None:
     case = make_case()
     beaten = replace(case, comparison=replace(case.comparison, baseline_ratio_ci95=(1.1, 1.2)))
-    assert overall((case, beaten))["median_regret"] == case.comparison.regret
-    assert overall((beaten,))["median_regret"] is None
+    assert overall(found_book((case, beaten)))["median_regret"] == case.comparison.regret
+    assert overall(found_book((beaten,)))["median_regret"] is None

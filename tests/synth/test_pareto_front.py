@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from synth.book.pareto.pareto_front import PRICES_M2_S3, ParetoFront, ParetoPoint, nearly_free, told
-from synth.present.plots.pareto_fronts import pareto_fronts
-from synth.present.report.pareto_section import pareto_section
+from synth.book.pictures.pareto_fronts import pareto_fronts
+from synth.book.shown.fronts import fronts
+from synth.frame.exhibits import Chart, Sentence, Table
 from synth.simulation.exit_statistics import exit_statistics
-from tests.synth.all_pictures import all_pictures
-from tests.synth.case_factory import make_case, make_sample
+from tests.synth.case_factory import make_sample
 
 
 def made_front(label: str, ratios: tuple[float, ...], saved_s: tuple[float, ...]) -> ParetoFront:
@@ -45,10 +45,11 @@ def test_a_price_without_a_table_ends_it() -> None:
 
 
 def test_report_and_pictures_tell_it_where_it_was_asked_for() -> None:
-    section = pareto_section([FIRST, SECOND])
-    assert told([FIRST, SECOND]) in section
-    assert "gondola-85t to 3 m/s" in section
-    case = make_case("gondola-22t", 3.0)
-    names = [[each.name for each in all_pictures([one], 0.1)] for one in (case, replace(case, front=FIRST))]
-    assert set(names[1]) - set(names[0]) == {"pareto-fronts"}
+    table, chart = (each for each in fronts([FIRST, SECOND]) if not isinstance(each, Sentence))
+    assert isinstance(table, Table)
+    assert [(row["label"], row["time_price_m2_s3"]) for row in table.rows] == [
+        (front.label, price) for front in (FIRST, SECOND) for price in PRICES_M2_S3[:4]
+    ]
+    assert isinstance(chart, Chart)
+    assert len(chart.draw().axes) == len(pareto_fronts([FIRST, SECOND]).axes)
     assert len(pareto_fronts([FIRST] * 4).axes) == 6

@@ -18,15 +18,16 @@ from matplotlib.text import Text
 from synth.book.case_names import by_class, file_stem
 from synth.book.case_result import CaseResult
 from synth.book.command_panels import command_image
+from synth.book.pictures.exit_density import bin_edges_m_s, exit_density, predicted_density
+from synth.book.pictures.feasibility import feasibility
+from synth.book.pictures.policy_map import parts_in_stage, policy_map
+from synth.book.pictures.rms_by_controller import rms_by_controller
+from synth.book.pictures.sample_passes import outcome, sample_passes
+from synth.book.pictures.surfaces import surfaces
+from synth.book.shown.pictures import lines_chart
 from synth.frame.picture.figure_file import draw, figure_files
 from synth.frame.picture.house_style import MATHEMATICS, logarithmic_y, new_figure
 from synth.frame.picture.picture import picture_files
-from synth.present.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
-from synth.present.plots.feasibility import feasibility
-from synth.present.plots.policy_map import parts_in_stage, policy_map
-from synth.present.plots.rms_by_controller import rms_by_controller
-from synth.present.plots.sample_passes import outcome, sample_passes
-from synth.present.plots.surfaces import surfaces
 from tests.synth.all_pictures import all_pictures
 from tests.synth.case_factory import make_case
 
@@ -212,12 +213,13 @@ def test_a_stalled_pass_is_called_so(cases: list[CaseResult]) -> None:
 
 
 def test_drawing_needs_neither_pyplot_nor_kernels(cases: list[CaseResult], tmp_path: Path) -> None:
-    """Not even a case that is handed to the process that draws it."""
+    """Not even a chart that is handed to the process that draws it."""
     heavy = ("matplotlib.pyplot", "numba", "scipy", "pydantic", "control", "h5py")
-    (tmp_path / "case").write_bytes(pickle.dumps(cases[0]))
+    (tmp_path / "chart").write_bytes(pickle.dumps(lines_chart(cases[0])))
     loaded = f"any(each in sys.modules for each in {heavy})"
-    taken = f"pickle.loads(pathlib.Path({str(tmp_path / 'case')!r}).read_bytes())"
+    drawn = f"draw_chart(pickle.loads(pathlib.Path({str(tmp_path / 'chart')!r}).read_bytes()))"
     command = (
-        f"import pathlib, pickle, sys; import synth.present.plots.picture_book; {taken}; raise SystemExit({loaded})"
+        "import pathlib, pickle, sys; from synth.frame.picture.studio import draw_chart; "
+        f"{drawn}; raise SystemExit({loaded})"
     )
     assert subprocess.run([sys.executable, "-c", command], cwd=ROOT, timeout=60, check=False).returncode == 0

@@ -12,7 +12,7 @@ from scripts.studies.documents import KEPT
 from scripts.studies.named_study import study_named
 from scripts.studies.result import read_result, run_study
 from synth.book.rounded_table import with_prediction
-from synth.book.validate_table import Rehearsal, Revalidation, plant_for, revalidate_all
+from synth.book.validation.revalidation import Rehearsal, Revalidation, plant_for, revalidated
 from synth.configuration.config_file import parse_config
 from synth.problem.resolution import finer_for_check
 from synth.simulation.closed_loop import TableController, simulate_many
@@ -79,7 +79,7 @@ def test_intervals_of_real_tables_hold_the_truth(path: Path) -> None:
 def test_another_seed_changes_no_verdict_and_no_figure_beyond_its_interval() -> None:
     config = DEFAULT_BOOK
     found = [
-        revalidate_all(tables(), Rehearsal(config, "test", 20_000, seed, 2), [False] * len(TABLES))
+        revalidated(tables(), Rehearsal(config, "test", 20_000, seed, 2), [False] * len(TABLES))
         for seed in (config.validation.seed, 7)
     ]
     for one, other in zip(*found, strict=True):

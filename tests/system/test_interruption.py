@@ -129,11 +129,12 @@ def test_ctrl_c_at_a_terminal_is_told_in_one_line(tmp_path: Path) -> None:
 
 
 DRAW_FOR_EVER = """
-from synth.present.draw_pictures import Studio
+from synth.book.shown.pictures import exits_chart
+from synth.frame.picture.studio import Studio
 from tests.synth.case_factory import make_case
 if __name__ == "__main__":
     with Studio(2) as studio:
-        for drawn in [studio.draw(("class_pictures", ((make_case(),),))) for _ in range(500)]:
+        for drawn in [studio.drawing(exits_chart([make_case()])) for _ in range(500)]:
             drawn.result()
 """
 

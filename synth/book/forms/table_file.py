@@ -11,6 +11,7 @@ from synth.book.forms.aim_file import is_aim_table
 from synth.book.forms.passage_mark import is_passage_table
 from synth.frame.input_error import InputError
 from synth.frame.machine_fault import MACHINE_FAULTS
+from synth.frame.summary import FORMAT
 from tuning_tables import ControllerTable, read_book, read_json
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.passages.passage_table import PassageTable
@@ -18,8 +19,6 @@ from tuning_tables.regular_file import first_bytes
 
 HDF5_SIGNATURE = b"\x89HDF"
 BOOK_SUFFIXES = (".h5", ".hdf5")
-SUMMARIES = ("retarder-summary", "sensor-summary")
-"""Forms of the summaries of a tune, for a radar and for point sensors."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +95,7 @@ def summary_beside(path: Path) -> dict[str, object] | None:
             document = json.loads((folder / "summary.json").read_bytes())
         except (OSError, ValueError):
             continue
-        if isinstance(document, dict) and document.get("format") in SUMMARIES:
+        if isinstance(document, dict) and document.get("format") == FORMAT and "cases" in document.get("tables", {}):
             return document
     return None
 
@@ -104,7 +103,8 @@ def summary_beside(path: Path) -> dict[str, object] | None:
 def is_infeasible(table: ControllerTable | PassageTable, summary: dict[str, object] | None) -> bool:
     """Whether `summary`, of the same configuration, calls the case of `table` infeasible."""
     match summary:
-        case {"generator": {"config_sha256": sha256}, "cases": list(cases)} if sha256 == table.generator.config_sha256:
+        case {"generator": {"config_sha256": sha256}, "tables": {"cases": list(cases)}}:
             found = [case for case in cases if isinstance(case, dict) and case.get("id") == table.id]
-            return any(case.get("feasible") is False for case in found)
+            same = sha256 == table.generator.config_sha256
+            return same and any(case.get("verdict") == "infeasible" for case in found)
     return False

@@ -22,11 +22,11 @@ class Worst:
 
     @property
     def told(self) -> str:
-        """In words, as the end of a sentence."""
+        """In a sentence."""
         found = self.outcome
         return (
-            f"off nominal, for which there is no limit, the worst is {case_name(self.case)} with {found.change}: rms "
-            f"{found.rms_m_s:.4f} {interval_text(found.rms_ci95_m_s)} m/s, {self.ratio:.1f} times the nominal"
+            f"Off nominal, for which there is no limit, the worst is {case_name(self.case)} with {found.change}: rms "
+            f"{found.rms_m_s:.4f} {interval_text(found.rms_ci95_m_s)} m/s, {self.ratio:.1f} times the nominal."
         )
 
 

@@ -34,9 +34,6 @@ from synth.solver.one_blas_thread import one_blas_thread
 APPROACH_M = 4.0
 """The approach that is tried where the configuration has none."""
 
-Ask = Callable[[TunedTable, ExitSample], CasePermissions]
-"""What permissions give beside the table of a case, and its passes."""
-
 Design = Callable[[], PermissionResult]
 """Designs, predicts and simulates one permission; raises what `attempted` takes for a failure."""
 
@@ -111,15 +108,6 @@ def case_tuned(config: ResolvedConfig, setup: ClassSetup, solution: Solution) ->
     """The table of a solution, and its passes."""
     tuned = tuned_table(setup, solution)
     return CaseTuned(config, setup, solution.aim, tuned, setup.passes.run(TableController(tuned.table)))
-
-
-def asking(config: ResolvedConfig, setup: ClassSetup, aim: Aim) -> Ask:
-    """The function that a tune asks once it has the table of a case: nothing is tuned twice."""
-
-    def ask(tuned: TunedTable, sample: ExitSample) -> CasePermissions:
-        return case_permissions(CaseTuned(config, setup, aim, tuned, sample))
-
-    return ask
 
 
 def case_permissions(case: CaseTuned) -> CasePermissions:

@@ -5,28 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from synth.book.exit_figures import CASE, LOOP, PREDICTED, loop_row
 from synth.book.permissions.overview import asked_of, median_ratios, medians
 from synth.book.permissions.permission import AllPermissions, CasePermissions
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
-from synth.frame.printed_numbers import decimals, per_cent
-from synth.simulation.exit_statistics import ExitStatistics
+from synth.frame.printed_numbers import decimals
 
-CASE = (Column("case", "case", words=True, once=True), Column("target_m_s", "target", "m/s"))
 FIGURES = (
     *CASE,
     Column("permission", "permission", words=True),
     Column("ratio", "rms / rms as configured", form=decimals(2)),
-    Column("predicted_rms_m_s", "predicted rms", "m/s", decimals(4)),
-    Column("rms_m_s", "rms", "m/s", decimals(4)),
-    Column("bias_m_s", "mean error", "m/s", decimals(4)),
-    Column("std_m_s", "its deviation", "m/s", decimals(4)),
-    Column("p95_m_s", "95 of 100 within", "m/s", decimals(4)),
-    Column("p99_m_s", "99 of 100 within", "m/s", decimals(4)),
-    Column("overspeed", "over-speed", form=per_cent),
-    Column("stalled", "stops", form=per_cent),
-    Column("switchings", "commands a cut"),
-    Column("time_s", "time", "s"),
+    PREDICTED,
+    *LOOP,
 )
 MISSING = (*CASE, Column("permission", "permission", words=True), Column("reason", "reason", words=True))
 AS_CONFIGURED = "as configured"
@@ -63,12 +54,12 @@ def permissions(title: str, told: AllPermissions) -> Iterator[Exhibit]:
 def missing(told: AllPermissions) -> Iterator[Exhibit]:
     """What cannot be told, and why; nothing where all is told."""
     rows: list[Row] = [
-        {"case": case.label, "target_m_s": case.target_speed_m_s, "permission": each.permission.value,
+        {"label": case.label, "target_speed_m_s": case.target_speed_m_s, "permission": each.permission.value,
          "reason": each.reason}
         for case in told.cases
         for each in case.failed
     ]  # fmt: skip
-    rows += [{"case": each.label, "target_m_s": each.target_m_s, "reason": each.reason} for each in told.failed]
+    rows += [{"label": each.label, "target_speed_m_s": each.target_m_s, "reason": each.reason} for each in told.failed]
     if rows:
         yield Table("missing", "What cannot be told; without a permission: the case has no table", MISSING, rows, True)
 
@@ -76,8 +67,8 @@ def missing(told: AllPermissions) -> Iterator[Exhibit]:
 def ratios(case: CasePermissions) -> Row:
     """The ratios of one case by the names of the permissions."""
     row: dict[str, Any] = {
-        "case": case.label,
-        "target_m_s": case.target_speed_m_s,
+        "label": case.label,
+        "target_speed_m_s": case.target_speed_m_s,
         "configured_m_s": Interval(case.table.rms_m_s, *case.table.rms_ci95_m_s, case.table.passes),
     }
     for each in case.results:
@@ -87,32 +78,16 @@ def ratios(case: CasePermissions) -> Row:
 
 def figures(case: CasePermissions) -> Iterator[Row]:
     """The table as configured, then each permission."""
-    head = {"case": case.label, "target_m_s": case.target_speed_m_s}
-    yield {**head, "permission": AS_CONFIGURED, "predicted_rms_m_s": case.predicted_rms_m_s, **of(case.table)}
+    head = {"label": case.label, "target_speed_m_s": case.target_speed_m_s}
+    yield {**head, "permission": AS_CONFIGURED, "predicted_rms_m_s": case.predicted_rms_m_s, **loop_row(case.table)}
     for each in case.results:
         yield {
             **head,
             "permission": each.permission.value,
             "ratio": Interval(each.ratio, *each.ratio_ci95, case.table.passes),
             "predicted_rms_m_s": each.predicted_rms_m_s,
-            **of(each.statistics),
+            **loop_row(each.statistics),
         }
-
-
-def of(found: ExitStatistics) -> Row:
-    """The figures of a closed loop with their intervals."""
-    n = found.passes
-    return {
-        "rms_m_s": Interval(found.rms_m_s, *found.rms_ci95_m_s, n),
-        "bias_m_s": Interval(found.bias_m_s, *found.bias_ci95_m_s, n),
-        "std_m_s": found.std_m_s,
-        "p95_m_s": Interval(found.p95_m_s, *found.p95_ci95_m_s, n),
-        "p99_m_s": Interval(found.p99_m_s, *found.p99_ci95_m_s, n),
-        "overspeed": Interval(found.overspeed, *found.overspeed_ci95, n),
-        "stalled": Interval(found.stalled, *found.stalled_ci95, n),
-        "switchings": Interval(found.switchings, *found.switchings_ci95, n),
-        "time_s": Interval(found.time_s, *found.time_ci95_s, n),
-    }
 
 
 def _picture() -> Any:

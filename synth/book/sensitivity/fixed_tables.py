@@ -11,7 +11,7 @@ from plant_models import Plant
 from synth.book.class_setup import class_setup, origin_of, validation_passes
 from synth.book.forms.table_file import read_tables
 from synth.book.tuned_table import solutions, tuned_table
-from synth.book.validate_table import plant_for
+from synth.book.validation.revalidation import plant_for
 from synth.configuration.cut_class import CutClass
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim

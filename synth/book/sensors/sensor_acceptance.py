@@ -1,8 +1,8 @@
-"""Whether the tables for point sensors of a book keep the limits that its configuration sets, case by case."""
+"""What the simulated passes of tables for point sensors say of the limits that their configuration sets."""
 
 from __future__ import annotations
 
-from synth.book.acceptance import CaseVerdict, Verdict, verdict_on, verdict_within
+from synth.book.acceptance import CaseVerdict, verdict_within
 from synth.book.judgement import judgement
 from synth.book.sensors.sensor_case import SensorCase
 from synth.book.sensors.sensor_tune import SensorBook
@@ -10,15 +10,13 @@ from synth.configuration.settings import AcceptanceSettings
 from synth.simulation.replicates import share_of
 
 
-def judge_sensors(book: SensorBook) -> Verdict:
-    """The verdict on the simulated passes of all cases.
+def judged(book: SensorBook) -> tuple[CaseVerdict, ...]:
+    """The verdict on each case.
 
     A case is infeasible if its unavoidable error makes the rms miss the limit, with all of the 95 % interval: then no
     rule with these sensors keeps it.
     """
-    limits = book.config.acceptance
-    judged = tuple(judge_sensor_case(case, limits) for case in book.cases)
-    return verdict_on(judged, [case.statistics for case in book.cases], limits, book.failed)
+    return tuple(judge_sensor_case(case, book.config.acceptance) for case in book.cases)
 
 
 def judge_sensor_case(case: SensorCase, limits: AcceptanceSettings) -> CaseVerdict:

@@ -65,9 +65,9 @@ def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
 
 
 def shown_table(of: Table) -> Markup:
-    """The table with all its columns."""
-    rows = (([cell(column, row) for column in of.columns], "bad" if of.bad(row) else "") for row in of.rows)
-    return table(of.title, (head_row(*(column.title for column in of.columns)),), rows, kind="cases")
+    """The table with all columns that hold figures."""
+    rows = (([cell(column, row) for column in of.seen], "bad" if of.bad(row) else "") for row in of.rows)
+    return table(of.title, (head_row(*(column.title for column in of.seen)),), rows, kind="cases")
 
 
 def cell(column: Column, row: Row) -> Cell:

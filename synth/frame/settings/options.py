@@ -21,8 +21,8 @@ BY_PLACE: Final = ""
 NEEDED: Final = ...
 """The default of what must be typed."""
 
-Words = str | Path | Sequence[str | Path] | None
-"""What was typed of an option: a word, several where it takes them, None for nothing."""
+Words = str | Path | bool | Sequence[str | Path] | None
+"""What was typed of an option: a word, several where it takes them, None for nothing; whether a flag was."""
 
 
 def number_option(flag: str, metavar: str, default: float | None, low: float, high: float, meaning: str) -> Any:
@@ -43,6 +43,11 @@ def configured(flag: str, metavar: str, section: type[Section], key: str, meanin
 def word_option(flag: str, metavar: str, default: object, meaning: str) -> Any:
     """Words, a path, or a list in words that a validator of the field reads."""
     return Field(default, description=meaning, json_schema_extra={"flag": flag, "metavar": metavar})
+
+
+def flag_option(flag: str, meaning: str) -> Any:
+    """Whether the flag is typed; no word follows it."""
+    return Field(False, description=meaning, json_schema_extra={"flag": flag, "metavar": ""})
 
 
 def words_option(flag: str, metavar: str, default: object, meaning: str) -> Any:

@@ -25,7 +25,7 @@ def printed(told: Told) -> Iterator[Exhibit]:
             yield each.text
         if isinstance(each, Table) and each.brief:
             yield PrintedTable(
-                tuple(printed_column(column) for column in each.columns if not column.detail),
+                tuple(printed_column(column) for column in each.seen if not column.detail),
                 each.rows,
                 "summary.json",
                 each.title,
@@ -36,7 +36,7 @@ def printed(told: Told) -> Iterator[Exhibit]:
 
 def printed_column(column: Column) -> PrintedColumn[Row]:
     """The column as a terminal has it."""
-    return PrintedColumn(column.title, partial(Column.text, column), column.words, column.once, column.spare)
+    return PrintedColumn(column.title, partial(Column.brief, column), column.words, column.once, column.spare)
 
 
 def folders_and_files(names: Sequence[str]) -> list[str]:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 
-from synth.book.summary import Document, plain
+from synth.frame.summary import plain
 from synth.yard.humping.aim_choice import AimChoice
 from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.outcomes import TrainOutcomes
@@ -25,7 +26,7 @@ Figures = Sequence[TrainFigure]
 def trial_summary(
     config: ResolvedTrial, found: TrainOutcomes, figures: Figures, verdict: TrialVerdict, created: str,
     file_hashes: Mapping[str, str],
-) -> Document:  # fmt: skip
+) -> dict[str, Any]:  # fmt: skip
     """The document; `file_hashes`: SHA-256 by file name, all files but summary.json itself."""
     document = {
         "format": "hump-trial-summary",
@@ -50,11 +51,11 @@ def trial_summary(
         "aim_tables": [aim_of(config, choice) for choice in config.aims],
         "files": dict(file_hashes),
     }
-    plain_document: Document = plain(document)
+    plain_document: dict[str, Any] = plain(document)
     return plain_document
 
 
-def figure_of(figure: TrainFigure) -> Document:
+def figure_of(figure: TrainFigure) -> dict[str, Any]:
     """A figure with its 95 % interval; `enough_n`: see `TrainFigure`."""
     return {
         "value": figure.value,
@@ -65,7 +66,7 @@ def figure_of(figure: TrainFigure) -> Document:
     }
 
 
-def elements_of(config: ResolvedTrial, found: TrainOutcomes) -> Document:
+def elements_of(config: ResolvedTrial, found: TrainOutcomes) -> dict[str, Any]:
     """Counts of cuts at each element where there was one at all, by its number."""
     counts = {
         name: getattr(found, name).sum(axis=0) for name in ("misrouted", "contact", "unseparated", "foul")
@@ -77,7 +78,7 @@ def elements_of(config: ResolvedTrial, found: TrainOutcomes) -> Document:
     }
 
 
-def positions_of(config: ResolvedTrial, found: TrainOutcomes) -> list[Document]:
+def positions_of(config: ResolvedTrial, found: TrainOutcomes) -> list[dict[str, Any]]:
     """The tracks on whose routes each position is the last one, so that it aims; its passes, how exactly cuts left it,
     and commands to its valves, None where none are modelled."""
     passes, error2, strokes = (each.sum(axis=0) for each in (found.passes, found.error2_m2_s2, found.strokes))
@@ -94,7 +95,7 @@ def positions_of(config: ResolvedTrial, found: TrainOutcomes) -> list[Document]:
     ]
 
 
-def aim_of(config: ResolvedTrial, choice: AimChoice) -> Document:
+def aim_of(config: ResolvedTrial, choice: AimChoice) -> dict[str, Any]:
     """Which aim tables command the last position, and on which tracks."""
     return {
         "tracks": sorted(int(config.routes.tracks[row]) for row in choice.rows),

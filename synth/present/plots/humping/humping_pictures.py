@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from plant_models.library.hump_entry import HumpEntry
+from synth.frame.picture.figure_file import draw
 from synth.frame.picture.picture import Picture
 from synth.present.plots.humping.catch_ups import catch_ups
 from synth.present.plots.humping.couplings import couplings
 from synth.present.plots.humping.hump_speed_program import PushedTrain, hump_speed_program, pushed_train
 from synth.present.plots.humping.speed_path import speed_path
 from synth.present.plots.humping.time_path import time_path
-from synth.present.plots.picture_book import picture
 from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.train_trace import TrainTrace
@@ -84,3 +85,8 @@ def program_picture(program: PushedTrain) -> Picture:
         f"Hump speed program of train {program.number + 1}",
         "Speed at which the train is pushed when the middle of each cut is at the crest; in between it changes evenly.",
     )
+
+
+def picture(figure: Figure, name: str, section: str, title: str, caption: str) -> Picture:
+    """Draw `figure` as a picture."""
+    return Picture(name, section, title, caption, draw(figure))

@@ -13,7 +13,7 @@ from synth.book.estimation.simulated_prediction import simulated_prediction
 from synth.book.failed_case import FailedCase, require_none
 from synth.book.rounded_table import with_prediction
 from synth.book.tuned_table import solutions, tuned_table, validated_table
-from synth.book.validate_table import plant_for
+from synth.book.validation.revalidation import plant_for
 from synth.book.watcher import Watcher
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import get_args
 
 import numpy as np
 import pytest
 
 from plant_models.pressure_gauge import USUAL_NOISE_KPA
 from scripts.studies.identification.truths import text_of_classes
+from synth.book.validation.options import ValidateOptions
 from synth.cli import main
-from synth.cli.arguments import GaugeStd
-from synth.cli.validate import asked_log
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.identifiability import Finding
@@ -59,17 +57,15 @@ def test_a_log_becomes_a_configuration(
         told = f"{size['value']:+.2g} [{size['low95']:+.2g}, {size['high95']:+.2g}]"
         assert f"<td>{told}</td><td>{test['matters_from']:g}</td>" in report
         (line,) = (line for line in printed.splitlines() if line.startswith(test["looks_for"]))
-        assert told in line
+        half = max(size["high95"] - size["value"], size["value"] - size["low95"])
+        assert f"{size['value']:+.2g} ±{half:.2g}" in line
         assert line.endswith(test["verdict"])
     assert "accepted: none of 5 tests says that the model does not hold" in printed
 
 
 def test_a_rehearsal_and_its_identification_begin_with_one_gauge() -> None:
-    asked_for = asked_log(Path("passes.csv"), None, None)
-    assert asked_for is not None
-    assert asked_for.gauge_std_kpa == RANGES[GAUGE_NOISE][0] == USUAL_NOISE_KPA
-    (option,) = (each for each in get_args(GaugeStd) if hasattr(each, "help"))
-    assert option.help == f"Noise of the logged pressure; {USUAL_NOISE_KPA:g} unless given."
+    default = ValidateOptions(source=Path("book.h5")).gauge_std_kpa
+    assert default == RANGES[GAUGE_NOISE][0] == USUAL_NOISE_KPA
 
 
 def words(folder: Path) -> list[str]:

@@ -1,0 +1,155 @@
+"""What is shown of a tune for point sensors: a row for each case, the passages that went wrong, and the doubts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from synth.book.acceptance import CaseVerdict, advice_of
+from synth.book.comparison.measured import honesty_of
+from synth.book.exit_figures import (
+    CASE,
+    HONESTY,
+    LEGEND,
+    OUT_OF_BRAKE,
+    PREDICTED,
+    RISKS,
+    RMS,
+    RMS_WITHIN,
+    SWITCHINGS,
+    TIME,
+    WITHIN_95,
+    WITHIN_99,
+    loop_row,
+    power_row,
+    told,
+)
+from synth.book.sensors.found_passages import FoundPassages
+from synth.book.sensors.sensor_case import SensorCase
+from synth.book.sensors.sensor_tune import SensorBook
+from synth.book.shown.cases import (
+    KEYS,
+    PROMISE,
+    UNAVOIDABLE,
+    VERDICT,
+    failed_cases,
+    failed_rows,
+    is_outside,
+    key_row,
+    unavoidable,
+)
+from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
+from synth.frame.printed_numbers import per_cent
+
+CASES: Final = (
+    *CASE, RMS, UNAVOIDABLE, WITHIN_95, WITHIN_99, OUT_OF_BRAKE, PREDICTED, HONESTY, SWITCHINGS, TIME, VERDICT, *RISKS,
+    RMS_WITHIN, *KEYS, *PROMISE,
+)  # fmt: skip
+HOW_TO_READ: Final = (
+    "Unavoidable: rms of what cuts leave too fast by under the harder braking of the table and of a regulator that "
+    "goes to the highest stage at every passage, and too slow by if never braked; where that alone is above the limit, "
+    "the case is infeasible and outside the verdict."
+)
+PASSAGES: Final = (
+    *CASE,
+    Column("sensor", "sensor"),
+    Column("axle", "axle"),
+    Column("path_m", "path", "m"),
+    Column("unfinished", "change unfinished", form=per_cent),
+    Column("mistaken", "pulses mistaken", form=per_cent),
+)
+HEARD: Final = (
+    "Passages at which is decided. A change of stage that a cut finds unfinished there leaves nothing to decide. "
+    "Mistaken: its pulses are taken for no passage, or for another. Shares are of the cuts that come there. Axles and "
+    "sensors are counted from 0, as in files."
+)
+DECIDES: Final[Mapping[str, str]] = {"first_axle": "its first axle passes", "every_axle": "each of its axles passes"}
+DESIGNS: Final = (
+    *CASE,
+    Column("converged", "polish converged"),
+    Column("evaluations", "evaluations"),
+    Column("cost_before_m2_s2", "cost before", "m²/s²"),
+    Column("cost_after_m2_s2", "cost after", "m²/s²"),
+    Column("status", "how it ended", words=True),
+    Column("escaped_probability", "left the grid", form="{:.1e}".format),
+)
+
+
+def results(found: FoundPassages) -> Iterator[Exhibit]:
+    """The table of cases, and what is to be known of it."""
+    book = found.book
+    rows = [case_row(case, verdict) for case, verdict in zip(book.cases, found.verdicts, strict=True)]
+    rows += failed_rows(book.failed)
+    yield Table("cases", book.config.title, CASES, rows, True, is_outside)
+    yield from failed_cases(book.failed)
+    passes = book.cases[0].statistics.passes
+    criterion = {"criterion": book.config.criterion.sentence}
+    yield Sentence(f"{passes} stratified passes a case. {LEGEND} {HOW_TO_READ}", criterion, brief=True)
+    advice = advice_of(found.verdicts)
+    if advice:
+        yield Sentence(advice, brief=True)
+    if found.no_st:
+        yield Sentence(f"No Structured Text is written: {found.no_st}.", brief=True)
+
+
+def case_row(case: SensorCase, verdict: CaseVerdict) -> Row:
+    """Everything about one case in figures."""
+    found, promised = case.statistics, case.table.predicted
+    return {
+        **key_row(case.label, case.plant, case.table, verdict),
+        **loop_row(found),
+        **power_row(case.brake_power, found.passes),
+        "unavoidable_rms_m_s": unavoidable(case.unavoidable, found.passes),
+        "honesty": told(*honesty_of(promised.rms_m_s, promised.passes, found), found.passes),
+    }
+
+
+def heard(book: SensorBook) -> Iterator[Exhibit]:
+    """Where the sensors stand, whose passages decide, and what came of each."""
+    places = ", ".join(f"{place:g}" for place in book.sensors.sensors.path_m)
+    yield Sentence(
+        f"{len(book.sensors.sensors.path_m)} sensors {book.sensors.type} stand at {places} m from the entrance. The "
+        f"regulator decides on a cut when {DECIDES[book.sensors.decides_on]} one, if the change of stage before has "
+        "ended."
+    )
+    yield Sentence(HEARD)
+    yield Table("passages", "Passages", PASSAGES, [row for case in book.cases for row in passage_rows(case)])
+
+
+def passage_rows(case: SensorCase) -> Iterator[Row]:
+    """The passages of one case."""
+    n = case.statistics.passes
+    for row, unfinished, mistaken in zip(case.table.passages, case.heard.unfinished, case.heard.mistaken, strict=True):
+        yield {
+            **of(case),
+            "sensor": row.sensor,
+            "axle": row.axle,
+            "path_m": row.path_m,
+            "unfinished": told(*unfinished, n),
+            "mistaken": told(*mistaken, n),
+        }
+
+
+def designs(book: SensorBook) -> Iterator[Exhibit]:
+    """How the searches for the switching speeds ended, and all doubts."""
+    yield Table("designs", "How the tables were found", DESIGNS, [design_row(case) for case in book.cases])
+    for case in book.cases:
+        yield from (Sentence(f"Warning for {case.name}: {warning}.") for warning in case.warnings)
+
+
+def design_row(case: SensorCase) -> Row:
+    """One case."""
+    return {
+        **of(case),
+        "converged": case.polish.converged,
+        "status": case.polish.status,
+        "evaluations": case.polish.evaluations,
+        "cost_before_m2_s2": case.polish.cost_before,
+        "cost_after_m2_s2": case.polish.cost_after,
+        "escaped_probability": case.predicted.escaped,
+    }
+
+
+def of(case: SensorCase) -> dict[str, Any]:
+    """Which case it is."""
+    return {"label": case.label, "target_speed_m_s": case.target_speed_m_s}

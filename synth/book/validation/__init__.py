@@ -1,0 +1,1 @@
+"""The closed loop of exported tables, simulated once more."""

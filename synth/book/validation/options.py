@@ -1,0 +1,55 @@
+"""Options of the command `validate`."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path, PurePath
+from typing import Final
+
+from pydantic import field_validator
+
+from plant_models.pressure_gauge import USUAL_NOISE_KPA
+from synth.frame.settings.options import BY_PLACE, NEEDED, Options, number_option, word_option
+
+LARGEST_STD_KPA: Final = 100.0
+LOG_FORMS: Final = (".csv", ".h5")
+
+
+class ValidateOptions(Options):
+    """Options of the command line. `gauge_std_kpa` NaN: there is no gauge."""
+
+    source: Path = word_option(BY_PLACE, "TABLE.json|BOOK.h5", NEEDED, "A table, or a book of tables.")
+    config: Path | None = word_option("--config", "C", None, "Configuration with the plant; built-in unless given.")
+    passes: int | None = number_option(
+        "--passes", "N", None, 1000, 100_000_000, "Passes of each table; as configured unless given."
+    )
+    seed: int | None = number_option(
+        "--seed", "N", None, 0, 2**63 - 1, "Of the random numbers; as configured unless given."
+    )
+    log: str | None = word_option(
+        "--log", "NAME.csv|.h5", None, "Also log passes as a controller would, in a file of this name in DIR."
+    )
+    log_passes: int = number_option("--log-passes", "N", 200, 1, 100_000, "Logged of each table.")
+    gauge_std_kpa: float = word_option(
+        "--gauge-std", "KPA|none", USUAL_NOISE_KPA, "Noise of the logged pressure; none: there is no gauge."
+    )
+
+    @field_validator("log")
+    @classmethod
+    def _is_a_name(cls, word: str | None) -> str | None:
+        """No folder, and an ending of a log."""
+        if word is not None and (PurePath(word).name != word or PurePath(word).suffix not in LOG_FORMS):
+            raise ValueError(f"the name of a file in DIR that ends in {' or '.join(LOG_FORMS)}")
+        return word
+
+    @field_validator("gauge_std_kpa", mode="before")
+    @classmethod
+    def _is_a_deviation(cls, word: str) -> float:
+        """A number of kPa, or none."""
+        try:
+            value = math.nan if word == "none" else float(word)
+        except ValueError:
+            value = -1.0
+        if value < 0.0 or value > LARGEST_STD_KPA:
+            raise ValueError(f"0 to {LARGEST_STD_KPA:g} kPa, or none")
+        return value

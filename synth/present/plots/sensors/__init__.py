@@ -1,1 +1,0 @@
-"""Pictures of point sensors: where they stand, and what their tables do."""
