@@ -18,6 +18,7 @@ COMMANDS: Final = (
         "init",
         "Make a book of tables, its pictures and report.\n\n"
         "Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.",
+        folder="out",
     ),
     Listed(
         "aim",

@@ -27,7 +27,8 @@ class Listed:
     """A command as the program lists it.
 
     `words`: as it is typed, "sensors plan"; `place` of the `Command` and `options_place` of its options alone, each
-    "module:NAME"; `init`: what prints a configuration; `help`: what it does, a paragraph or two.
+    "module:NAME"; `init`: what prints a configuration; `help`: what it does, a paragraph or two. `folder`: where its
+    results go unless told; in a folder of its name in out/ if that is not given.
     """
 
     words: str
@@ -35,6 +36,7 @@ class Listed:
     options_place: str
     init: str
     help: str
+    folder: str = ""
 
     def load(self) -> Command[Any, Any, Any, Any]:
         """The command, imported."""
@@ -54,7 +56,7 @@ class Listed:
     @property
     def output(self) -> Path:
         """Where its results go unless told."""
-        return Path("out") / self.words.replace(" ", "-")
+        return Path(self.folder) if self.folder else Path("out") / self.words.replace(" ", "-")
 
 
 def listed_group(listed: Sequence[Listed]) -> type[TyperGroup]:

@@ -52,3 +52,15 @@ def look(path: Path) -> Verdict:
 def judged(path: Path) -> Verdict:
     """The verdict with few passes, which contradict no claim that is right."""
     return verify(path, 100, 1)
+
+
+def claim_in_summary(folder: Path, document: Document) -> None:
+    """Let summary.json in `folder` state of the table in `document` what that states of itself."""
+    file = folder / "summary.json"
+    summary = json.loads(file.read_text(encoding="utf-8"))
+    (case,) = (case for case in summary["tables"]["cases"] if case["id"] == document["id"])
+    validated = document["validated"]
+    low, high = validated["rms_ci95_m_s"]
+    rms = {"value": validated["rms_m_s"], "low95": low, "high95": high, "n": validated["passes"]}
+    case.update({f"predicted_{name}": value for name, value in document["predicted"].items()}, rms_m_s=rms)
+    file.write_text(json.dumps(summary, ensure_ascii=False), encoding="utf-8")

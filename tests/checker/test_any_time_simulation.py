@@ -23,7 +23,7 @@ from synth.checker.summary import Summary, read_summary
 from synth.checker.table_reading import Table, read_table
 from synth.checker.verdict import CONFIRMED, verify
 from tests.checker.any_time_tables import approached, sloped, sound_table
-from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
+from tests.checker.planted_fault import Document, alone, claim_in_summary, found, judged, look, rewrite
 from tuning_tables import to_json
 
 HONESTY = Honesty(0.9, 1.35)
@@ -151,11 +151,7 @@ def claimed(out: Path, change: Callable[[Document], None]) -> Path:
     """The table with `change` done to it, and the figures in the summary changed alike."""
     file = alone(out)
     rewrite(file, change)
-    document = json.loads(file.read_text(encoding="utf-8"))
-    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
-    (case,) = summary["cases"]
-    case["predicted"], case["simulated"] = document["predicted"], document["validated"]
-    (out / "summary.json").write_text(json.dumps(summary, ensure_ascii=False), encoding="utf-8")
+    claim_in_summary(out, json.loads(file.read_text(encoding="utf-8")))
     return file
 
 

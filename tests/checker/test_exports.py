@@ -239,6 +239,6 @@ def test_a_changed_configuration_is_not_believed(tuned: Path) -> None:
 
 def test_other_figures_in_the_summary_are_found(tuned: Path) -> None:
     summary = json.loads((tuned / "summary.json").read_text(encoding="utf-8"))
-    summary["cases"][0]["predicted"]["rms_m_s"] *= 0.5
+    summary["tables"]["cases"][0]["predicted_rms_m_s"] *= 0.5
     (tuned / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     assert found(look(tuned), Kind.DISAGREES, "but summary.json says")

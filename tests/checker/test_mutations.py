@@ -11,7 +11,7 @@ import pytest
 
 from synth.checker.finding import Kind
 from synth.checker.verdict import CONFIRMED, verify
-from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
+from tests.checker.planted_fault import Document, alone, claim_in_summary, found, judged, look, rewrite
 
 
 def test_a_tune_with_every_export_passes(tuned_once: Path) -> None:
@@ -90,11 +90,7 @@ def test_a_false_claim_is_not_confirmed(tuned: Path, change: Callable[[Document]
     """The summary's own figures are changed alike, so that only the simulation can tell."""
     table = alone(tuned)
     rewrite(table, change)
-    summary = json.loads((tuned / "summary.json").read_text(encoding="utf-8"))
-    claimed = json.loads(table.read_text(encoding="utf-8"))
-    case = next(case for case in summary["cases"] if case["id"] == claimed["id"])
-    case["predicted"], case["simulated"] = claimed["predicted"], claimed["validated"]
-    (tuned / "summary.json").write_text(json.dumps(summary, ensure_ascii=False), encoding="utf-8")
+    claim_in_summary(tuned, json.loads(table.read_text(encoding="utf-8")))
     assert found(verify(table, 300, 1), Kind.CLAIM, words)
 
 

@@ -14,14 +14,18 @@ import typer
 from typer.testing import CliRunner
 
 from plant_models import PlantError
+from synth.frame.asked_file import asked_of
+from synth.frame.command import Verdict
 from synth.frame.command_line import Listed, add_listed, listed_group
-from synth.frame.exhibits import Column, Table
+from synth.frame.exhibits import Chapter, Column, Table
 from synth.frame.input_error import InputError
 from synth.frame.page.told_page import shown
 from synth.frame.printed_numbers import ABSENT
 from synth.frame.sheet import to_csv
 from synth.frame.summary import plain, rows_of
+from synth.frame.told import Told
 from tests.frame.results import results_in
+from tests.frame.small_command import COMMAND, CoinOptions
 
 LISTED = Listed(
     "throw coins",
@@ -161,3 +165,10 @@ def test_the_help_tells_what_is_declared(app: typer.Typer) -> None:
     assert "Throw coins." in told
     assert "--throws N" in " ".join(told.split())
     assert "Throws of each player; as configured unless given." in " ".join(told.split())
+
+
+def test_two_exhibits_of_one_name_are_a_fault_of_the_command() -> None:
+    table = Table("shares", "Shares", (Column("share", "share"),), ())
+    head = COMMAND.head(COMMAND.resolve(asked_of(COMMAND, CoinOptions(), "init")))
+    with pytest.raises(ValueError, match="'coins' shows twice: table shares"):
+        Told("coins", head, "", Verdict(()), (Chapter("One", (table,)), Chapter("Two", (table,))), ())

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from synth.frame.interval import Interval
 from synth.sweep.heat_map import heat_map
 from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.sweep_file import load_sweep
@@ -91,9 +92,10 @@ def test_a_target_without_a_table_loses_none_but_itself(command: Callable[..., R
     status = command("sweep", "status", tmp_path / "some")[1]
     assert "complete; 2 of 2 units done, 0 failed, targets without a table: 1" in status
     summary = json.loads((tmp_path / "some" / "summary.json").read_text(encoding="utf-8"))
-    assert [(each["label"], each["target_m_s"]) for each in summary["failed"]] == [("gondola-4-22t", 3.5)]
-    refused = {(each["label"], each["target_m_s"]) for each in summary["failed"]}
-    axes = heat_map(summary["cases"], refused, load_sweep(tmp_path / "some.toml").conditions[0]).axes[0]
+    assert [(each["label"], each["target_m_s"]) for each in summary["tables"]["failed"]] == [("gondola-4-22t", 3.5)]
+    refused = {(each["label"], each["target_m_s"]) for each in summary["tables"]["failed"]}
+    cases = [{**case, "rms_m_s": Interval(**case["rms_m_s"])} for case in summary["tables"]["cases"]]
+    axes = heat_map(cases, refused, load_sweep(tmp_path / "some.toml").conditions[0]).axes[0]
     tables, empty = axes.collections[:2]
     assert (len(tables.get_paths()), len(empty.get_paths())) == (7, 1)
     assert axes.get_title(loc="left").endswith("hatched: no table")

@@ -32,8 +32,8 @@ SECOND = made_front("gondola-85t", (1.0, 1.0, 1.01, 1.0), (0.0, 0.0, 0.02, 0.2))
 def test_the_highest_price_that_is_nearly_free_in_all_cases_is_told() -> None:
     assert nearly_free([FIRST, SECOND]) == 3e-5
     assert told([FIRST, SECOND]) == (
-        "A price of 3e-05 m2/s3 on a second makes no rms more than 1% larger beyond its 95 % interval, and passes "
-        "0.02 to 0.40 s shorter, than none (criterion.time_price_m2_s3)."
+        "A price of 3e-05 m2/s3 on a second makes no rms more than 1% larger beyond its 95 % interval, and changes "
+        "the mean time in the position by -0.40 to -0.02 s (criterion.time_price_m2_s3)."
     )
     assert nearly_free([SECOND]) == 1e-4
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Final
 
 from synth.simulation.exit_statistics import ExitStatistics
 from synth.simulation.replicates import Interval
@@ -48,20 +48,6 @@ class ParetoFront:
         """How much sooner cuts leave than at the lowest price, in the mean."""
         return self.points[0].statistics.time_s - point.statistics.time_s
 
-    @property
-    def document(self) -> list[dict[str, Any]]:
-        """The points for programs."""
-        return [
-            {
-                "time_price_m2_s3": each.time_price_m2_s3,
-                **asdict(each.statistics),
-                "predicted_rms_m_s": each.predicted_rms_m_s,
-                "ratio": each.ratio,
-                "ratio_ci95": each.ratio_ci95,
-            }
-            for each in self.points
-        ]
-
 
 def nearly_free(fronts: Sequence[ParetoFront]) -> float:
     """The highest price up to which each is nearly free; the lowest if none is."""
@@ -82,8 +68,9 @@ def told(fronts: Sequence[ParetoFront]) -> str:
             f"Already a price of {PRICES_M2_S3[1]:g} m2/s3 on a second makes some rms more than {more} larger beyond "
             "its 95 % interval, or leaves a case without a table (criterion.time_price_m2_s3)."
         )
-    saved = [front.saved_s(point) for front in fronts if (point := front.at(price)) is not None]
+    change = [-front.saved_s(point) for front in fronts if (point := front.at(price)) is not None]
     return (
         f"A price of {price:g} m2/s3 on a second makes no rms more than {more} larger beyond its 95 % interval, and "
-        f"passes {min(saved):.2f} to {max(saved):.2f} s shorter, than none (criterion.time_price_m2_s3)."
+        f"changes the mean time in the position by {min(change):+.2f} to {max(change):+.2f} s "
+        "(criterion.time_price_m2_s3)."
     )

@@ -42,7 +42,7 @@ from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.printed_numbers import per_cent
 
 CASES: Final = (
-    *CASE, RMS, UNAVOIDABLE, WITHIN_95, WITHIN_99, OUT_OF_BRAKE, PREDICTED, HONESTY, SWITCHINGS, TIME, VERDICT, *RISKS,
+    *CASE, VERDICT, RMS, UNAVOIDABLE, WITHIN_95, WITHIN_99, OUT_OF_BRAKE, PREDICTED, HONESTY, SWITCHINGS, TIME, *RISKS,
     RMS_WITHIN, *KEYS, *PROMISE,
 )  # fmt: skip
 HOW_TO_READ: Final = (

@@ -50,12 +50,12 @@ ENTRY: Final = (
     Column("served_entry_m_s", "of them served", "m/s", decimals(2), detail=True),
 )
 CASES: Final = (
-    *CASE, RMS, WITHIN_95, WITHIN_99, OUT_OF_BRAKE, PREDICTED, HONESTY,
+    *CASE, VERDICT, RMS, WITHIN_95, WITHIN_99, OUT_OF_BRAKE, PREDICTED, HONESTY,
     Column("at_rest_ratio", "rms / at rest", form=decimals(2), spare=7),
     Column("regret", "regret", form=decimals(2), spare=5),
     Column("best_baseline_m_s", "best baseline", "m/s", decimals(4), spare=6),
     Column("best_baseline", "which", words=True, spare=6),
-    SWITCHINGS, TIME, VERDICT, UNAVOIDABLE, *RISKS, RMS_WITHIN, *KEYS, *ENTRY, *PROMISE,
+    UNAVOIDABLE, SWITCHINGS, TIME, *RISKS, RMS_WITHIN, *KEYS, *ENTRY, *PROMISE,
 )  # fmt: skip
 
 HOW_TO_READ: Final = (
