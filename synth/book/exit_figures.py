@@ -42,8 +42,8 @@ POWER: Final = (OUT_OF_BRAKE, RMS_WITHIN)
 LEGEND: Final = (
     "95 of 100 within ±: so many cuts leave within so many m/s of the target. Over-speed: more than 0.3 m/s above the "
     "target. Out of brake: leaves that fast even where every decision raises the stage, so that no table can hold it. "
-    "A cut that stops in the position counts with exit speed 0. Brackets: 95 % intervals, from passes in strata of the "
-    "friction; the chance of these passes is all that they cover."
+    "A cut that stops in the position counts with exit speed 0. Brackets, and ± their wider half: 95 % intervals, from "
+    "passes in strata of the friction; the chance of these passes is all that they cover."
 )
 
 

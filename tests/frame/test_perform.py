@@ -70,7 +70,8 @@ def test_every_medium_tells_the_same_figures(app: typer.Typer, tmp_path: Path) -
     assert first["told_by"] == "'=dice"  # no formula for a spreadsheet
     assert set(nobody.values()) == {"nobody", ""}
     words = f"{share['value']:.2f} [{share['low95']:.2f}, {share['high95']:.2f}]"
-    assert words in printed
+    half = max(share["high95"] - share["value"], share["value"] - share["low95"])
+    assert f"{share['value']:.2f} ±{half:.2f}" in printed
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert words in page
     assert 'class="bad"' in page
