@@ -106,8 +106,8 @@ def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -
     route = drawn_route(hump.graph, track)
     from synth.frame.picture.figure_file import figure_files
     from synth.kernels.cache import guarded
-    from synth.present.plots.hump.hump_picture import hump_picture
     from synth.yard.design_runners import roll_runners
+    from synth.yard.hump.pictures.hump_picture import hump_picture
 
     with results_directory(output, "hump draw", [source]) as directory:
         rolls = guarded(roll_runners, route)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 from plant_models.library import SourcedValue
 from synth.frame.exhibits import Chapter
 from synth.frame.settings.options import Options
+from synth.frame.settings.toml_file import read_text
 
 if TYPE_CHECKING:
     from synth.frame.results_directory import ResultsDirectory
@@ -104,6 +105,13 @@ class Work:
     directory: ResultsDirectory
 
 
+class Unfinished(Exception):
+    """`compute` could not do a part of its work, though nothing is wrong with what was asked; says which and why.
+
+    What was stored before stays, and the next run goes on from it.
+    """
+
+
 def no_limits(result: object) -> Iterator[Limit]:
     """The limits of a command that judges nothing."""
     return iter(())
@@ -115,7 +123,9 @@ class Command(Generic[S, O, P, R]):
     refused (`InputError`, `PlantError`); `compute` tells each finished step.
 
     `name`: as it is typed. `options`: a declared model of what is typed behind it. `limits_of_use`: what figures do not
-    say.
+    say. `text`: the text of the configuration at a path, where that may be something else than a TOML file; its other
+    argument is the command that prints such a file. `inputs`: a folder of the results into which `compute` copies what
+    is read, before anything else; a later run may read it there.
     """
 
     name: str
@@ -128,6 +138,8 @@ class Command(Generic[S, O, P, R]):
     show: Callable[[R], Iterator[Chapter]]
     limits: Callable[[R], Iterable[Limit]] = no_limits
     limits_of_use: Sequence[str] = ()
+    text: Callable[[Path, str], str] = read_text
+    inputs: str = ""
 
 
 @dataclass(frozen=True)
