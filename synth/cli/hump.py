@@ -22,7 +22,7 @@ MOST_TOLD = 30
 def check_command(source: Path, as_json: bool) -> int:
     """Tell what the hump in `source` has, and what its file leaves open; `InputError` for the first fault of it."""
     from synth.configuration.hump import read_hump
-    from synth.present.hump_document import checked_document
+    from synth.yard.hump.hump_document import checked_document
 
     read = read_hump(source)
     found = checked_document(read.entry)
@@ -71,7 +71,7 @@ def span(ends: Sequence[float], unit: str) -> str:
 def routes_command(source: Path, as_json: bool) -> int:
     """Print every route of the hump in `source`, and the lists of tracks of its switches."""
     from synth.configuration.hump import read_hump
-    from synth.present.hump_document import routes_document
+    from synth.yard.hump.hump_document import routes_document
 
     graph = read_hump(source).entry.graph
     if as_json:
@@ -106,8 +106,8 @@ def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -
     route = drawn_route(hump.graph, track)
     from synth.frame.picture.figure_file import figure_files
     from synth.kernels.cache import guarded
-    from synth.present.plots.hump.hump_picture import hump_picture
     from synth.yard.design_runners import roll_runners
+    from synth.yard.hump.pictures.hump_picture import hump_picture
 
     with results_directory(output, "hump draw", [source]) as directory:
         rolls = guarded(roll_runners, route)

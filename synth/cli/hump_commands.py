@@ -14,23 +14,6 @@ from synth.frame.command_line import add_listed, listed_group
 
 app = typer.Typer(cls=listed_group(HUMP), help="Check, list and draw a hump; hump whole trains over it.")
 
-Trial = Annotated[
-    Path | None,
-    typer.Argument(metavar="CONFIG.toml|HUMP", help="A hump trial, or a hump for the built-in trial."),
-]
-Trains = Annotated[
-    int | None,
-    typer.Option(parser=whole_number(1, 10_000_000), metavar="N", help="Trains; as configured unless given."),
-]
-Seed = Annotated[
-    int | None,
-    typer.Option(parser=whole_number(0, 2**53), metavar="N", help="Of the random numbers; as configured unless given."),
-]
-SortingCsv = Annotated[
-    Path | None,
-    typer.Option("--list", metavar="CSV", help="A sorting list, that of every train."),
-]
-
 Hump = Annotated[
     Path, typer.Argument(metavar="FILE|NAME", help="A hump file (.toml, .railml), or a hump of the library.")
 ]
@@ -91,62 +74,6 @@ def schema() -> int:
     from synth.cli.hump import schema_command
 
     return schema_command()
-
-
-@app.command()
-def simulate(
-    source: Trial = None,
-    output: Annotated[
-        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
-    ] = Path("out/trains"),
-    trains: Trains = None,
-    sorting_list: SortingCsv = None,
-    seed: Seed = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(parser=whole_number(1, 1024), metavar="N", help="Processes on this machine."),
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of this Dask scheduler instead.")
-    ] = None,
-    as_json: Json = False,
-) -> int:
-    """Hump whole trains: catch-ups, couplings, gaps and cars an hour, with intervals; resumable.
-
-    The same command goes on after an end of any kind. Exit code 1 if a limit of the configuration is missed.
-    """
-    from synth.cli.hump_trial import AskedTrains, simulate_command
-
-    return simulate_command(source, AskedTrains(trains, seed, sorting_list), output, workers, scheduler, as_json)
-
-
-@app.command()
-def speed(
-    source: Trial = None,
-    output: Annotated[
-        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the files go.")
-    ] = Path("out/speed"),
-    train: Annotated[
-        int, typer.Option(parser=whole_number(1, 10_000_000), metavar="K", help="Which train of the trial.")
-    ] = 1,
-    sorting_list: SortingCsv = None,
-    seed: Seed = None,
-    as_json: Json = False,
-) -> int:
-    """Plan one train: hump speeds for the locomotive, and the uncoupler's sheet."""
-    from synth.cli.hump_trial import AskedTrains, speed_command
-
-    return speed_command(source, AskedTrains(None, seed, sorting_list), train, output, as_json)
-
-
-@app.command()
-def report(
-    path: Annotated[Path, typer.Argument(metavar="DIR", help="What hump simulate left.")], as_json: Json = False
-) -> int:
-    """Make figures, pictures and pages again from the trains that hump simulate left."""
-    from synth.cli.hump_trial import report_command
-
-    return report_command(path, as_json)
 
 
 add_listed(app, HUMP)

@@ -119,5 +119,21 @@ SENSORS: Final = (
 )
 """Behind the word `sensors`."""
 
-HUMP: Final[tuple[Listed, ...]] = ()
+HUMP: Final = (
+    Listed(
+        "hump simulate",
+        "synth.sweep.trains.command:COMMAND",
+        "synth.sweep.trains.options:SimulateOptions",
+        "init --hump",
+        "Hump whole trains: catch-ups, couplings, gaps and cars an hour, with intervals; resumable.\n\n"
+        "The same command goes on after an end of any kind. Exit code 1 if a limit of the configuration is missed.",
+    ),
+    Listed(
+        "hump speed",
+        "synth.yard.humping.speed_command:COMMAND",
+        "synth.yard.humping.trial_options:SpeedOptions",
+        "init --hump",
+        "Plan one train: hump speeds for the locomotive, and the uncoupler's sheet.",
+    ),
+)
 """Behind the word `hump`."""

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from synth.frame.command import Asked, Command, O, P, R, S
 from synth.frame.settings.settings_file import BUILT_IN
-from synth.frame.settings.toml_file import read_text
 
 
 def asked_of(command: Command[S, O, P, R], options: O, init: str) -> Asked[S, O]:
@@ -15,5 +14,5 @@ def asked_of(command: Command[S, O, P, R], options: O, init: str) -> Asked[S, O]
     `init`: the command that prints such a file.
     """
     path = options.config
-    text, place = ("", BUILT_IN) if path is None else (read_text(path, init), str(path))
+    text, place = ("", BUILT_IN) if path is None else (command.text(path, init), str(path))
     return Asked(command.read(text, place), options, place, Path(place).parent)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 from plant_models.library import SourcedValue
 from synth.frame.exhibits import Chapter, Chart
 from synth.frame.settings.options import Options
+from synth.frame.settings.toml_file import read_text
 
 if TYPE_CHECKING:
     from synth.frame.results_directory import ResultsDirectory
@@ -106,6 +107,13 @@ class Work:
     begin: Callable[[Chart], None]
 
 
+class Unfinished(Exception):
+    """`compute` could not do a part of its work, though nothing is wrong with what was asked; says which and why.
+
+    What was stored before stays, and the next run goes on from it.
+    """
+
+
 def no_limits(result: object) -> Iterator[Limit]:
     """The limits of a command that judges nothing."""
     return iter(())
@@ -122,7 +130,10 @@ class Command(Generic[S, O, P, R]):
     refused (`InputError`, `PlantError`); `compute` tells each finished step.
 
     `name`: as it is typed. `options`: a declared model of what is typed behind it. `limits_of_use`: what figures do not
-    say. `drawing`: how many processes draw its charts, which are pickled where there is more than one.
+    say. `text`: the text of the configuration at a path, where that may be something else than a TOML file; its other
+    argument is the command that prints such a file. `inputs`: a folder of the results into which `compute` copies what
+    is read, before anything else; a later run may read it there. `drawing`: how many processes draw its charts,
+    which are pickled where there is more than one.
     """
 
     name: str
@@ -136,6 +147,8 @@ class Command(Generic[S, O, P, R]):
     limits: Callable[[R], Iterable[Limit]] = no_limits
     limits_of_use: Sequence[str] = ()
     drawing: Callable[[P], int] = in_this_process
+    text: Callable[[Path, str], str] = read_text
+    inputs: str = ""
 
 
 @dataclass(frozen=True)

@@ -146,10 +146,14 @@ class Chart:
 
 @dataclass(frozen=True)
 class File:
-    """A file of its own beside the others: a section of a configuration, for one."""
+    """A file of its own beside the others: a section of a configuration, for one.
+
+    `title`: of the link to it on the page; without one the page only lists it.
+    """
 
     name: str
     content: bytes
+    title: str = ""
 
 
 Exhibit = Table | Sentence | Chart | File

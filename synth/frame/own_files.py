@@ -78,6 +78,11 @@ class OwnFiles:
         """Names of the files, of which some may be gone or only begun."""
         return iter(tuple(self._contents))
 
+    @property
+    def stores(self) -> bool:
+        """Whether there is something that a later run may go on from; asks no lock, since Ctrl-C asks it."""
+        return any(CHANGING in contents for contents in tuple(self._contents.values()))
+
     def content_of(self, name: str) -> str | None:
         """SHA-256 of the file `name` as the command wrote it, or `CHANGING`; None for one that it did not write, that
         was changed since, or that is gone."""

@@ -8,9 +8,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, O, P, R, S, Verdict, Work
+from synth.frame.command import Asked, Command, Head, O, P, R, S, Steps, Unfinished, Verdict, Work
 from synth.frame.creation_time import creation_time, require_date
-from synth.frame.exhibits import Chart, File, Table, exhibits_of
+from synth.frame.exhibits import Chapter, Chart, File, Table
 from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.results_directory import SUMMARY, ResultsDirectory, results_directory
 from synth.frame.terminal.interrupt import interruptible
@@ -31,25 +31,15 @@ def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_j
     require_date()
     problem = command.resolve(asked)
     head, steps = command.head(problem), command.steps(problem)
-    from synth.frame.picture.studio import Studio
-    from synth.frame.terminal.progress import Progress  # rich: a refusal needs none
-
-    started, created = time.monotonic(), creation_time()
-    with results_directory(output, command.name, (*asked.options.reads, *head.reads)) as directory:
+    reads = (*asked.options.reads, *head.reads)
+    with results_directory(output, command.name, reads, inputs=command.inputs) as directory:
         for warning in head.warnings:
             say(f"warning: {warning}")
-        processes = command.drawing(problem) if head.output.plots or head.output.report else 1
-        with (
-            interruptible(directory, "summary"),
-            Progress(steps.count, steps.word, steps.noun) as progress,
-            Studio(processes) as studio,
-        ):
-            result = command.compute(problem, Work(progress, directory, studio.begin))
-            verdict = Verdict(tuple(command.limits(result)))
-            chapters = tuple(command.show(result))
-            told = Told(command.name, head, created, verdict, chapters, command.limits_of_use)
-            write(told, directory, studio, progress.note)
-            progress.note(f"all files written after {time.monotonic() - started:.1f} s")
+        try:
+            told = finished(command, problem, head, steps, directory)
+        except Unfinished as fault:
+            say(f"{fault}; what was done before is kept in {output}, and the same command goes on from it")
+            return LIMITS_MISSED
         names = (*directory.written,)
     if as_json:
         sys.stdout.write((output / SUMMARY).read_text(encoding="utf-8"))
@@ -57,19 +47,48 @@ def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_j
         from synth.frame.terminal.told_print import print_told
 
         print_told(told, output, names)
-    return OK if verdict.accepted else LIMITS_MISSED
+    return OK if told.verdict.accepted else LIMITS_MISSED
 
 
-def write(told: Told, directory: ResultsDirectory, studio: Studio, tell: Callable[[str], None]) -> None:
-    """Write files, tables, pictures, page, and last of all the summary."""
+def finished(command: Command[S, O, P, R], problem: P, head: Head, steps: Steps, directory: ResultsDirectory) -> Told:
+    """Compute, judge and write; what a chapter holds is on the disk before the next one is made."""
+    from synth.frame.picture.studio import Studio
+    from synth.frame.terminal.progress import Progress  # rich: a refusal needs none
+
+    started, created = time.monotonic(), creation_time()
+    processes = command.drawing(problem) if head.output.plots or head.output.report else 1
+    with (
+        interruptible(directory, "summary"),
+        Progress(steps.count, steps.word, steps.noun) as progress,
+        Studio(processes) as studio,
+    ):
+        result = command.compute(problem, Work(progress, directory, studio.begin))
+        verdict = Verdict(tuple(command.limits(result)))
+        chapters = []
+        for chapter in command.show(result):
+            write_data(chapter, directory)
+            chapters.append(chapter)
+        told = Told(command.name, head, created, verdict, tuple(chapters), command.limits_of_use)
+        write_shown(told, directory, studio, progress.note)
+        progress.note(f"all files written after {time.monotonic() - started:.1f} s")
+    return told
+
+
+def write_data(chapter: Chapter, directory: ResultsDirectory) -> None:
+    """Write the files and tables of a chapter."""
     from synth.frame.sheet import to_csv
-    from synth.frame.summary import summary_of
 
-    for each in exhibits_of(told.chapters):
+    for each in chapter.exhibits:
         if isinstance(each, File):
             directory.write(each.name, each.content)
         elif isinstance(each, Table):
             directory.write(each.file, to_csv(each))
+
+
+def write_shown(told: Told, directory: ResultsDirectory, studio: Studio, tell: Callable[[str], None]) -> None:
+    """Write pictures and page, and last of all the summary."""
+    from synth.frame.summary import summary_of
+
     output = told.head.output
     pictures = drawn(told, studio, tell) if output.plots or output.report else {}
     if output.plots:

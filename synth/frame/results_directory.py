@@ -51,6 +51,11 @@ class ResultsDirectory:
         with self._lock:
             return {name: content for name, content in sorted(self._written.items()) if content != CHANGING}
 
+    @property
+    def goes_on(self) -> bool:
+        """Whether a next run of the command goes on from what this one or an earlier one has stored."""
+        return self._own.stores
+
     def names_below(self, folder: str) -> tuple[str, ...]:
         """The files below `folder` that this command wrote, in this run or earlier."""
         return tuple(name for name in sorted(self._own) if name.startswith(f"{folder}/") and self._own.content_of(name))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from synth.kernels.cache import compiling_facts
 
-WITHOUT_RESULTS = ("synth/checker/", "synth/cli/", "synth/present/")
+WITHOUT_RESULTS = ("synth/checker/", "synth/cli/", "synth/book/pictures/", "synth/book/shown/")
 """Parts that show or check results and make none."""
 
 PATTERNS = ("plant_models/**/*.py", "plant_models/**/*.toml", "synth/**/*.py", "tuning_tables/**/*.py")

@@ -7,6 +7,7 @@ still offends: it may only become shorter, for a name that no longer offends fai
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
@@ -22,7 +23,7 @@ SOURCES = {
     for path in sorted((ROOT / package).rglob("*.py"))
 }
 
-MOST_ROOMS = 14
+MOST_ROOMS = 13
 MOST_LINES, MOST_FUNCTION_LINES, MOST_ARGUMENTS = 300, 60, 8
 KERNEL_FUNCTION_LINES, KERNEL_ARGUMENTS = 88, 36
 """What the longest kernel has; lower these when it becomes shorter."""
@@ -33,6 +34,8 @@ KNOWN_UNREACHED: set[str] = set()
 KNOWN_WRITABLE: set[str] = set()
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+ENTRY = re.compile(r"[a-z]\w*(\.[a-z]\w*)+:[A-Za-z]\w*")
 
 
 def test_there_are_packages_to_judge() -> None:
@@ -92,12 +95,14 @@ def measured(node: Function) -> tuple[str, int, int]:
 
 
 def imported(node: ast.AST) -> Iterator[str]:
-    """The modules, and names in modules, that a statement imports."""
+    """The modules, and names in modules, that a statement imports, or names as entry points do, "module:NAME"."""
     if isinstance(node, ast.ImportFrom) and node.module:
         yield node.module
         yield from (f"{node.module}.{alias.name}" for alias in node.names)
     elif isinstance(node, ast.Import):
         yield from (alias.name for alias in node.names)
+    elif isinstance(node, ast.Constant) and isinstance(node.value, str) and ENTRY.fullmatch(node.value):
+        yield node.value.partition(":")[0]
 
 
 def is_dataclass(node: ast.ClassDef) -> bool:

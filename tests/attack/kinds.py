@@ -23,14 +23,13 @@ from synth.configuration.aim.template import default_aim_toml
 from synth.configuration.config_file import load_config
 from synth.configuration.hump import parse_hump
 from synth.configuration.humping.template import default_trial_toml
-from synth.configuration.humping.trial_file import read_trial_file
 from synth.configuration.point_sensors.template import default_sensors_toml
 from synth.configuration.railml.write import to_railml
 from synth.frame.asked_file import asked_of
 from synth.frame.settings.template import template
 from synth.frame.terminal.telling import say
+from synth.sweep.trains.command import COMMAND as SIMULATE
 from synth.yard.aim.command import COMMAND as AIM
-from synth.yard.humping.resolved_trial import resolve_trial
 from synth.yard.measured_passes.loaded_passes import loaded_passes
 from tests.attack.attempt import Kind, Reading
 from tests.attack.railml_attributes import attribute_kind
@@ -81,7 +80,7 @@ def read_hump_file(folder: Path, name: str) -> str:
 
 def read_trial(folder: Path) -> str:
     """As `hump simulate`."""
-    resolve_trial(read_trial_file(folder / "trial.toml"))
+    SIMULATE.resolve(asked_of(SIMULATE, SIMULATE.options(config=folder / "trial.toml"), "init --hump"))
     return ""
 
 

@@ -39,7 +39,7 @@ design_cuts = 200
 
 
 def read_trains(folder: Path) -> str:
-    """As `hump report`: the hash of all outcomes."""
+    """As `computer`: the hash of all outcomes."""
     found = stored_trains(folder, str(folder)).found
     arrays = [np.asarray(getattr(found, field.name)) for field in fields(TrainOutcomes)]
     return hashlib.sha256(b"".join(f"{a.dtype} {a.shape}".encode() + a.tobytes() for a in arrays)).hexdigest()

@@ -95,7 +95,7 @@ ORDERS: tuple[Order, ...] = (
     Order("hump export medium", "medium.railml"),
     Order("hump schema"),
     Order("hump simulate trial.toml", "humped"),
-    Order("hump report humped"),
+    Order("hump simulate humped/inputs/config.toml", "humped"),
     Order("hump speed trial.toml", "speed"),
     Order("computer computer.toml", "computed"),
 )

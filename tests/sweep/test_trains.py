@@ -13,10 +13,11 @@ from pathlib import Path
 
 import pytest
 
+from synth.frame.command import Unfinished
 from synth.frame.results_directory import results_directory
 from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.trains.batch import BatchOrder, answer_batch, orders_of
-from synth.sweep.trains.train_run import BatchFailed, BatchFiles, missing_of, run_trains
+from synth.sweep.trains.train_run import BatchFiles, missing_of, run_trains
 from synth.sweep.work import Answer, InThisProcess
 from synth.yard.humping.made_trial import made_trial
 from synth.yard.humping.outcome_file import TrialTrains, from_npz, to_npz
@@ -99,7 +100,7 @@ def test_a_batch_that_cannot_be_humped_is_told_and_the_others_stay(trial: Path, 
         return answer_batch(order) if order.first == 0 else Answer(order.key, None, "no cars")
 
     with files_in(tmp_path, trial) as files:
-        with pytest.raises(BatchFailed, match=f"trains {BATCH + 1} to {2 * BATCH}: no cars"):
+        with pytest.raises(Unfinished, match=f"trains {BATCH + 1} to {2 * BATCH}: no cars"):
             run_trains(orders, orders, files, InThisProcess(refusing), Told())
         assert [order.first for order in missing_of(orders, files, Told())] == [BATCH, 2 * BATCH]
 
@@ -138,19 +139,20 @@ def test_a_damaged_batch_is_humped_again(
     assert contents(out) == contents(humped)
 
 
-def test_report_makes_the_same_files_again(command: Callable[..., Ran], humped: Path, tmp_path: Path) -> None:
+def test_its_own_inputs_make_the_same_files_again(command: Callable[..., Ran], humped: Path, tmp_path: Path) -> None:
     out = Path(shutil.copytree(humped, tmp_path / "elsewhere"))
-    for name in ("summary.json", "figures.csv", "locomotive.csv"):
+    for name in ("summary.json", "sheets/shares.csv", "sheets/program.csv", "trains.npz"):
         (out / name).unlink()
-    code, told, _ = command("hump", "report", out, "--json")
+    config = out / "inputs" / "config.toml"
+    code, told, said = command("hump", "simulate", config, "-o", out, "--json")
     assert code == 0
+    assert "3 of 3 batches are there already" in said
     assert json.loads(told) == json.loads((humped / "summary.json").read_bytes())
     assert contents(out) == contents(humped)
-    config = out / "inputs" / "config.toml"
     config.write_text(config.read_text(encoding="utf-8").replace("cuts = 3", "cuts = 4"), encoding="utf-8")
-    code, _, said = command("hump", "report", out)
-    assert code == 3
-    assert "not the outcomes of 540 trains of this trial" in said
+    code, _, said = command("hump", "simulate", config, "-o", out)
+    assert code == 2
+    assert f"{config}: it was changed after retarder-synth wrote it" in said
 
 
 def test_ctrl_c_keeps_what_is_humped(trial: Path, tmp_path: Path) -> None:

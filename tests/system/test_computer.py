@@ -125,6 +125,6 @@ def test_figures_of_the_hump_come_from_its_trials(tmp_path: Path) -> None:
     done = run("computer", str(config), "-o", str(tmp_path / "out"))
     assert done.returncode == 0, done.stderr
     summary, trial_summary = told(tmp_path / "out"), told(tmp_path / "today")
-    cars = next(figure for name, figure in trial_summary["figures"].items() if name == "cars_per_hour")
+    (cars,) = (row["mean"] for row in trial_summary["tables"]["means"] if row["name"] == "cars_per_hour")
     assert summary["config"]["today"]["cars_per_h"] == pytest.approx(cars["value"])
     assert "change.gap_m" in {bar["input"] for bar in summary["tables"]["tornado"]}

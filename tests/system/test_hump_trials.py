@@ -1,4 +1,4 @@
-"""`hump simulate`, `hump speed` and `hump report` from the command line to the last file."""
+"""`hump simulate` and `hump speed` from the command line to the last file."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 from synth.cli import main
-from synth.present.report.figure_table import TITLES
+from synth.frame.terminal.printed_table import PrintedTable
 from tests.frame.results import results_in
-from tests.printed_page import Page, page_about, table_of
+from tests.printed_page import Page, cells_of, page_about
 from tests.system.conftest import EPOCH, Command, changed
 
 SMALL = """\
@@ -60,6 +60,17 @@ def summary_of(directory: Path) -> dict[str, Any]:
     return found
 
 
+def figures_of(summary: dict[str, Any]) -> dict[str, Any]:
+    """The figures of all trains by name: each an interval, or a number where the trains are too few for one."""
+    tables = summary["tables"]
+    return {row["name"]: row[key] for name, key in (("shares", "share"), ("means", "mean")) for row in tables[name]}
+
+
+def value_of(figure: Any) -> Any:
+    """A figure without its interval."""
+    return figure["value"] if isinstance(figure, dict) else figure
+
+
 def arrays_of(directory: Path) -> Mapping[str, Any]:
     """The arrays by train, read with numpy alone."""
     with np.load(directory / "trains.npz", allow_pickle=False) as arrays:
@@ -68,16 +79,18 @@ def arrays_of(directory: Path) -> Mapping[str, Any]:
 
 def test_it_prints_the_figures_of_its_summary(humped: Path, pages: list[Page]) -> None:
     summary, page = summary_of(humped), page_about(pages, humped)
-    assert f"trains: {summary['trains']}; cuts: {summary['cuts']}; cars: {summary['cars']}" in str(page[0])
-    figures = {TITLES.get(name, name.replace("_", " ")): figure for name, figure in summary["figures"].items()}
-    told = {row["figure"].removesuffix(", %").removesuffix(", m/s").removesuffix(", m"): row for row in table_of(page)}
-    assert told.keys() == figures.keys()
-    for title, row in told.items():
-        figure = figures[title]
-        scale = 100.0 if row["figure"].endswith(", %") else 1.0
-        ends = figure["ci95"]
-        found = [float(word.strip("[],")) for word in f"{row['value']} {row['95 %']}".split() if word != "–"]
-        wanted = [scale * each for each in (figure["value"], *([] if None in ends else ends)) if each is not None]
+    counts = summary["figures"]
+    assert f"trains: {counts['trains']}; cuts: {counts['cuts']}; cars: {counts['cars']}" in str(page[0])
+    means, shares = (cells_of(each) for each in page if isinstance(each, PrintedTable))
+    told = {row["of all trains"]: (row["mean"], 1.0) for row in means}
+    told |= {row["of all cuts"]: (row["share, %"], 100.0) for row in shares}
+    assert len(told) == len(means) + len(shares) == len(figures_of(summary))
+    rows = {row["title"]: row for name in ("means", "shares") for row in summary["tables"][name]}
+    assert told.keys() == rows.keys()
+    for title, (text, scale) in told.items():
+        figure = rows[title].get("mean", rows[title].get("share"))
+        found = [float(word.strip("[],").replace(",", "")) for word in text.split()]
+        wanted = [scale * figure[key] for key in ("value", "low95", "high95")]
         assert found == pytest.approx(wanted, rel=0.006)
 
 
@@ -91,9 +104,11 @@ def test_every_file_is_whole_and_listed(humped: Path) -> None:
         assert hashlib.sha256((humped / name).read_bytes()).hexdigest() == digest, name
     assert {
         "trains.npz",
-        "figures.csv",
-        "locomotive.csv",
-        "uncoupler.csv",
+        "sheets/shares.csv",
+        "sheets/means.csv",
+        "sheets/elements.csv",
+        "sheets/positions.csv",
+        "sheets/program.csv",
         "events.csv",
         "report.html",
         "hump.html",
@@ -111,20 +126,26 @@ def test_every_file_is_whole_and_listed(humped: Path) -> None:
 def test_the_figures_follow_from_the_arrays_by_train(humped: Path) -> None:
     """Ratios of sums over trains, worked out anew with numpy alone."""
     summary, arrays = summary_of(humped), arrays_of(humped)
-    assert summary["trains"] == 12
-    assert summary["cuts"] == 72 == arrays["cuts"].sum()
-    told = {name: figure["value"] for name, figure in summary["figures"].items()}
+    assert summary["figures"]["trains"] == 12
+    assert summary["figures"]["cuts"] == 72 == arrays["cuts"].sum()
+    told = {name: value_of(figure) for name, figure in figures_of(summary).items()}
     assert told["hump_speed"] == pytest.approx(arrays["span_m"].sum() / arrays["span_s"].sum(), rel=1e-12)
     assert told["cars_per_hour"] == pytest.approx(3600.0 * arrays["span_cars"].sum() / arrays["span_s"].sum())
     assert told["catch_ups"] == pytest.approx(arrays["caught"].sum() / 72)
     assert told["gap_per_cut"] == pytest.approx(arrays["gap_m"].sum() / arrays["judged"].sum())
-    for name, figure in summary["figures"].items():
-        if figure["ci95"][0] is not None:
-            assert figure["ci95"][0] <= figure["value"] <= figure["ci95"][1], name
-    rows = list(csv.DictReader(io.StringIO((humped / "figures.csv").read_text(encoding="utf-8"))))
-    assert {row["figure"]: float(row["value"]) for row in rows} == told
-    errors = [position["rms_of_exit_less_command_m_s"] for position in summary["positions"]]
-    assert errors[1] == pytest.approx(0.15, abs=0.06)  # 72 errors of 0.15, four standard deviations of their rms
+    for name, figure in figures_of(summary).items():
+        assert figure["low95"] <= figure["value"] <= figure["high95"], name
+        assert figure["n"] in (12, 72, arrays["judged"].sum()), name
+    sheets: dict[str, float] = {}
+    for sheet, key in (("shares", "share"), ("means", "mean")):
+        rows = csv.DictReader(io.StringIO((humped / "sheets" / f"{sheet}.csv").read_text(encoding="utf-8")))
+        sheets |= {row["name"]: float(row[key]) for row in rows}
+    assert sheets == told
+    errors = [position["rms_of_exit_less_command_m_s"] for position in summary["tables"]["positions"]]
+    squares = arrays["error2_m2_s2"].sum(axis=0) / arrays["passes"].sum(axis=0)
+    assert [error["value"] for error in errors] == pytest.approx(np.sqrt(squares))
+    assert errors[1]["value"] == pytest.approx(0.15, abs=0.06)  # 72 errors of 0.15, four standard deviations of theirs
+    assert errors[1]["low95"] < 0.15 < errors[1]["high95"]
 
 
 def test_one_hump_speed_is_what_is_told(command: Command, small: Path, tmp_path: Path) -> None:
@@ -133,8 +154,8 @@ def test_one_hump_speed_is_what_is_told(command: Command, small: Path, tmp_path:
     text = changed(SMALL, ("[exit_speeds]", "[hump_speed]\nconstant_m_s = 1.5\n[exit_speeds]"))
     config.write_text(text + "[output]\nplots = false\nreport = false\n", encoding="utf-8")
     assert command("hump", "simulate", config, "-o", tmp_path / "out").code == 0
-    figure = summary_of(tmp_path / "out")["figures"]["hump_speed"]
-    np.testing.assert_allclose([figure["value"], *figure["ci95"]], 1.5, rtol=1e-12)
+    figure = figures_of(summary_of(tmp_path / "out"))["hump_speed"]
+    np.testing.assert_allclose([figure[key] for key in ("value", "low95", "high95")], 1.5, rtol=1e-12)
     names = {name.partition("/")[0] for name in results_in(tmp_path / "out")}
     assert names.isdisjoint({"report.html", "hump.html"})
     assert not (tmp_path / "out" / "plots").exists()
@@ -151,13 +172,17 @@ def test_stale_pages_and_pictures_go(command: Command, humped: Path, tmp_path: P
     assert not (out / "hump.html").exists()
 
 
-def test_report_repeats_every_byte_elsewhere(command: Command, humped: Path, tmp_path: Path) -> None:
+def test_its_own_inputs_repeat_every_byte_elsewhere(command: Command, humped: Path, tmp_path: Path) -> None:
+    """From what a run has left all is made anew, and no train is humped."""
     out = Path(shutil.copytree(humped, tmp_path / "elsewhere"))
-    for path in [*(out / "plots").iterdir(), out / "report.html", out / "hump.html", out / "summary.json"]:
+    gone = ["report.html", "hump.html", "summary.json", "trains.npz", "sheets/shares.csv", "sheets/program.csv"]
+    for path in [*(out / "plots").iterdir(), *(out / name for name in gone)]:
         path.unlink()
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
-        assert command("hump", "report", out).code == 0
+        ran = command("hump", "simulate", out / "inputs" / "config.toml", "-o", out)
+    assert ran.code == 0
+    assert "1 of 1 batches are there already" in ran.err
     for path in humped.rglob("*"):
         if path.is_file():
             assert (out / path.relative_to(humped)).read_bytes() == path.read_bytes(), path
@@ -173,7 +198,9 @@ def test_a_missed_limit_is_code_1_and_says_which(command: Command, tmp_path: Pat
         assert ran.code == code
         told = json.loads(ran.out)
         assert told == summary_of(tmp_path / "out")
-        assert f"{word} the limit {limit}" in told["verdict"]
+        (told_limit,) = told["limits"]
+        assert f"{word} the limit {limit}" in told_limit["sentence"]
+        assert told_limit["kept"] is (True if code == 0 else None)
         assert told["accepted"] is (code == 0)
 
 
@@ -191,26 +218,32 @@ def test_a_sorting_list_is_every_train(command: Command, small: Path, tmp_path: 
     ran = command("hump", "speed", small, "--list", tmp_path / "train.csv", "-o", tmp_path / "speed", "--json")
     assert ran.code == 0
     told = json.loads(ran.out)
-    assert [(row["cars"], row["track"], row["category"]) for row in told["cuts"]] == [
+    assert [(row["cars"], row["track"], row["category"]) for row in told["tables"]["program"]] == [
         (1, 3, "L"), (2, 11, "T"), (1, 5, "T"),
     ]  # fmt: skip
-    assert all(Path(file).is_file() for file in told["files"])
+    assert all((tmp_path / "speed" / file).is_file() for file in told["files"])
     out = tmp_path / "out"
     assert command("hump", "simulate", small, "--list", tmp_path / "train.csv", "-o", out, "--trains", 3).code == 0
     assert arrays_of(out)["cars"].tolist() == [4, 4, 4]
     (tmp_path / "train.csv").unlink()
-    assert command("hump", "report", out).code == 0  # the list is among the inputs
+    again = command("hump", "simulate", out / "inputs" / "config.toml", "-o", out)
+    assert again.code == 0  # the list is among the inputs
+    assert "1 of 1 batches are there already" in again.err
 
 
 def test_the_sheet_is_that_of_the_program(command: Command, small: Path, humped: Path, tmp_path: Path) -> None:
     ran = command("hump", "speed", small, "-o", tmp_path)
     assert ran.code == 0
     assert "train 1: cuts: 6; over the crest in " in ran.out
-    for name in ("locomotive", "uncoupler"):
-        assert (tmp_path / f"train-1-{name}.csv").read_bytes() == (humped / f"{name}.csv").read_bytes()
+    sheet = tmp_path / "sheets" / "program.csv"
+    first = sheet.read_bytes()
+    assert first == (humped / "sheets" / "program.csv").read_bytes()
+    summary = summary_of(tmp_path)
+    assert f"{summary['figures']['planned_cars_per_hour']:.0f} cars an hour" in ran.out
     other = command("hump", "speed", small, "-o", tmp_path, "--train", 2)
     assert other.code == 0
-    assert (tmp_path / "train-2-uncoupler.csv").read_bytes() != (tmp_path / "train-1-uncoupler.csv").read_bytes()
+    assert sheet.read_bytes() != first
+    assert summary_of(tmp_path)["generator"] != summary["generator"]
 
 
 def test_the_template_of_init_is_read_by_simulate(command: Command, tmp_path: Path) -> None:
@@ -230,10 +263,9 @@ def test_the_template_of_init_is_read_by_simulate(command: Command, tmp_path: Pa
         (["simulate", "nope"], "nope: there is no such file, and no such hump in the library"),
         (["simulate", "nope.toml"], "there is no such file; write one with 'retarder-synth init --hump > nope.toml'"),
         (["simulate", "--workers", "2", "--scheduler", "x"], "--workers and --scheduler are both given"),
-        (["simulate", "--trains", "0"], "Invalid value for '--trains': it is '0'; give a whole number from 1"),
+        (["simulate", "--trains", "0"], "--trains is '0'; it must be a whole number from 1 to 10000000"),
         (["simulate", "--list", "none.csv"], "none.csv: there is no such file; give the path of a sorting list"),
-        (["report", "."], "there is no inputs/config.toml in it; give what 'hump simulate' left"),
-        (["speed", "--train", "0"], "Invalid value for '--train': it is '0'"),
+        (["speed", "--train", "0"], "--train is '0'; it must be a whole number from 1 to 10000000"),
     ],
 )
 def test_bad_input_is_one_sentence(

@@ -84,7 +84,7 @@ DIRECTORIES = (
     Writing(("aim", "aim.toml"), "report.html"),
     Writing(("computer", "computer.toml"), "report.html"),
     Writing(("hump", "simulate", "trial.toml", "--list", "train.csv"), "inputs/config.toml"),
-    Writing(("hump", "speed", "trial.toml"), "train-1-locomotive.csv"),
+    Writing(("hump", "speed", "trial.toml"), "sheets/program.csv"),
     Writing(("hump", "draw", "hump.toml"), "hump-hump.png"),
     Writing(("identify", "log.csv", "--config", "own.toml", "--mapping", "mapping.toml"), "config.toml"),
     Writing(("watch", "log.csv", "--config", "yard.toml", "--reference", "log.h5"), "sheets/passes.csv"),

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
 from plant_models.library import YARD_CATEGORIES
 from plant_models.library.sourced_value import JUDGEMENT
 from synth.configuration.aim.settings import DEFAULT_MIX, ResistanceSettings, WeatherSettings
+from synth.configuration.humping.counted_trains import CountedTrains
+from synth.frame.settings.output import OutputSettings
 from synth.frame.settings.section import Section, many, setting
 from synth.frame.settings.value_forms import Title
 
@@ -23,11 +23,9 @@ EXIT_RANGE_M_S = (4.0, 7.0)
 KNOWN = Literal["category", "measured"]
 
 
-class TrainSettings(Section):
+class TrainSettings(CountedTrains):
     """Trains of a population, or one sorting list again and again (`list`). Shares count by their ratio."""
 
-    number: int = setting(200, "1", 1, 10_000_000, "trains that are humped")
-    seed: int = setting(20261122, "1", 0, 2**53, "seed of the random streams; train k of a seed is always the same")
     one_wind_a_train: bool = False
     list: str | None = None
     cuts: int = setting(40, "1", 2, 999, "cuts of a train", f"{JUDGEMENT}: a train of 70 cars or so")
@@ -177,13 +175,6 @@ class TrialAcceptanceSettings(Section):
     overspeed_above_2: float | None = None
 
 
-class TrialOutputSettings(Section):
-    """What is written besides figures and data; changes no result and no hash."""
-
-    plots: bool = Field(True, description="draw the pictures")
-    report: bool = Field(True, description="write report.html and hump.html")
-
-
 class HumpTrialSettings(Section):
     """A whole hump trial configuration; an empty one is the built-in default."""
 
@@ -203,4 +194,4 @@ class HumpTrialSettings(Section):
     sensors: SensorSettings = SensorSettings()
     position: tuple[HumpPositionSettings, ...] = many((), 0, 10, "tables [[position]]")
     acceptance: TrialAcceptanceSettings = TrialAcceptanceSettings()
-    output: TrialOutputSettings = TrialOutputSettings()
+    output: OutputSettings = OutputSettings()

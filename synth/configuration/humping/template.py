@@ -22,8 +22,8 @@ from synth.configuration.humping.settings import (
     TracksSettings,
     TrainSettings,
     TrialAimSettings,
-    TrialOutputSettings,
 )
+from synth.frame.settings.output import OutputSettings
 
 HEAD = """\
 # Hump trial of retarder-synth (retarder-synth hump simulate). Every line shows its default and may be left out.
@@ -77,7 +77,7 @@ def lines() -> Iterator[str]:
     yield from ("", "[sensors]", "# of what is measured; where nothing is, it counts nothing")
     yield from setting_lines("sensors", SensorSettings())
     yield from position_lines()
-    yield from ("", "[output]", *switch_lines(TrialOutputSettings))
+    yield from ("", "[output]", *switch_lines(OutputSettings))
 
 
 def names(kind: Kind) -> str:

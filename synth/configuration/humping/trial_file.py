@@ -10,17 +10,21 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from plant_models.library import BUILT_IN, Library
+from plant_models.library import Library
 from plant_models.library.hump_entry import HumpEntry, hump_names
 from synth.configuration.hump import RAILML_SUFFIXES, read_graph
 from synth.configuration.humping.settings import HumpTrialSettings
 from synth.configuration.own_types import with_own_types
 from synth.frame.input_error import InputError
 from synth.frame.settings.file_fault import faults_in
-from synth.frame.settings.toml_file import Tree, read_text, toml_tree
+from synth.frame.settings.settings_file import BUILT_IN as BUILT_IN_FILE
+from synth.frame.settings.toml_file import read_text, toml_tree
+from synth.frame.settings.toml_text import toml_text
 
-BUILT_IN_TRIAL = "built-in hump trial"
 HUMP_FORMAT = "hump"
+
+INPUTS = "inputs"
+"""Folder of copies of all that a trial was read from, in the directory of its results."""
 
 
 @dataclass(frozen=True)
@@ -46,42 +50,42 @@ class TrialFile:
 
 def read_trial_file(source: Path | None) -> TrialFile:
     """The configuration or hump `source`, or the built-in default; `InputError` on any fault of form."""
-    if source is None:
-        return of_tree({}, BUILT_IN_TRIAL, Path())
-    name = str(source)
+    return parse_trial_file("", BUILT_IN_FILE) if source is None else parse_trial_file(trial_text(source), str(source))
+
+
+def trial_text(source: Path, template: str = "init --hump") -> str:
+    """The text of the configuration `source`; a hump has that of the default trial on it. `InputError`.
+
+    `template`: the command that prints such a file.
+    """
+    if str(source) in hump_names() and not source.exists():
+        return toml_text({"hump": str(source)})
     if source.suffix in RAILML_SUFFIXES or not (source.suffix or source.exists()):
-        return of_hump(source)
-    text = read_text(source, "init --hump")
-    tree = toml_tree(text, name)
-    if tree.get("format") == HUMP_FORMAT:
-        return of_hump(source)
-    return of_tree(tree, name, source.parent)
+        return text_on(source)
+    text = read_text(source, template)
+    return text_on(source) if toml_tree(text, str(source)).get("format") == HUMP_FORMAT else text
+
+
+def text_on(hump: Path) -> str:
+    """The default trial on the hump in this file, whose path begins at the folder of the file; no name of the library
+    begins so."""
+    return toml_text({"hump": f"./{hump.name}"})
 
 
 def parse_trial_file(text: str, place: str) -> TrialFile:
     """The file with this `text`; paths in it begin at the folder of `place`."""
-    return of_tree(toml_tree(text, place), place, Path(place).parent)
-
-
-def of_hump(source: Path) -> TrialFile:
-    """The default trial on the hump `source`."""
-    return TrialFile(
-        HumpTrialSettings(hump=str(source)), BUILT_IN, read_graph(source).entry, str(source), Path(), source
-    )
-
-
-def of_tree(tree: Tree, place: str, folder: Path) -> TrialFile:
-    """The trial that `tree` asks for."""
-    named, library = with_own_types(tree, place)
+    tree, library = with_own_types(toml_tree(text, place), place)
     try:
-        settings = HumpTrialSettings.model_validate(named)
+        settings = HumpTrialSettings.model_validate(tree)
     except ValidationError as error:
         raise InputError(*(f"{place}: {sentence}" for sentence in faults_in(error, HumpTrialSettings))) from None
+    folder = Path(place).parent
     source = hump_source(settings.hump, folder)
     try:
         hump = read_graph(source).entry
     except InputError as fault:
-        raise InputError(*(f"{place}: hump: {sentence}" for sentence in fault.sentences)) from None
+        said = "" if str(source) == place else f"{place}: hump: "  # a hump by itself has faults of its own
+        raise InputError(*(f"{said}{sentence}" for sentence in fault.sentences)) from None
     return TrialFile(settings, library, hump, place, folder, source)
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 
-from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, Row, Sentence, Table
+from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table
 from synth.frame.page.document import Stamp, document, figure, file_table
 from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
 from synth.frame.page.parameter_table import parameter_section
@@ -52,7 +52,7 @@ def anchor_of(chapter: Chapter) -> str:
 
 
 def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
-    """One exhibit; a chart that was not drawn and a file leave nothing here."""
+    """One exhibit; a chart that was not drawn and a file without a title leave nothing here."""
     match exhibit:
         case Sentence():
             return element("p", exhibit.text)
@@ -61,6 +61,8 @@ def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
             return joined((element("h3", exhibit.title), element("p", rows) if exhibit.long else shown_table(exhibit)))
         case Chart() if exhibit.name in pictures:
             return figure(pictures[exhibit.name])
+        case File() if exhibit.title:
+            return element("p", element("a", exhibit.title, href=exhibit.name))
     return Markup()
 
 

@@ -31,7 +31,9 @@ def interruptible(directory: ResultsDirectory | None = None, result: str = "book
         if directory is not None:
             with contextlib.suppress(OSError):
                 directory.remove_leftovers()
-        say("interrupted" if directory is None else f"interrupted; {directory.path} holds no complete {result}")
+        said = "interrupted" if directory is None else f"interrupted; {directory.path} holds no complete {result}"
+        on = directory is not None and directory.goes_on
+        say(f"{said}, but what the same command goes on from" if on else said)
         with contextlib.suppress(OSError, ValueError):
             sys.stdout.flush()
         leave(INTERRUPTED)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+from synth.frame.command import Unfinished
 from synth.frame.results_directory import ResultsDirectory
 from synth.sweep.trains.batch import BatchOrder
 from synth.sweep.work import Engine
@@ -27,10 +28,6 @@ class BatchWatcher(Protocol):
 
     def done(self, sentence: str) -> None:
         """A batch is humped."""
-
-
-class BatchFailed(Exception):
-    """A batch could not be humped; what came before it is stored."""
 
 
 @dataclass(frozen=True)
@@ -89,13 +86,13 @@ def run_trains(
 ) -> TrainOutcomes:
     """All trains of `orders`; those `missing` are humped by `engine` and stored as they come.
 
-    `BatchFailed` tells why one could not be humped. What was stored before stays.
+    `Unfinished` tells why one could not be humped. What was stored before stays.
     """
     names = {order.key: order.name for order in missing}
     with closing(engine.answers(missing, lambda order: None)) as answers:
         for answer in answers:
             if answer.result is None:
-                raise BatchFailed(f"{names[answer.key]}: {answer.reason}")
+                raise Unfinished(f"{names[answer.key]}: {answer.reason}")
             files.store(answer.key, answer.result)
             watcher.done(f"{names[answer.key]}: {words(answer.result)}")
     files.directory.retain(*(files.name(order.key) for order in orders))

@@ -117,9 +117,14 @@ class ResolvedTrial:
         return hashlib.sha256(self.canonical_json.encode()).hexdigest()
 
     @property
-    def trains_sha256(self) -> str:
+    def trains_json(self) -> str:
         """The same of what each single train depends on: not how many there are, nor how they are judged."""
-        return hashlib.sha256(canonical_json(self._tree(CHANGES_NO_TRAIN))).hexdigest()
+        return canonical_json(self._tree(CHANGES_NO_TRAIN)).decode("utf-8")
+
+    @property
+    def trains_sha256(self) -> str:
+        """SHA-256 of `trains_json` in UTF-8, hexadecimal."""
+        return hashlib.sha256(self.trains_json.encode()).hexdigest()
 
     def _tree(self, without: tuple[str, ...]) -> dict[str, Any]:
         numbers = {v.key: v.value for v in self.parameters if not v.key.startswith(("hump.", *without))}

@@ -1,4 +1,4 @@
-"""The program of a train before it is humped: for the locomotive's remote control, and the uncoupler's sheet."""
+"""The program of a train before it is humped: what the locomotive and the uncoupler are told."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_plan import TrainPlan
 from synth.yard.humping.trial import HumpTrial
-from tuning_tables.sheet import sheet
 
 Floats = NDArray[np.float64]
 
@@ -83,29 +82,3 @@ def program_of(number: int, trains: TrainCuts, plan: TrainPlan, aim_m_s: Floats,
         for cut in range(trains.cuts)
     )
     return SpeedProgram(number, routes.positions, rows)
-
-
-def locomotive_csv(program: SpeedProgram) -> bytes:
-    """For the locomotive: the speed that it has at each moment; in between it changes evenly."""
-    return sheet(
-        ("cut", "time_s", "pushed_m", "speed_m_s"),
-        [(r.cut, f"{r.time_s:.2f}", f"{r.pushed_m:.2f}", f"{r.hump_speed_m_s:.2f}") for r in program.rows],
-    )
-
-
-def uncoupler_csv(program: SpeedProgram) -> bytes:
-    """For the uncoupler and the hump operator: every cut with what is to be done with it. Positions that are not on the
-    way to its track have empty cells."""
-    exits = tuple(f"exit_{place}_m_s" for place in range(1, program.positions + 1))
-    head = ("cut", "cars", "axles", "mass_t", "length_m", "category", "track", "hump_speed_m_s", "time_s", *exits)
-    return sheet(
-        head,
-        [
-            (
-                r.cut, r.cars, r.axles, f"{r.mass_t:.1f}", f"{r.length_m:.2f}", r.category, r.track,
-                f"{r.hump_speed_m_s:.2f}", f"{r.time_s:.1f}", *(f"{speed:.2f}" for speed in r.exit_m_s),
-                *("",) * (program.positions - len(r.exit_m_s)),
-            )
-            for r in program.rows
-        ],
-    )  # fmt: skip

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from synth.configuration.humping.trial_file import INPUTS
 from synth.frame.input_error import InputError
 from synth.yard.humping.outcome_file import TRAINS, TrialTrains, from_npz
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import ResolvedTrial, load_trial
 
-CONFIG: Final = "inputs/config.toml"
+CONFIG: Final = f"{INPUTS}/config.toml"
 
 
 @dataclass(frozen=True)

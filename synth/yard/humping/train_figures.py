@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import betaincinv, stdtrit
 
+from synth.frame.interval import Interval
 from synth.yard.humping.outcomes import TrainOutcomes
 
 Floats = NDArray[np.float64]
@@ -34,6 +35,21 @@ class TrainFigure:
     high95: float
     n: int
     enough_n: float = float("nan")
+
+    @property
+    def is_share(self) -> bool:
+        """A share is of cuts, a mean of trains."""
+        return not np.isnan(self.enough_n)
+
+    @property
+    def told(self) -> Interval | float:
+        """The figure as it is shown."""
+        return interval_of(self.value, self.low95, self.high95, self.n)
+
+
+def interval_of(value: float, low95: float, high95: float, n: int) -> Interval | float:
+    """The figure with its interval; alone where the trains are too few for one, NaN where there is none."""
+    return value if np.isnan(low95) or np.isnan(high95) else Interval(value, low95, high95, n)
 
 
 def ratio(hits: Floats, base: Floats) -> tuple[float, float, float]:

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.present.hump_page.hump_page import hump_page, script_safe
-from synth.present.hump_page.train_data import HUNDREDTHS, differences
+from synth.yard.humping.hump_page.hump_page import hump_page, script_safe
+from synth.yard.humping.hump_page.train_data import HUNDREDTHS, differences
 from synth.yard.humping.train_trace import TrainTrace, train_trace
 from tests.plant_models.rolling.populations import CATEGORIES
 from tests.synth.yard.humping.humped_trains import HumpedTrains, humped_trains

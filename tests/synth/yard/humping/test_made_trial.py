@@ -10,15 +10,18 @@ import pytest
 
 from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
+from synth.frame.exhibits import Table
 from synth.frame.input_error import InputError
 from synth.frame.results_directory import results_directory
-from synth.sweep.trains.trial_inputs import write_inputs
+from synth.frame.sheet import to_csv
 from synth.yard.humping.hump_position import Arrivals
 from synth.yard.humping.hump_speed import PairByPair
 from synth.yard.humping.made_trial import kinds_of_cuts, made_trial
 from synth.yard.humping.resolved_trial import load_trial, resolve_trial
-from synth.yard.humping.speed_program import locomotive_csv, speed_program, uncoupler_csv
+from synth.yard.humping.shown.program import program_exhibits
+from synth.yard.humping.speed_program import speed_program
 from synth.yard.humping.trial import HumpTrial
+from synth.yard.humping.trial_inputs import write_inputs
 from tests.synth.yard.humping.coarse_book import PARK, coarse_tables
 from tests.system.conftest import changed
 from tuning_tables import write_book
@@ -84,12 +87,13 @@ def test_the_program_is_that_of_an_even_push() -> None:
         time, place = time + 2.0 * apart / (before.hump_speed_m_s + row.hump_speed_m_s), place + apart
         assert row.time_s == pytest.approx(time)
         assert row.pushed_m == pytest.approx(place)
-    lines = locomotive_csv(program).decode().splitlines()
-    assert lines[0] == "cut,time_s,pushed_m,speed_m_s"
-    assert lines[-1] == f"5,{time:.2f},{place:.2f},{program.rows[-1].hump_speed_m_s:.2f}"
-    head, *sheet = (line.split(",") for line in uncoupler_csv(program).decode().splitlines())
+    (table,) = (each for each in program_exhibits(program, brief=True) if isinstance(each, Table))
+    head, *sheet = (line.split(",") for line in to_csv(table).decode("utf-8-sig").splitlines())
     assert head[-3:] == ["exit_1_m_s", "exit_2_m_s", "exit_3_m_s"]
-    assert [int(row[6]) for row in sheet] == [row.track for row in program.rows]
+    rows = [dict(zip(head, cells, strict=True)) for cells in sheet]
+    assert [int(row["track"]) for row in rows] == [row.track for row in program.rows]
+    last = {key: float(rows[-1][key]) for key in ("time_s", "pushed_m", "hump_speed_m_s")}
+    assert last == {"time_s": time, "pushed_m": place, "hump_speed_m_s": program.rows[-1].hump_speed_m_s}
 
 
 def test_the_program_is_the_one_that_is_humped() -> None:

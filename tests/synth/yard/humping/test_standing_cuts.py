@@ -10,12 +10,13 @@ import pytest
 from plant_models.rolling.weather import Weather
 from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
+from synth.frame.exhibits import Chapter, Sentence, exhibits_of
 from synth.frame.input_error import InputError
-from synth.frame.results_directory import results_directory
-from synth.present import humping_outputs
-from synth.present.humping_outputs import FIGURES, judged, write_trains
+from synth.sweep.trains.command import show
+from synth.yard.humping import traced_train
 from synth.yard.humping.controlled_train import controlled_train
 from synth.yard.humping.hump_routes import Mark
+from synth.yard.humping.humped_trial import humped_trial
 from synth.yard.humping.made_trial import made_trial
 from synth.yard.humping.outcome_file import TRAINS
 from synth.yard.humping.resolved_trial import resolve_trial
@@ -97,19 +98,18 @@ def test_cuts_that_stand_are_told_and_figures_come_before_the_train_that_is_show
     text = 'hump = "rising.toml"\n[trains]\nnumber = 2\ncuts = 6\n[aim]\ndesign_cuts = 200\n'
     config = resolve_trial(parse_trial_file(text + "[output]\nplots = false\nreport = false\n", str(place)))
     trial = made_trial(config)
-    result = judged(config, trial, trial.batch(0, 2), "2026-01-01T00:00:00Z")
-    told: list[str] = []
-    with results_directory(tmp_path / "out", "hump simulate") as directory:
-        write_trains(result, directory, told.append)
-    assert told == [
-        "warning: 5 of the 6 cuts of train 1 stand before element 1; the track falls by -0.18 m up to there"
-    ]
+    result = humped_trial(config, trial, trial.batch(0, 2))
+    told = [each for each in exhibits_of(tuple(show(result))) if isinstance(each, Sentence) and each.brief]
+    assert "5 of the 6 cuts of train 1 stand before element 1; the track falls by -0.18 m up to there" in told[1].text
+    assert told[1].figures == {"standing_cuts": 5}
 
     def fails(*_: object) -> OneTrain:
         raise ZeroDivisionError
 
-    monkeypatch.setattr(humping_outputs, "one_train", fails)
-    with results_directory(tmp_path / "lost", "hump simulate") as directory:
-        with pytest.raises(ZeroDivisionError):
-            write_trains(result, directory, told.append)
-        assert set(directory.written) == {TRAINS, FIGURES}
+    monkeypatch.setattr(traced_train, "one_train", fails)
+    chapters = show(result)
+    made: list[Chapter] = []
+    with pytest.raises(ZeroDivisionError):
+        made += chapters
+    names = {each.name for each in exhibits_of(made) if not isinstance(each, Sentence)}
+    assert {TRAINS, "shares", "means", "positions"} <= names

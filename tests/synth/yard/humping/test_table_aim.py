@@ -15,7 +15,6 @@ from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
 from synth.frame.input_error import InputError
 from synth.frame.results_directory import results_directory
-from synth.sweep.trains.trial_inputs import write_inputs
 from synth.yard.aim.aim_book import aim_book
 from synth.yard.aim.resolved_aim import resolve_aim
 from synth.yard.free_roll import rolling_cuts
@@ -24,11 +23,12 @@ from synth.yard.humping.made_trial import made_trial
 from synth.yard.humping.motion import Moving
 from synth.yard.humping.resolved_trial import ResolvedTrial, load_trial, resolve_trial
 from synth.yard.humping.route_rolling import rolling_on
+from synth.yard.humping.shown.positions import aim_rows
 from synth.yard.humping.speed_sensors import SpeedSensors
 from synth.yard.humping.stretch_reading import ReadOnStretch
 from synth.yard.humping.train_figures import ratio
 from synth.yard.humping.train_memory import TrainMemory
-from synth.yard.humping.trial_summary import aim_of
+from synth.yard.humping.trial_inputs import write_inputs
 from tests.synth.yard.humping.exported_aims import CATEGORIES, EXIT_M, STRETCH_M, aim_text, made_tables, medium, written
 from tests.synth.yard.humping.mixed_cuts import without_padding
 from tests.system.conftest import changed
@@ -89,7 +89,7 @@ def test_groups_of_tracks_have_tables_of_their_own_and_the_rest_is_designed(tmp_
     file = parse_trial_file(changed(SMALL + told, ('"medium"', '"mine.toml"')), str(tmp_path / "trial.toml"))
     config = resolve_trial(file)
     assert [choice.rows for choice in config.aims] == [(0, 1, 2, 3), (4, 7)]
-    assert aim_of(config, config.aims[1])["tracks"] == [5, 8]
+    assert {row["tracks"] for row in aim_rows(config.routes, config.aims[1])} == {(5, 8)}
     assert config.designed_rows == (5, 6, *range(8, 16))
     found = made_trial(config)
     rows, of_all = np.arange(16), np.zeros(16, dtype=np.int64)

@@ -223,15 +223,14 @@ def test_the_command_humps_them_and_tells_all(name: str, tmp_path: Path, capsys:
     assert main(["hump", "simulate", str(config), "-o", str(out)]) == 0
     summary = json.loads((out / "summary.json").read_text())
     short = list(SHORT_TRACKS) if name == "bunch" else [OWN_TRACK]
-    first, second, third = (each["aims_on_tracks"] for each in summary["positions"])
+    first, second, third = (each["aims_on_tracks"] for each in summary["tables"]["positions"])
     assert (first, second) == ([], short)
     assert set(third) == set(routes_of(name).tracks.tolist()) - set(short)
-    rows = list(csv.DictReader((out / "uncoupler.csv").read_text(encoding="utf-8").splitlines()))
+    rows = list(csv.DictReader((out / "sheets" / "program.csv").read_text(encoding="utf-8").splitlines()))
     assert {row["track"] in map(str, short) for row in rows} <= {row["exit_3_m_s"] == "" for row in rows}
     assert all((row["exit_3_m_s"] == "") == (int(row["track"]) in short) for row in rows)
     assert all(0.5 <= float(row["exit_2_m_s"]) <= 7.0 for row in rows)
     for made in ("report.html", "hump.html", "events.csv", "plots/hump-time-path.svg", "plots/hump-contacts.svg"):
         assert (out / made).stat().st_size > 0
     assert main(["hump", "speed", str(config), "-o", str(tmp_path / "speed")]) == 0
-    assert main(["hump", "report", str(out)]) == 0
     assert capsys.readouterr().out

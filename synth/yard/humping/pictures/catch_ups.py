@@ -15,9 +15,9 @@ from plant_models.hump import HumpGraph, Retarder, Signal, Switch
 from plant_models.library.hump_entry import HumpEntry
 from synth.frame.picture.house_style import INK, dress, legend_below, mark_plainly, new_figure, place
 from synth.frame.printed_numbers import counted
-from synth.present.plots.hump.hump_picture import ROW_IN, TALLEST_PLAN_IN, WIDTH_IN
-from synth.present.plots.hump.plan_layout import PlanLayout, plan_layout
-from synth.present.plots.hump.track_plan import draw_plan, plan_legend
+from synth.yard.hump.pictures.hump_picture import ROW_IN, TALLEST_PLAN_IN, WIDTH_IN
+from synth.yard.hump.pictures.plan_layout import PlanLayout, plan_layout
+from synth.yard.hump.pictures.track_plan import draw_plan, plan_legend
 
 SMALLEST, LARGEST = 75.0, 175.0
 """Areas of the discs of the rarest and the most frequent element, square points."""

@@ -11,8 +11,8 @@ from matplotlib.lines import Line2D
 
 from synth.frame.picture.house_style import INK, LINE_STYLES, VERMILLION, dress, legend_below, new_figure, place
 from synth.frame.picture.series import graded
-from synth.present.plots.humping.element_strip import draw_strip
 from synth.yard.aim.scene import COUPLING_SPEED_M_S
+from synth.yard.humping.pictures.element_strip import draw_strip
 from synth.yard.humping.train_trace import TracedCut, TrainTrace
 
 STEP_M = 2.0

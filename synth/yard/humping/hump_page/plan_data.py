@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from plant_models.hump import HumpGraph, Retarder, Route, Switch, TrackSection
-from synth.present.plots.hump.plan_layout import PlanLayout, plan_layout
+from synth.yard.hump.pictures.plan_layout import PlanLayout, plan_layout
 
 Data = dict[str, Any]
 

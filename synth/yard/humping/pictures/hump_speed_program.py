@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.frame.picture.house_style import BLUE, INK, SKY, dress, legend_below, new_figure, place
+from synth.yard.humping.speed_program import SpeedProgram
 from synth.yard.humping.train_trace import TrainTrace
 
 Floats = NDArray[np.float64]
@@ -46,6 +47,14 @@ def pushed_train(trace: TrainTrace) -> PushedTrain:
         np.array([cut.hump_speed_m_s for cut in cuts]),
         np.array([cut.length_m for cut in cuts]),
     )
+
+
+def planned_train(program: SpeedProgram) -> PushedTrain:
+    """How a train is to be pushed; times since its first cut was at the crest."""
+    time_s, speed_m_s, length_m = (
+        np.array([getattr(row, key) for row in program.rows]) for key in ("time_s", "hump_speed_m_s", "length_m")
+    )
+    return PushedTrain(program.number, time_s, speed_m_s, length_m)
 
 
 def hump_speed_program(program: PushedTrain) -> Figure:

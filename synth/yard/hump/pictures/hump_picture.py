@@ -24,9 +24,9 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.present.plots.hump.plan_layout import plan_layout
-from synth.present.plots.hump.track_plan import draw_plan, plan_legend
 from synth.yard.design_runners import RunnerRoll
+from synth.yard.hump.pictures.plan_layout import plan_layout
+from synth.yard.hump.pictures.track_plan import draw_plan, plan_legend
 
 WIDTH_IN, ROW_IN, PROFILE_IN = 13.0, 0.19, 3.4
 TALLEST_PLAN_IN = 20.0

@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from plant_models.library import Library, TypeFile
 from synth.book.forms.table_file import file_stem
 from synth.configuration.hump import RAILML_SUFFIXES, hump_text
-from synth.configuration.humping.trial_file import TrialFile
+from synth.configuration.humping.trial_file import INPUTS, TrialFile
 from synth.configuration.own_types import with_own_types
 from synth.frame.results_directory import ResultsDirectory
 from synth.frame.settings.toml_file import read_text, toml_tree
@@ -25,7 +25,6 @@ from synth.frame.settings.toml_text import toml_text
 from synth.yard.humping.position_choice import PositionChoice
 from synth.yard.humping.resolved_trial import ResolvedTrial
 
-FOLDER: Final = "inputs"
 CONFIG, LIST, TABLES, AIMS, TYPES = "config.toml", "train.csv", "tables", "aim", "types"
 
 
@@ -63,7 +62,7 @@ def write_inputs(file: TrialFile, config: ResolvedTrial, directory: ResultsDirec
     for type_file in own.values():
         contents[f"{TYPES}/{type_file.kind.folder}/{type_file.name}.toml"] = type_file.text.encode("utf-8")
     contents[CONFIG] = toml_text(tree).encode("utf-8")
-    directory.write_all({f"{FOLDER}/{name}": content for name, content in contents.items()})
+    directory.write_all({f"{INPUTS}/{name}": content for name, content in contents.items()})
 
 
 def position_tree(choice: PositionChoice, contents: dict[str, bytes], own: dict[str, TypeFile]) -> dict[str, Any]:

@@ -9,8 +9,8 @@ from importlib.resources import files
 from plant_models.library.hump_entry import HumpEntry
 from synth.frame.page.markup import Markup, element
 from synth.frame.page.page_style import STYLE
-from synth.present.hump_page.plan_data import plan_data
-from synth.present.hump_page.train_data import train_data
+from synth.yard.humping.hump_page.plan_data import plan_data
+from synth.yard.humping.hump_page.train_data import train_data
 from synth.yard.humping.train_trace import TrainTrace
 
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"
@@ -54,4 +54,4 @@ def script_safe(data: object) -> str:
 
 def text_of(name: str) -> str:
     """A part of the page that is kept as a file beside this one."""
-    return files("synth.present.hump_page").joinpath(name).read_text(encoding="utf-8")
+    return files("synth.yard.humping.hump_page").joinpath(name).read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from plant_models.hump import HumpGraph, Retarder, Switch, TrackSection
 from synth.frame.picture.house_style import BLACK, BLUE, GREY, INK, ORANGE, SKY, VERMILLION
-from synth.present.plots.hump.plan_layout import PlanLayout
+from synth.yard.hump.pictures.plan_layout import PlanLayout
 
 RAIL_WIDTH, ELEMENT_WIDTH = 0.8, 4.5
 MOST_NUMBERED = 64

@@ -28,8 +28,8 @@ from synth.frame.picture.house_style import (
 )
 from synth.frame.picture.series import graded
 from synth.frame.printed_numbers import counted
-from synth.present.plots.humping.element_strip import colour_of, draw_strip
 from synth.yard.humping.hump_routes import HumpRoutes
+from synth.yard.humping.pictures.element_strip import colour_of, draw_strip
 from synth.yard.humping.train_trace import AlarmKind, TracedCut, TrainTrace
 
 BAND_COLOURS = (GREEN, PURPLE, INK, GREY)

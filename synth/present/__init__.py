@@ -1,1 +1,0 @@
-"""Pictures and reports of what a tune found, and the directory that holds them."""
