@@ -13,47 +13,11 @@ def speed(value_m_s: float) -> str:
     return f"{value_m_s:.4f}" if math.isfinite(value_m_s) else ABSENT
 
 
-def quotient(value: float, digits: int = 2) -> str:
-    """A ratio."""
-    return f"{value:.{digits}f}" if math.isfinite(value) else ABSENT
-
-
 def percent(share: float) -> str:
     """A probability in per cent, two figures where it is small."""
     if share == 0.0:
         return "0"
     return f"{100.0 * share:.2g}" if share < 0.1 else f"{100.0 * share:.1f}"
-
-
-def interval(ends: tuple[float, float]) -> str:
-    """A confidence interval of a speed."""
-    return f"[{speed(ends[0])}, {speed(ends[1])}]"
-
-
-def quotient_interval(ends: tuple[float, float], digits: int = 2) -> str:
-    """A confidence interval of a ratio; '' for none."""
-    return f"[{ends[0]:.{digits}f}, {ends[1]:.{digits}f}]" if math.isfinite(ends[0]) else ""
-
-
-def in_ten_thousand(share: float, ends: tuple[float, float]) -> str:
-    """A probability as cuts in 10 000, with its interval."""
-    low, most, high = (few(1e4 * each) for each in (ends[0], share, ends[1]))
-    return f"{most} [{low}, {high}]" if share else f"fewer than {high}"
-
-
-def plus_minus(value: float | None, ends: Sequence[float | None] | None, digits: int = 2) -> str:
-    """A figure with the wider half of its 95 % interval, which is never printed as 0; None is what is not known."""
-    if value is None or ends is None or ends[0] is None or ends[1] is None:
-        return ABSENT
-    return f"{value:.{digits}f} ±{max(value - ends[0], ends[1] - value, 0.1**digits):.{digits}f}"
-
-
-def ten_thousand(share: float, ends: Sequence[float | None]) -> str:
-    """A probability as cuts in 10 000, with the wider half of its 95 % interval; where no pass met one, a bound."""
-    low, high = (1e4 * (end or 0.0) for end in ends)
-    if share == 0.0:
-        return f"below {few(high)}"
-    return f"{few(1e4 * share)} ±{few(max(1e4 * share - low, high - 1e4 * share))}"
 
 
 def of_ten_thousand(share: float) -> str:

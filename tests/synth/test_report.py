@@ -30,7 +30,7 @@ from synth.frame.exhibits import Chart, Sentence, Table, exhibits_of
 from synth.frame.page.markup import VOID, Markup, element
 from synth.frame.page.told_page import page_of
 from synth.frame.picture.picture import Drawing, Picture
-from synth.frame.printed_numbers import counted, percent, quotient, span
+from synth.frame.printed_numbers import counted, percent, span
 from synth.frame.told import Told
 from tests.synth.case_factory import make_case
 from tuning_tables import Estimator
@@ -260,6 +260,5 @@ def test_markup() -> None:
 
 def test_figures() -> None:
     assert [percent(share) for share in (0.0, 0.00012, 0.05, 0.25)] == ["0", "0.012", "5", "25.0"]
-    assert quotient(float("nan")) == "–"
     assert [span(values) for values in ([1.0, 2.0], [1.0, 1.001])] == ["from 1.00 to 2.00", "1.00"]
     assert [counted(n, "case") for n in (1, 3)] == ["1 case", "3 cases"]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import groupby
 
 from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
 from synth.frame.page.page_style import STYLE
@@ -42,16 +41,6 @@ def document(stamp: Stamp, verdict: Markup, sections: Sequence[tuple[str, str, M
         *(element("section", element("h2", name), content, id=anchor) for anchor, name, content in sections),
     )  # fmt: skip
     return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
-
-
-def picture_sections(pictures: Sequence[Picture]) -> Markup:
-    """The pictures under the headings of their sections, in the order in which the sections first appear."""
-    order = list(dict.fromkeys(picture.section for picture in pictures))
-    ranked = sorted(pictures, key=lambda picture: order.index(picture.section))
-    parts: list[Markup] = []
-    for section, group in groupby(ranked, key=lambda picture: picture.section):
-        parts += [element("h3", section), *(figure(picture) for picture in group)]
-    return joined(parts)
 
 
 def figure(picture: Picture) -> Markup:
