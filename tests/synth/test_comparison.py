@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from synth.book.shown.results import overall
+from synth.book.shown.results import NO_REGRET, overall, remarks
 from tests.synth.case_factory import make_case
 from tests.synth.test_report import found_book
 
@@ -41,3 +41,10 @@ def test_the_median_of_the_summary_is_over_cases_with_a_reference() -> None:
     beaten = replace(case, comparison=replace(case.comparison, baseline_ratio_ci95=(1.1, 1.2)))
     assert overall(found_book((case, beaten)))["median_regret"] == case.comparison.regret
     assert overall(found_book((beaten,)))["median_regret"] is None
+
+
+def test_a_regret_that_is_left_out_is_explained() -> None:
+    case = make_case()
+    beaten = replace(case, comparison=replace(case.comparison, baseline_ratio_ci95=(1.1, 1.2)))
+    assert NO_REGRET not in remarks(found_book((case,)))
+    assert NO_REGRET in remarks(found_book((case, beaten)))

@@ -71,26 +71,28 @@ def test_the_other_cases_are_whole(tuned: Tuned) -> None:
     assert [table.id for table in read_book(tuned.directory / "book.h5")] == ids
     assert sorted(path.stem for path in (tuned.directory / "tables").glob("*.json")) == ids
     assert (tuned.directory / "c" / "retarder_table.c").is_file()
-    assert [case["id"] for case in tuned.summary["cases"]] == ids
+    cases = tuned.summary["tables"]["cases"]
+    assert [case["id"] for case in cases if case["verdict"] != "no table"] == ids
     pictures = {path.name for path in (tuned.directory / "plots").glob("*.svg")}
     assert {"rms-by-controller.svg", "feasibility.svg"} <= pictures
     assert not [name for name in pictures if "2.5" in name]
 
 
 def test_the_bad_case_is_named_with_its_reason_and_what_to_change(tuned: Tuned) -> None:
-    (failed,) = tuned.summary["failed"]
+    (failed,) = tuned.summary["tables"]["failed"]
     assert (failed["label"], failed["target_m_s"]) == ("gondola-4-22t", 2.5)
     assert failed["reason"].startswith(REASON)
     assert failed["reason"].endswith(KEYS)
     page = html.unescape((tuned.directory / "report.html").read_text(encoding="utf-8"))
-    for text in (tuned.summary["verdict"], tuned.out, page, tuned.err):
+    sentence = tuned.summary["limits"][0]["sentence"]
+    for text in (sentence, tuned.out, page, tuned.err):
         assert BAD in text
         assert failed["reason"] in " ".join(text.split())
-    assert "there is no table for 1 of 3 cases (" in tuned.summary["verdict"]
+    assert "there is no table for 1 of 3 cases (" in sentence
     assert tuned.summary["accepted"] is False
-    (row,) = (line.split() for line in tuned.out.splitlines() if line.rstrip().endswith("no table"))
-    assert row[:2] == ["gondola-4-22t", "2.5"]
-    assert "no table: see the verdict" in page
+    (row,) = (line.split() for line in tuned.out.splitlines() if line.split()[1:4] == ["2.5", "no", "table"])
+    assert row[0] == "gondola-4-22t"
+    assert '<td class="words">no table</td>' in page
 
 
 def test_the_counter_counts_cases_and_nothing_else(tuned: Tuned) -> None:
@@ -104,8 +106,11 @@ def test_what_a_tune_leaves_is_read_by_who_checks_it(tuned: Tuned, command: Comm
     ran = command("inspect", tuned.directory)
     assert ran.code == 0
     assert f"there is no table for 1 of 3 cases ({BAD}: " in ran.out
-    config = tuned.directory.parent / "c.toml"
-    assert command("validate", tuned.directory / "book.h5", "--config", config, "--passes", "1000").code in (0, 1)
+    config, out = tuned.directory.parent / "c.toml", tuned.directory.parent / "validated"
+    assert command("validate", tuned.directory / "book.h5", "--config", config, "--passes", "1000", "-o", out).code in (
+        0,
+        1,
+    )
 
 
 def test_tables_for_point_sensors_lose_none_but_the_bad_case(command: Command, tmp_path: Path) -> None:
@@ -120,11 +125,11 @@ def test_tables_for_point_sensors_lose_none_but_the_bad_case(command: Command, t
     assert ran.code == 1
     summary = json.loads((out / "summary.json").read_bytes())
     assert [path.stem for path in (out / "tables").glob("*.json")] == ["gondola-4-22t-to-2.5-m-s"]
-    (failed,) = summary["failed"]
+    (failed,) = summary["tables"]["failed"]
     assert (failed["label"], failed["target_m_s"]) == ("gondola-4-22t", 3.0)
     assert "the grid is too coarse for these switching speeds" in failed["reason"]
     page = html.unescape((out / "report.html").read_text(encoding="utf-8"))
-    for text in (summary["verdict"], page, ran.out):
+    for text in (summary["limits"][0]["sentence"], page, ran.out):
         assert f"gondola-4-22t to 3 m/s: {failed['reason']}" in text
     assert [line[:5] for line in ran.err.splitlines() if line.startswith("[")] == ["[1/2]", "[2/2]"]
     assert verify(out, 100, 1).code in (0, 1)
@@ -145,20 +150,6 @@ WITHOUT_SURFACES = ("commands at any time", "commands at any time, no pressure g
 
 
 @pytest.mark.usefixtures("no_surfaces")
-def test_a_permission_without_a_design_is_missing_alone(command: Command, tmp_path: Path) -> None:
-    config, out = tmp_path / "c.toml", tmp_path / "out"
-    config.write_text(changed(COARSE, ("plots = false", "plots = false\nreport = false")), encoding="utf-8")
-    ran = command("tune", config, "-o", out, "--permissions")
-    assert ran.code == 0  # the table is there, and keeps its limits
-    (case,) = json.loads((out / "summary.json").read_bytes())["cases"]
-    assert set(case["permissions"]) == {"without the estimator", "approach of 4 m"}
-    assert case["permissions_failed"] == dict.fromkeys(WITHOUT_SURFACES, "no surfaces on this grid")
-    for permission in WITHOUT_SURFACES:
-        assert f"gondola-4-22t to 2.5 m/s, {permission}: no surfaces on this grid" in ran.out
-    assert verify(out, 100, 1).code in (0, 1)
-
-
-@pytest.mark.usefixtures("no_surfaces")
 def test_permissions_of_the_other_cases_are_told(command: Command, tmp_path: Path) -> None:
     config, out = tmp_path / "c.toml", tmp_path / "out"
     swaps = ("[2.5]", "[2.5, 1.5]"), ("speed_step_m_s = 0.05", WIDE[1]), ("[regulator]\n", MEASURED)
@@ -167,9 +158,9 @@ def test_permissions_of_the_other_cases_are_told(command: Command, tmp_path: Pat
     assert ran.code == 1
     summary = json.loads((out / "summary.json").read_bytes())
     (case,), missing = summary["tables"]["permissions"], summary["tables"]["missing"]
-    failed = [row["target_m_s"] for row in missing if row["permission"] is None]
-    assert (case["target_m_s"], failed) == (1.5, [2.5])
-    assert {row["permission"] for row in missing if row["target_m_s"] == 1.5} == set(WITHOUT_SURFACES)
+    failed = [row["target_speed_m_s"] for row in missing if row["permission"] is None]
+    assert (case["target_speed_m_s"], failed) == (1.5, [2.5])
+    assert {row["permission"] for row in missing if row["target_speed_m_s"] == 1.5} == set(WITHOUT_SURFACES)
     assert f"{BAD}: no table: {REASON}" in ran.out
     assert f"gondola-4-22t to 1.5 m/s, {WITHOUT_SURFACES[0]}: no surfaces on this grid" in ran.out
     assert [line[:5] for line in ran.err.splitlines() if line.startswith("[")] == ["[1/2]", "[2/2]"]

@@ -106,7 +106,7 @@ def test_ctrl_c_ends_at_once_with_one_line(one_class: Path, tmp_path: Path) -> N
     _, said = tune.communicate(timeout=60)
     assert tune.returncode == 130
     assert time.monotonic() - told < 5.0
-    assert said.splitlines()[-1] == f"retarder-synth: interrupted; {tmp_path} holds no complete book"
+    assert said.splitlines()[-1] == f"retarder-synth: interrupted; {tmp_path} holds no complete summary"
     assert "Traceback" not in said
     assert not (tmp_path / "summary.json").exists()
     assert list(tmp_path.rglob("*.part")) == []

@@ -104,10 +104,14 @@ def test_the_independent_checker_confirms_the_tables(example: Path, command: Com
     assert "6 tables" in ran.out
 
 
-def test_the_tables_validate_against_the_configuration_with_own_types(example: Path, command: Command) -> None:
+def test_the_tables_validate_against_the_configuration_with_own_types(
+    example: Path, command: Command, tmp_path: Path
+) -> None:
     config = example / "us-group.toml"
-    ran = command("validate", example / "out" / "book.h5", "--config", config, "--passes", "1000", "--json")
-    found = json.loads(ran.out)
+    ran = command(
+        "validate", example / "out" / "book.h5", "--config", config, "--passes", "1000", "--json", "-o", tmp_path
+    )
+    found = json.loads(ran.out)["tables"]["tables"]
     assert len(found) == 6
     assert all(each["same_config"] for each in found)
 

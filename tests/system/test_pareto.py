@@ -34,14 +34,14 @@ def test_time_falls_with_its_price(tmp_path: Path, pages: list[Page]) -> None:
     (tmp_path / "c.toml").write_text(COARSE, encoding="utf-8")
     out = tmp_path / "out"
     assert main(["tune", str(tmp_path / "c.toml"), "-o", str(out), "--pareto"]) in (0, 1)
-    (case,) = json.loads((out / "summary.json").read_bytes())["cases"]
-    points = case["pareto_front"]
+    tables = json.loads((out / "summary.json").read_bytes())["tables"]
+    (case,), points = tables["cases"], tables["fronts"]
     assert [each["time_price_m2_s3"] for each in points] == list(PRICES_M2_S3)
-    assert points[0]["rms_m_s"] == pytest.approx(case["simulated"]["rms_m_s"])
-    assert points[0]["time_ci95_s"] == case["simulated"]["time_ci95_s"]
-    assert points[-1]["time_ci95_s"][1] < points[0]["time_ci95_s"][0]
-    assert points[-1]["ratio_ci95"][1] > 1.0
-    assert points[0]["ratio"] == 1.0
+    assert points[0]["rms_m_s"]["value"] == pytest.approx(case["rms_m_s"]["value"])
+    assert points[0]["time_s"] == case["time_s"]
+    assert points[-1]["time_s"]["high95"] < points[0]["time_s"]["low95"]
+    assert points[-1]["ratio"]["high95"] > 1.0
+    assert points[0]["ratio"]["value"] == 1.0
     told = [each for each in page_about(pages, out) if isinstance(each, str) and " a second " in each]
     assert len(told) == 1
     assert (out / "plots" / "pareto-fronts.svg").exists()

@@ -1,28 +1,20 @@
-"""`retarder-synth permissions` and `tune --permissions` as a user runs them: figures, files, faults, the same bytes."""
+"""`retarder-synth permissions` as a user runs it: figures, files, faults, the same bytes."""
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-import html
-import io
 import json
-import re
-import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from synth.book.permissions.overview import HINT
 from synth.book.permissions.refusal import tellable
 from synth.book.permissions.shown import AS_CONFIGURED
-from synth.checker.finding import Kind
-from synth.checker.stated_permissions import permission_faults
-from synth.checker.verdict import verify
+from synth.book.shown.results import PERMISSIONS
 from synth.cli import main
 from synth.configuration.config_file import parse_config
-from tests.printed_page import Page, page_about, table_of
+from tests.printed_page import Page, page_about, table_of, with_half
 from tests.system.conftest import MEASURED
 
 SMALL = """\
@@ -91,20 +83,6 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture(scope="module")
-def tuned(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What tunes with permissions leave on one worker and on two, and what they print."""
-    folder = tmp_path_factory.mktemp("tuned")
-    for workers in ("1", "2"):
-        told = io.StringIO()
-        with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(told):
-            patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-            words = ("--permissions", "--workers", workers)
-            assert asked(folder, workers, *words, text=COARSE, command="tune") in (0, 1)
-        (folder / f"{workers}.txt").write_text(told.getvalue(), encoding="utf-8")
-    return folder
-
-
 def summary(folder: Path) -> dict[str, Any]:
     """summary.json."""
     read: dict[str, Any] = json.loads((folder / "summary.json").read_bytes())
@@ -131,10 +109,10 @@ def test_it_prints_the_figures_of_its_summary(ran: Path, pages: list[Page]) -> N
     read = summary(ran / "one")
     (row,), page = read["tables"]["permissions"], page_about(pages, ran / "one")
     (told,) = table_of(page)
-    assert (told["case"], told["target, m/s"]) == (row["case"], f"{row['target_m_s']:g}")
-    assert told["rms as configured, m/s"] == in_brackets(row["configured_m_s"], 4)
+    assert (told["case"], told["target, m/s"]) == (row["label"], f"{row['target_speed_m_s']:g}")
+    assert told["rms as configured, m/s"] == in_short(row["configured_m_s"], 4)
     for name in ASKED:
-        assert told[name] == in_brackets(row[name], 2)
+        assert told[name] == in_short(row[name], 2)
     ratios = read["figures"]["median_ratios"]
     medians = ", ".join(f"{name} {ratios[name]:.2f}" for name in told if name in ratios)
     assert ratios.keys() == ASKED
@@ -142,10 +120,9 @@ def test_it_prints_the_figures_of_its_summary(ran: Path, pages: list[Page]) -> N
     assert str(page[1]).endswith(f"Medians: {medians}.")
 
 
-def in_brackets(told: dict[str, float], digits: int) -> str:
-    """A figure with its interval, as people read it."""
-    value, low, high = (f"{told[key]:.{digits}f}" for key in ("value", "low95", "high95"))
-    return f"{value} [{low}, {high}]"
+def in_short(told: dict[str, float], digits: int) -> str | None:
+    """A figure with its interval, as a terminal tells it."""
+    return with_half(told["value"], (told["low95"], told["high95"]), digits)
 
 
 def test_commands_at_any_time_gain_and_no_approach_and_the_measured_speed_lose(ran: Path) -> None:
@@ -165,7 +142,7 @@ def test_all_files_are_named_with_their_hashes(ran: Path) -> None:
 
 
 def test_the_same_bytes_with_two_workers_and_as_json(
-    tuned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     written = []
@@ -174,96 +151,21 @@ def test_the_same_bytes_with_two_workers_and_as_json(
         written.append((tmp_path / workers / "summary.json").read_text(encoding="utf-8"))
         assert capsys.readouterr().out == written[-1]
     assert written[0] == written[1]
-    told, (of_tune,) = told_figures(tmp_path / "1"), summary(tuned / "1")["cases"]
+    told = told_figures(tmp_path / "1")
     assert set(told) == {*ASKED, "approach of 4 m", AS_CONFIGURED} - {"without the approach"}
-    assert told[AS_CONFIGURED]["rms_m_s"]["value"] == of_tune["simulated"]["rms_m_s"]
-    for name, each in of_tune["permissions"].items():
-        assert told[name]["ratio"]["value"] == each["ratio"]
-        assert told[name]["rms_m_s"] == {
-            "value": each["rms_m_s"], "low95": each["rms_ci95_m_s"][0], "high95": each["rms_ci95_m_s"][1],
-            "n": each["passes"],
-        }  # fmt: skip
 
 
-def test_a_tune_with_permissions_leaves_the_same_bytes_with_two_workers(tuned: Path) -> None:
-    one, two = (
-        {path.relative_to(tuned / name): path.read_bytes() for path in (tuned / name).rglob("*") if path.is_file()}
-        for name in ("1", "2")
-    )
-    assert one == two
-
-
-def test_a_tune_tells_permissions_in_one_column_and_one_line(tuned: Path) -> None:
-    printed = (tuned / "1.txt").read_text(encoding="utf-8")
-    (case,) = summary(tuned / "1")["cases"]
-    ratios = {name: f"{each['ratio']:.2f}" for name, each in case["permissions"].items()}
-    (row,) = (line for line in printed.splitlines() if line.lstrip().startswith("gondola-4-22t"))
-    column = [ratios[name] for name in ("commands at any time", "without the estimator", "approach of 4 m")]
-    assert " ".join(row.split()).endswith(f"{' '.join(column)} {case['verdict']}")
-    halves = [max(high - e["ratio"], e["ratio"] - low) for e in case["permissions"].values()
-              for low, high in [e["ratio_ci95"]]]  # fmt: skip
-    (line,) = (line for line in printed.splitlines() if line.startswith("rms × if permitted:"))
-    assert float(line.split("±")[1][:4]) == pytest.approx(max(halves) + 0.005, abs=0.0051)
-    assert f"on the same {case['simulated']['passes']} passes" in line
-    for name, ratio in ratios.items():  # of one case: the medians
-        assert re.search(rf"(: |, ){name} {ratio}[,.]", line)
-    overall = summary(tuned / "1")["overall"]
-    assert f"±{overall['permission_widest_half_ci95']:.2f}" in line
-    assert overall["permission_median_ratios"].keys() == ratios.keys()
-    page = html.unescape((tuned / "1" / "report.html").read_text(encoding="utf-8"))
-    assert line in page
-    assert f">{' '.join(column)}</td>" in page
-    assert "tune --permissions" not in printed + page
-
-
-def test_without_the_flag_a_tune_tells_how_to_ask_and_leaves_the_same_tables(
-    tuned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+def test_the_table_as_configured_is_that_of_a_tune_which_tells_how_to_ask(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    assert asked(tmp_path, "plain", text=COARSE, command="tune") in (0, 1)
-    (plain,), (told,) = summary(tmp_path / "plain")["cases"], summary(tuned / "1")["cases"]
-    assert plain["permissions"] is None
-    assert plain == {**told, "permissions": None}
-    page = (tmp_path / "plain" / "report.html").read_text(encoding="utf-8")
-    printed = capsys.readouterr().out
-    assert [text.count(HINT) for text in (printed, page)] == [1, 1]
-    assert "if permitted" not in printed + page
-    for name in ("book.h5", told["table"], "c/retarder_table.c"):
-        assert (tmp_path / "plain" / name).read_bytes() == (tuned / "1" / name).read_bytes()
+    assert asked(tmp_path, "tuned", text=COARSE, command="tune") in (0, 1)
+    page = (tmp_path / "tuned" / "report.html").read_text(encoding="utf-8")
+    assert [text.count(PERMISSIONS) for text in (capsys.readouterr().out, page)] == [1, 1]
+    assert asked(tmp_path, "told", text=COARSE) == 0
+    (case,) = summary(tmp_path / "tuned")["tables"]["cases"]
+    assert told_figures(tmp_path / "told")[AS_CONFIGURED]["rms_m_s"] == case["rms_m_s"]
 
 
-def test_the_checker_finds_a_ratio_that_is_not_one_of_the_figures_beside_it(tuned: Path, tmp_path: Path) -> None:
-    out = Path(shutil.copytree(tuned / "1", tmp_path / "out"))
-    assert not [finding for finding in verify(out, 100, 1).findings if finding.kind is Kind.DISAGREES]
-    told = summary(out)
-    told["cases"][0]["permissions"]["commands at any time"]["ratio"] *= 0.99
-    (out / "summary.json").write_text(json.dumps(told), encoding="utf-8")
-    (finding,) = (finding for finding in verify(out, 100, 1).findings if finding.kind is Kind.DISAGREES)
-    assert "says of its permission 'commands at any time' a ratio of" in finding.sentence
-
-
-@pytest.mark.parametrize(
-    ("change", "says"),
-    [
-        ({}, None),
-        ({"ratio": 0.81}, "a ratio of 0.81, but its rms is 0.04 and that of the table 0.05"),
-        ({"ratio_ci95": [0.81, 0.9]}, "outside its interval"),
-        ({"passes": 10}, "10 passes, but 2000 of the table"),
-        ({"ratio_ci95": [0.7, None]}, "no rms and no ratio with an interval"),
-        ({"rms_m_s": True}, "no rms and no ratio with an interval"),
-    ],
-)
-def test_the_checker_tells_what_is_wrong_with_a_permission(change: dict[str, object], says: str | None) -> None:
-    figures = {"rms_m_s": 0.04, "ratio": 0.8, "ratio_ci95": [0.75, 0.85], "passes": 2000, **change}
-    case = {"simulated": {"rms_m_s": 0.05, "passes": 2000}, "permissions": {"estimator": figures}}
-    found = list(permission_faults(case))
-    assert len(found) == (says is not None)
-    assert all(str(says) in fault for fault in found)
-    assert list(permission_faults({**case, "permissions": None})) == []
-    assert len(list(permission_faults({**case, "permissions": {}}))) == 1
-
-
-@pytest.mark.parametrize(("command", "name"), [("permissions", "permissions"), ("tune", "--permissions")])
 @pytest.mark.parametrize(
     ("lines", "says"),
     [
@@ -276,13 +178,12 @@ def test_the_checker_tells_what_is_wrong_with_a_permission(change: dict[str, obj
     ],
 )
 def test_what_cannot_be_worked_out_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], lines: str, says: str, command: str, name: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], lines: str, says: str
 ) -> None:
-    words = ("--permissions",) if command == "tune" else ()
-    assert asked(tmp_path, "out", *words, text=SMALL + lines, command=command) == 2
+    assert asked(tmp_path, "out", text=SMALL + lines) == 2
     told = capsys.readouterr().err
     assert says in told
-    assert f" {name} " in told
+    assert " permissions " in told
     assert str(tmp_path / "c.toml") in told
     assert not (tmp_path / "out").exists()
     assert not tellable(parse_config(SMALL + lines, "c.toml"))

@@ -20,7 +20,6 @@ from typing import Any
 import pytest
 
 from synth.cli import main
-from synth.cli.book_table import print_book
 from synth.frame.terminal.printed_page import Verdict, page_lines
 from synth.frame.terminal.printed_table import Column, PrintedTable, table_lines
 from synth.frame.terminal.printed_words import wrapped
@@ -109,75 +108,58 @@ def printed(pages: list[Page], *words: object) -> Page:
     return page
 
 
-def test_a_tune_prints_the_figures_of_its_summary(tuned: Path, pages: list[Page]) -> None:
-    summary = json.loads((tuned / "summary.json").read_bytes())
-    failed = {"label": "tank-4-90t", "target_speed_m_s": 2.0, "verdict": "failed", "feasible": True, "estimate": None}
-    print_book({**summary, "cases": [*summary["cases"], failed]}, tuned, None, ())
-    *told, last = table_of(pages[-1])
-    cases = summary["cases"]
-    require_column(told, "case", [case["label"] for case in cases])
-    require_column(told, "target, m/s", [f"{case['target_speed_m_s']:g}" for case in cases])
-    for heading, figure in (
-        ("rms, m/s", "rms"),
-        ("95 of 100 within ±, m/s", "p95"),
-        ("99 of 100 within ±, m/s", "p99"),
-    ):
-        of = [case["simulated"] for case in cases]
-        require_column(told, heading, [with_half(s[f"{figure}_m_s"], s[f"{figure}_ci95_m_s"], 4) for s in of])
-    for heading, figure in (("predicted / simulated", "honesty"), ("regret", "regret")):
-        require_column(told, heading, [with_half(case[figure], case[f"{figure}_ci95"]) for case in cases])
-    best = [(case["best_baseline"], case["comparison"][case["best_baseline"]]) for case in cases]
-    wanted = [f"{with_half(found['rms_m_s'], found['rms_ci95_m_s'], 4)} {name}" for name, found in best]
-    require_column(told, "best baseline, m/s", wanted)
-    require_column(told, "switchings", [f"{case['simulated']['switchings']:.1f}" for case in cases])
-    require_brake(told, [case["brake_power"] for case in cases])
-    figures = set(last) - {"case", "target, m/s", "verdict"}
-    assert {last[heading] for heading in figures} == {"–"}
+def of(row: dict[str, Any], key: str, digits: int) -> str | None:
+    """A figure of the JSON as it has to be printed."""
+    told = row[key]
+    return None if told is None else with_half(told["value"], (told["low95"], told["high95"]), digits)
 
 
-def test_a_regret_that_is_left_out_is_explained(tuned: Path, pages: list[Page]) -> None:
-    summary = json.loads((tuned / "summary.json").read_bytes())
-    print_book(summary, tuned, None, ())
-    assert "No regret is told" not in str(pages[-1])
-    one, other = summary["cases"]
-    print_book({**summary, "cases": [{**one, "regret": None, "regret_ci95": [None, None]}, other]}, tuned, None, ())
-    assert "No regret is told" in str(pages[-1])
-    assert [row["regret"] == "–" for row in table_of(pages[-1])] == [True, False]
+COMMON = (
+    ("rms, m/s", "rms_m_s", 4),
+    ("95 of 100 within ±, m/s", "p95_m_s", 4),
+    ("99 of 100 within ±, m/s", "p99_m_s", 4),
+    ("predicted / simulated", "honesty", 2),
+    ("switchings a pass", "switchings", 1),
+    ("time, s", "time_s", 2),
+)
 
 
-def require_brake(told: list[dict[str, str]], powers: list[dict[str, Any]]) -> None:
-    """Cuts out of brake in 10 000, of two figures, or the highest number where no pass met one."""
-    for row, power in zip(told, powers, strict=True):
-        value, (low, high) = power["out_of_brake"], power["out_of_brake_ci95"]
-        numbers = [float(word.lstrip("±")) for word in row["out of brake in 10 000"].split() if word != "below"]
+def require_figures(told: list[dict[str, str]], rows: list[dict[str, Any]]) -> None:
+    """What tables of simulated cases have in common, and cuts out of brake in 10 000, of two figures, or their bound
+    where no pass met one."""
+    for heading, key, digits in COMMON:
+        require_column(told, heading, [of(row, key, digits) for row in rows])
+    for cells, row in zip(told, rows, strict=True):
+        value, low, high = (row["out_of_brake"][key] for key in ("value", "low95", "high95"))
+        numbers = [float(word.lstrip("±")) for word in cells["out of brake, in 10 000"].split() if word != "below"]
         wanted = [1e4 * value, 1e4 * max(value - low, high - value)] if value else [1e4 * high]
         assert numbers == pytest.approx(wanted, rel=0.06)
 
 
+def test_a_tune_prints_the_figures_of_its_summary(one_class: Path, tmp_path: Path, pages: list[Page]) -> None:
+    told = table_of(printed(pages, "tune", one_class, "-o", tmp_path))
+    rows = json.loads((tmp_path / "summary.json").read_bytes())["tables"]["cases"]
+    require_column(told, "case", [row["label"] for row in rows])
+    require_column(told, "target, m/s", [f"{row['target_speed_m_s']:g}" for row in rows])
+    require_figures(told, rows)
+    require_column(told, "regret", [of(row, "regret", 2) for row in rows])
+    require_column(told, "best baseline, m/s", [of(row, "best_baseline_m_s", 4) for row in rows])
+    require_column(told, "which", [row["best_baseline"] for row in rows])
+
+
 @pytest.mark.parametrize("name", ["book.h5", "tables/gondola-4-22t-to-1.5-m-s.json"])
-def test_validate_prints_the_figures_of_its_json(
-    tuned: Path, command: Command, pages: list[Page], two_classes: Path, name: str
+def test_validate_prints_the_figures_of_its_summary(
+    tuned: Path, pages: list[Page], two_classes: Path, tmp_path: Path, name: str
 ) -> None:
-    words = ("validate", tuned / name, "--config", two_classes, "--seed", "7")
-    page, found = printed(pages, *words), json.loads(command(*words, "--json").out)
-    told = table_of(page)
-    require_column(told, "table", [each["id"] for each in found])
-    for heading, figure in (
-        ("rms, m/s", "rms"),
-        ("95 of 100 within ±, m/s", "p95"),
-        ("99 of 100 within ±, m/s", "p99"),
-    ):
-        of = [each["simulated"] for each in found]
-        require_column(told, heading, [with_half(s[f"{figure}_m_s"], s[f"{figure}_ci95_m_s"], 4) for s in of])
-    stated = [each["stated"]["validated"] for each in found]
-    require_column(told, "the file states, m/s", [with_half(s["rms_m_s"], s["rms_ci95_m_s"], 4) for s in stated])
-    require_column(told, "predicted, m/s", [f"{each['stated']['predicted_rms_m_s']:.4f}" for each in found])
-    require_column(told, "predicted / simulated", [with_half(each["honesty"], each["honesty_ci95"]) for each in found])
-    require_column(told, "switchings", [f"{each['simulated']['switchings']:.1f}" for each in found])
-    require_brake(told, [each["brake_power"] for each in found])
-    assert f"{found[0]['simulated']['passes']} stratified passes of each table, seed {found[0]['seed']}" in page
-    said = " ".join(each for each in page if isinstance(each, str))
-    assert all(sentence in said for each in found for sentence in each["sentences"])
+    page = printed(pages, "validate", tuned / name, "--config", two_classes, "--seed", "7", "-o", tmp_path)
+    summary, told = json.loads((tmp_path / "summary.json").read_bytes()), table_of(page)
+    rows = summary["tables"]["tables"]
+    require_column(told, "table", [row["id"] for row in rows])
+    require_figures(told, rows)
+    require_column(told, "the file states, m/s", [of(row, "stated_rms_m_s", 4) for row in rows])
+    require_column(told, "predicted rms, m/s", [f"{row['predicted_rms_m_s']:.4f}" for row in rows])
+    seed = f"{rows[0]['rms_m_s']['n']} stratified passes of each table, seed {summary['figures']['seed']}."
+    assert any(str(each).startswith(seed) for each in page)
 
 
 def test_inspect_prints_the_lines_of_its_json(tuned: Path, command: Command, pages: list[Page]) -> None:

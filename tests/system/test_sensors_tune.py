@@ -77,36 +77,39 @@ def test_it_leaves_tables_code_pictures_report_and_a_summary_of_them_all(tuned_p
         for name, digest in summary["files"].items()
     )
     assert {name.partition("/")[0] for name in here} == {
-        "tables", "c", "st", "plots", "report.html", "summary.json",
+        "tables", "c", "st", "plots", "sheets", "report.html", "summary.json",
     }  # fmt: skip
     assert {Path(name).suffix for name in here if name.startswith("tables/")} == {".json", ".csv"}
     assert sum(name.startswith("plots/") for name in here) == 6  # three pictures of the class, PNG and SVG
     assert "<h2>Sensors and passages</h2>" in (tuned_points / "report.html").read_text(encoding="utf-8")
     assert summary["accepted"] is True
-    assert [case["target_speed_m_s"] for case in summary["cases"]] == [2.0, 2.5]
+    assert [case["target_speed_m_s"] for case in summary["tables"]["cases"]] == [2.0, 2.5]
 
 
 def test_it_prints_the_figures_of_its_summary(tuned_points: Path, pages: list[Page]) -> None:
-    cases = json.loads((tuned_points / "summary.json").read_bytes())["cases"]
+    cases = json.loads((tuned_points / "summary.json").read_bytes())["tables"]["cases"]
     told = table_of(page_about(pages, tuned_points))
     require_column(told, "case", [case["label"] for case in cases])
     require_column(told, "target, m/s", [f"{case['target_speed_m_s']:g}" for case in cases])
-    for heading, figure in (("rms, m/s", "rms"), ("95 of 100 within ±, m/s", "p95")):
-        of = [case["simulated"] for case in cases]
-        require_column(told, heading, [with_half(s[f"{figure}_m_s"], s[f"{figure}_ci95_m_s"], 4) for s in of])
-    wanted = [with_half(case["unavoidable_rms_m_s"], case["unavoidable_ci95_m_s"], 4) for case in cases]
-    require_column(told, "unavoidable, m/s", wanted)
-    require_column(told, "predicted / simulated", [with_half(case["honesty"], case["honesty_ci95"]) for case in cases])
-    require_column(told, "switchings", [f"{case['simulated']['switchings']:.1f}" for case in cases])
+    for heading, key, digits in (
+        ("rms, m/s", "rms_m_s", 4),
+        ("95 of 100 within ±, m/s", "p95_m_s", 4),
+        ("unavoidable, m/s", "unavoidable_rms_m_s", 4),
+        ("predicted / simulated", "honesty", 2),
+        ("switchings a pass", "switchings", 1),
+    ):
+        figures = [case[key] for case in cases]
+        wanted = [with_half(each["value"], (each["low95"], each["high95"]), digits) for each in figures]
+        require_column(told, heading, wanted)
 
 
 def test_tables_say_what_was_predicted_and_simulated(tuned_points: Path) -> None:
     summary = json.loads((tuned_points / "summary.json").read_bytes())
-    for case in summary["cases"]:
-        table = read_passage_json(tuned_points / case["table"])
+    for case in summary["tables"]["cases"]:
+        table = read_passage_json(tuned_points / "tables" / f"{case['id']}.json")
         assert table.validated is not None
-        assert table.validated.rms_m_s == case["simulated"]["rms_m_s"]
-        assert table.predicted.rms_m_s == case["predicted"]["rms_m_s"]
+        assert table.validated.rms_m_s == case["rms_m_s"]["value"]
+        assert table.predicted.rms_m_s == case["predicted_rms_m_s"]
         # Two computations of one number, on a coarse grid and with few passes.
         assert 0.7 < case["honesty"] < 1.4
         assert 0.0 < case["unavoidable_rms_m_s"] < case["simulated"]["rms_m_s"]
@@ -127,26 +130,32 @@ def test_one_worker_gives_the_bytes_of_two(
     assert [name for name in names if (tmp_path / name).read_bytes() != (tuned_points / name).read_bytes()] == []
 
 
+def validated(command: Command, table: Path, config: Path, out: Path) -> tuple[int, dict[str, Any]]:
+    """The exit code of a `validate`, and what it tells of the only table."""
+    ran = command("validate", table, "--config", config, "--json", "-o", out)
+    (found,) = json.loads(ran.out)["tables"]["tables"]
+    return ran.code, found
+
+
 def test_validate_confirms_the_file_and_notices_other_sensors(
     command: Command, tuned_points: Path, config: Path, tmp_path: Path
 ) -> None:
     table = tuned_points / "tables" / f"{TABLE}.json"
-    ran = command("validate", table, "--config", config, "--json")
-    assert ran.code == 0, ran.err
-    (found,) = json.loads(ran.out)
+    code, found = validated(command, table, config, tmp_path / "one")
+    assert code == 0
     assert (found["confirmed"], found["same_config"]) == (True, True)
     # The same passes as of the tune, though drawn in bounded memory.
-    assert found["simulated"]["rms_m_s"] == pytest.approx(found["stated"]["validated"]["rms_m_s"], rel=1e-12)
+    assert found["rms_m_s"]["value"] == pytest.approx(found["stated_rms_m_s"]["value"], rel=1e-12)
     worse = tmp_path / "worse.toml"
     worse.write_text(changed(CONFIG, ("[sensors]\n", "[sensors]\ntimer_noise_s = 0.02\n")))
-    ran = command("validate", table, "--config", worse, "--json")
-    assert json.loads(ran.out)[0]["simulated"]["rms_m_s"] > 1.1 * found["simulated"]["rms_m_s"]
+    _, other = validated(command, table, worse, tmp_path / "other")
+    assert other["rms_m_s"]["value"] > 1.1 * found["rms_m_s"]["value"]
     moved = tmp_path / "moved.toml"
     moved.write_text(changed(CONFIG, ("8.0, 12.0", "8.0, 12.5")))
     ran = command("validate", table, "--config", moved)
     assert ran.code == 2
     assert "sensors.path_m is -4.5, 0, 4, 8, 12.5, 16, 22.5 there, in the table -4.5, 0, 4, 8, 12, 16" in ran.sentence
-    ran = command("validate", table, "--config", config, "--log", tmp_path / "log.csv")
+    ran = command("validate", table, "--config", config, "--log", "log.csv")
     assert ran.code == 2
     assert "whose passes are not logged; leave out --log" in ran.sentence
 
@@ -156,9 +165,8 @@ def test_without_sensors_in_the_configuration_those_of_the_table_count(
 ) -> None:
     table, bare = tuned_points / "tables" / f"{TABLE}.json", tmp_path / "bare.toml"
     bare.write_text(changed(CONFIG, ("[sensors]\npath_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]\n", "")))
-    ran = command("validate", table, "--config", bare, "--json")
-    (found,) = json.loads(ran.out)
-    assert found["simulated"]["rms_m_s"] == pytest.approx(found["stated"]["validated"]["rms_m_s"], rel=1e-12)
+    _, found = validated(command, table, bare, tmp_path / "out")
+    assert found["rms_m_s"]["value"] == pytest.approx(found["stated_rms_m_s"]["value"], rel=1e-12)
     bare.write_text(changed(bare.read_text(), ("mass_t = 22", "mass_t = 23")))
     ran = command("validate", table, "--config", bare)
     assert ran.code == 2
@@ -260,13 +268,13 @@ def test_an_infeasible_case_stands_outside_the_verdict(command: Command, config:
     ran = command("sensors", "tune", tmp_path / "heavy.toml", "-o", tmp_path / "out", "--json")
     assert ran.code == 1
     summary = json.loads(ran.out)
-    (case,) = summary["cases"]
-    assert (case["feasible"], case["why_infeasible"]) == (False, "out of brake power")
-    assert case["unavoidable_ci95_m_s"][0] > 0.15
-    assert "no case is feasible" in summary["verdict"]
-    ran = command("validate", tmp_path / "out" / case["table"], "--config", tmp_path / "heavy.toml", "--json")
-    assert ran.code == 0  # known to be infeasible
-    assert json.loads(ran.out)[0]["known_infeasible"] is True
+    (case,) = summary["tables"]["cases"]
+    assert (case["verdict"], case["why_infeasible"]) == ("infeasible", "out of brake power")
+    assert case["unavoidable_rms_m_s"]["low95"] > 0.15
+    assert [limit["sentence"] for limit in summary["limits"]] == ["no case is feasible, so there is nothing to accept"]
+    table = tmp_path / "out" / "tables" / f"{case['id']}.json"
+    code, found = validated(command, table, tmp_path / "heavy.toml", tmp_path / "validated")
+    assert (code, found["verdict"]) == (0, "infeasible")  # as the summary beside it says
 
 
 def test_tune_tells_that_it_leaves_point_sensors_aside(command: Command, config: Path, tmp_path: Path) -> None:

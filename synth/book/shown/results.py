@@ -60,14 +60,19 @@ CASES: Final = (
 
 HOW_TO_READ: Final = (
     "Regret: rms of the table over that of a controller of its kind that is told the friction of each cut, with lines "
-    "polished for it: a reference, no lower bound. None is told where a controller that is not told the friction does "
-    "better. Best baseline: the classical law of least rms, tuned for the case. Unavoidable: rms of what cuts leave "
-    "too fast by under the hardest braking, and too slow by without any; where it is above the limit, no regulator of "
-    "the position keeps that limit, and the case is infeasible. All controllers see the same passes, and may act from "
-    "the same place."
+    "polished for it: a reference, no lower bound. Best baseline: the classical law of least rms, tuned for the case. "
+    "Unavoidable: rms of what cuts leave too fast by under the hardest braking, and too slow by without any; where it "
+    "is above the limit, no regulator of the position keeps that limit, and the case is infeasible. All controllers "
+    "see the same passes, and may act from the same place."
 )
 PERMISSIONS: Final = (
     "What commands at any time and other permissions of the hardware would give: retarder-synth permissions."
+)
+
+
+NO_REGRET: Final = (
+    "No regret is told where the regulator that is told the friction is beaten by one that is not: it is no reference "
+    "there."
 )
 
 
@@ -132,6 +137,8 @@ def overall(found: FoundBook) -> Row:
 
 def remarks(found: FoundBook) -> Iterator[str]:
     """What is to be done or known besides the verdict."""
+    if not all(case.comparison.has_reference for case in found.book.cases):
+        yield NO_REGRET
     worst = worst_of(found.feasible)
     if worst is not None:
         yield worst.told

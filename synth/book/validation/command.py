@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from synth.book.validation.options import ValidateOptions
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
-from synth.frame.exhibits import Chapter, File
+from synth.frame.exhibits import Chapter, File, Sentence
 from synth.frame.input_error import InputError
 from synth.frame.processors import available
 from synth.frame.settings.settings_file import BUILT_IN
@@ -52,21 +51,22 @@ class AskedPasses:
 
 @dataclass(frozen=True)
 class AskedLog:
-    """`passes` passes of each table are to be logged in a file called `name`; `gauge_std_kpa` NaN: without a gauge."""
+    """`passes` passes of each table are to be logged in a file called `name`; `gauge_std_kpa` None: without a gauge."""
 
     name: str
     passes: int
-    gauge_std_kpa: float
+    gauge_std_kpa: float | None
 
 
 @dataclass(frozen=True)
 class FoundPasses:
-    """What became of each table, and the log."""
+    """What became of each table, and the log of so many passes of each; None and 0 where none was asked for."""
 
     title: str
     seed: int
     tables: tuple[Revalidation, ...]
-    files: tuple[File, ...]
+    log: File | None
+    logged: int
 
 
 def read(text: str, place: str) -> ResolvedConfig | None:
@@ -85,6 +85,8 @@ def resolve(asked: Asked[ResolvedConfig | None, ValidateOptions]) -> AskedPasses
     config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, passages)
     if passages and options.log is not None:
         raise InputError(f"{path}: its tables are for point sensors, whose passes are not logged; leave out --log")
+    if options.log is None and options.model_fields_set & {"log_passes", "gauge_std_kpa"}:
+        raise InputError("--log-passes and --gauge-std are about a log; name its file in DIR by --log NAME.csv")
     from synth.book.passage_class import passage_class
     from synth.book.validation.revalidation import Rehearsal, plant_for
 
@@ -137,8 +139,9 @@ def rehearsed(asked: AskedPasses, work: Work) -> FoundPasses:
         found = revalidated_passages(asked.passages, rehearsal, asked.infeasible, tell)
     else:
         found = revalidated(asked.tables, rehearsal, asked.infeasible, tell)
-    files = () if asked.log is None else (log_file(asked, asked.log),)
-    return FoundPasses(rehearsal.config.title, rehearsal.seed, tuple(found), files)
+    log = None if asked.log is None else log_file(asked, asked.log)
+    logged = 0 if asked.log is None else asked.log.passes
+    return FoundPasses(rehearsal.config.title, rehearsal.seed, tuple(found), log, logged)
 
 
 def log_file(asked: AskedPasses, log: AskedLog) -> File:
@@ -147,7 +150,7 @@ def log_file(asked: AskedPasses, log: AskedLog) -> File:
     from synth.book.validation.rehearsed_log import rehearsed_log
     from tuning_tables.pass_log.log_files import write_log
 
-    gauge = None if math.isnan(log.gauge_std_kpa) else PressureGauge(log.gauge_std_kpa)
+    gauge = None if log.gauge_std_kpa is None else PressureGauge(log.gauge_std_kpa)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / log.name
         write_log(rehearsed_log(asked.tables, asked.rehearsal, log.passes, gauge), path)
@@ -165,7 +168,10 @@ def show(found: FoundPasses) -> Iterator[Chapter]:
     """What is shown of it."""
     from synth.book.validation.shown import tables
 
-    yield Chapter("Tables", (*tables(found.title, found.seed, found.tables), *found.files))
+    yield Chapter("Tables", tuple(tables(found.title, found.seed, found.tables)))
+    if found.log is not None:
+        sentence = f"{found.logged} passes of each table, as a controller logs them: {found.log.name}"
+        yield Chapter("Log", (Sentence(sentence, brief=True), found.log))
 
 
 COMMAND = Command(

@@ -16,7 +16,7 @@ LOG_FORMS: Final = (".csv", ".h5")
 
 
 class ValidateOptions(Options):
-    """Options of the command line. `gauge_std_kpa` NaN: there is no gauge."""
+    """Options of the command line. `gauge_std_kpa` None: there is no gauge."""
 
     source: Path = word_option(BY_PLACE, "TABLE.json|BOOK.h5", NEEDED, "A table, or a book of tables.")
     config: Path | None = word_option("--config", "C", None, "Configuration with the plant; built-in unless given.")
@@ -30,7 +30,7 @@ class ValidateOptions(Options):
         "--log", "NAME.csv|.h5", None, "Also log passes as a controller would, in a file of this name in DIR."
     )
     log_passes: int = number_option("--log-passes", "N", 200, 1, 100_000, "Logged of each table.")
-    gauge_std_kpa: float = word_option(
+    gauge_std_kpa: float | None = word_option(
         "--gauge-std", "KPA|none", USUAL_NOISE_KPA, "Noise of the logged pressure; none: there is no gauge."
     )
 
@@ -44,12 +44,14 @@ class ValidateOptions(Options):
 
     @field_validator("gauge_std_kpa", mode="before")
     @classmethod
-    def _is_a_deviation(cls, word: str) -> float:
+    def _is_a_deviation(cls, word: str) -> float | None:
         """A number of kPa, or none."""
+        if word == "none":
+            return None
         try:
-            value = math.nan if word == "none" else float(word)
+            value = float(word)
         except ValueError:
-            value = -1.0
-        if value < 0.0 or value > LARGEST_STD_KPA:
+            value = math.nan
+        if not 0.0 <= value <= LARGEST_STD_KPA:
             raise ValueError(f"0 to {LARGEST_STD_KPA:g} kPa, or none")
         return value
