@@ -10,10 +10,22 @@ import pytest
 from scripts.studies.in_the_loop.agreement import Questions, Tracks, ask, decisions_of, differences, follow
 from scripts.studies.in_the_loop.builds import BUILDS, Build
 from scripts.studies.in_the_loop.controller_process import BuildError, build_controller
-from tests.controller_code.conftest import Tool
+from tests.controller_code.conftest import BOOKS, Tool
 from tuning_tables import decide_for, speed_for
 from tuning_tables.estimator import begin
 from tuning_tables.table_book import Status, TableBook
+
+EVERY_WAY = ("measured", "surfaces")
+"""The book of which most of the code is left out, and the one of which all of it is compiled. The code of the others is
+between them, without one definition or another, so they are compiled in few ways."""
+
+FEW_WAYS = ("gcc -O2", "clang -O3 -mfma -ffp-contract=fast without -std=c99")
+PROVED = [
+    pytest.param(book, build, id=f"{name}-{build}")
+    for name, book in BOOKS.items()
+    for build in BUILDS
+    if name in EVERY_WAY or str(build) in FEW_WAYS
+]
 
 READINGS, COMMANDS, SAMPLES = 1_000_000, 20_000, 500_000
 
@@ -28,7 +40,7 @@ def tracks(book: TableBook) -> Tracks:
     return follow(book, SAMPLES, 20261122)
 
 
-@pytest.mark.parametrize("build", BUILDS, ids=str)
+@pytest.mark.parametrize(("book", "build"), PROVED, indirect=["book"], scope="session")
 def test_c_decides_chooses_and_estimates_as_python(
     build: Build, questions: Questions, tracks: Tracks, tmp_path: Path, tool: Tool
 ) -> None:
