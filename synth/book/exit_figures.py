@@ -47,6 +47,20 @@ LEGEND: Final = (
 )
 
 
+MODEL_ONLY: Final = (
+    "All errors are those of a model with the parameters listed here, not of a retarder. Assumed parameters are "
+    "guesses; calibrate them, then tune again."
+)
+CHANCE_ONLY: Final = (
+    "Intervals (95 %) cover the chance of the simulated passes only, neither the parameters nor the model."
+)
+NOT_CERTIFIED: Final = (
+    "The tool is not certified and claims no safety integrity. Before a table drives a retarder, check it with an "
+    "independent program against the hashes below, and on the track."
+)
+"""What no figure of a tune says."""
+
+
 def told(value: float | None, ends: Ends | None, n: int) -> Interval | None:
     """The figure with its interval; None where there is none."""
     if value is None or ends is None or not all(map(math.isfinite, (value, *ends))):

@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from synth.book.configured import head_of, require_room, sensors_left_aside
+from synth.book.exit_figures import CHANCE_ONLY, MODEL_ONLY, NOT_CERTIFIED
 from synth.book.tune_options import TuneOptions
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
@@ -23,9 +24,8 @@ if TYPE_CHECKING:
     from tuning_tables import ControllerTable
 
 LIMITS_OF_USE = (
-    "All errors are those of a model with the parameters listed here, not of a retarder. Assumed parameters are "
-    "guesses; calibrate them, then tune again.",
-    "Intervals (95 %) cover the chance of the simulated passes only, neither the parameters nor the model.",
+    MODEL_ONLY,
+    CHANCE_ONLY,
     "A share of 0 does not mean never: it shows a probability below the upper end of its interval, no more.",
     "A table holds for its cut class, target speed, path and speed range, for the entry speeds named in the parameters "
     "and for a regulator that gives no new command until the transient of the last one has ended.",
@@ -33,8 +33,7 @@ LIMITS_OF_USE = (
     "and a sensor that sees the cut there, are the yard's.",
     "Predictions come from a grid; they carry its error beside that of the model.",
     "An infeasible case has a table too. It does what brake power allows; it does not meet the limit.",
-    "The tool is not certified and claims no safety integrity. Before a table drives a retarder, check it with an "
-    "independent program against the hashes below, and on the track.",
+    NOT_CERTIFIED,
 )
 
 

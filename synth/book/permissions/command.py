@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from synth.book.configured import head_of, require_room, sensors_left_aside
+from synth.book.exit_figures import CHANCE_ONLY
 from synth.book.permissions.options import PermissionsOptions
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 LIMITS_OF_USE = (
     "Figures are those of a model with the parameters of this page. Assumed ones are guesses.",
-    "Intervals cover the chance of the simulated passes only, neither the parameters nor the model.",
+    CHANCE_ONLY,
     "A permission is judged by the table that is designed for it. What the hardware costs is not told.",
 )
 

@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from synth.book.configured import head_of, require_memory_for
+from synth.book.exit_figures import CHANCE_ONLY, MODEL_ONLY, NOT_CERTIFIED
 from synth.book.sensors.tune_options import SensorsTuneOptions
 from synth.configuration.config_file import parse_config
 from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
@@ -24,17 +25,15 @@ if TYPE_CHECKING:
     from tuning_tables.passages.passage_table import PassageTable
 
 LIMITS_OF_USE = (
-    "All errors are those of a model with the parameters listed here, not of a retarder. Assumed parameters are "
-    "guesses; calibrate them, then tune again.",
-    "Intervals (95 %) cover the chance of the simulated passes only, neither the parameters nor the model.",
+    MODEL_ONLY,
+    CHANCE_ONLY,
     "A table holds for its cut class, target speed and sensors, for the entry speeds named in the parameters and for a "
     "regulator that gives no new command until the change of the last one has ended.",
     "Sensors are simulated in order. A dead, late or spurious one costs accuracy; the table's tracker leaves pulses "
     "that no cut can have made out of account.",
     "The regulator acts from the first sensor on. The cut ahead must have left the position by then: this interlock is "
     "the yard's.",
-    "The tool is not certified and claims no safety integrity. Before a table drives a retarder, check it with an "
-    "independent program against the hashes below, and on the track.",
+    NOT_CERTIFIED,
 )
 
 

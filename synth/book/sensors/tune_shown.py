@@ -29,6 +29,7 @@ from synth.book.sensors.sensor_case import SensorCase
 from synth.book.sensors.sensor_tune import SensorBook
 from synth.book.shown.cases import (
     KEYS,
+    POLISH,
     PROMISE,
     UNAVOIDABLE,
     VERDICT,
@@ -36,6 +37,7 @@ from synth.book.shown.cases import (
     failed_rows,
     is_outside,
     key_row,
+    polish_row,
     unavoidable,
 )
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
@@ -66,11 +68,7 @@ HEARD: Final = (
 DECIDES: Final[Mapping[str, str]] = {"first_axle": "its first axle passes", "every_axle": "each of its axles passes"}
 DESIGNS: Final = (
     *CASE,
-    Column("converged", "polish converged"),
-    Column("evaluations", "evaluations"),
-    Column("cost_before_m2_s2", "cost before", "m²/s²"),
-    Column("cost_after_m2_s2", "cost after", "m²/s²"),
-    Column("status", "how it ended", words=True),
+    *POLISH,
     Column("escaped_probability", "left the grid", form="{:.1e}".format),
 )
 
@@ -141,11 +139,7 @@ def design_row(case: SensorCase) -> Row:
     """One case."""
     return {
         **of(case),
-        "converged": case.polish.converged,
-        "status": case.polish.status,
-        "evaluations": case.polish.evaluations,
-        "cost_before_m2_s2": case.polish.cost_before,
-        "cost_after_m2_s2": case.polish.cost_after,
+        **polish_row(case.polish),
         "escaped_probability": case.predicted.escaped,
     }
 

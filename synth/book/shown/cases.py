@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
-from typing import Final
+from typing import Final, Protocol
 
 from plant_models import Plant
 from synth.book.acceptance import CaseVerdict
@@ -35,12 +35,47 @@ PROMISE: Final = (
 )
 """What a table says of itself, besides its rms."""
 
+POLISH: Final = (
+    Column("converged", "polish converged"),
+    Column("evaluations", "evaluations"),
+    Column("cost_before_m2_s2", "cost before", "m²/s²"),
+    Column("cost_after_m2_s2", "cost after", "m²/s²"),
+    Column("status", "how it ended", words=True),
+)
+"""How the search for the lines, surfaces or speeds of least cost ended."""
+
 FAILED: Final = (
     Column("label", "case", words=True),
     Column("target_m_s", "target", "m/s"),
     Column("reason", "reason", words=True),
 )
 NO_TABLE: Final = "no table"
+
+
+class Polished(Protocol):
+    """What every polish tells."""
+
+    @property
+    def cost_before(self) -> float: ...
+    @property
+    def cost_after(self) -> float: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def status(self) -> str: ...
+
+
+def polish_row(polish: Polished) -> Row:
+    """The figures of `POLISH`."""
+    return {
+        "converged": polish.converged,
+        "status": polish.status,
+        "evaluations": polish.evaluations,
+        "cost_before_m2_s2": polish.cost_before,
+        "cost_after_m2_s2": polish.cost_after,
+    }
 
 
 def key_row(label: str, plant: Plant, table: ControllerTable | PassageTable, verdict: CaseVerdict) -> Row:

@@ -10,6 +10,7 @@ from synth.book.case_result import CaseResult
 from synth.book.comparison.limit_cycle import Hunting, hunting_report
 from synth.book.comparison.pressure_cycle import pressure_hunting
 from synth.book.exit_figures import CASE
+from synth.book.shown.cases import POLISH, polish_row
 from synth.book.tuned_table import AnyEstimate
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.printed_numbers import decimals, per_cent
@@ -48,11 +49,7 @@ PRESSURE: Final = (
 )
 DESIGNS: Final = (
     *CASE,
-    Column("converged", "polish converged"),
-    Column("evaluations", "evaluations"),
-    Column("cost_before_m2_s2", "cost before", "m²/s²"),
-    Column("cost_after_m2_s2", "cost after", "m²/s²"),
-    Column("status", "how it ended", words=True),
+    *POLISH,
     Column("design_rms_m_s", "rms on the grid", "m/s", decimals(4)),
     Column("independent_rms_m_s", "rms without it", "m/s", decimals(4)),
     Column("again", "designed again on finer speeds"),
@@ -105,14 +102,9 @@ def pressure(cases: Sequence[CaseResult]) -> Iterator[Exhibit]:
 
 def design_row(case: CaseResult) -> Row:
     """How the lines of one case were found."""
-    polish = case.polish
     return {
         **case_row(case),
-        "converged": polish.converged,
-        "status": polish.status,
-        "evaluations": polish.evaluations,
-        "cost_before_m2_s2": polish.cost_before,
-        "cost_after_m2_s2": polish.cost_after,
+        **polish_row(case.polish),
         **vars(case.grid),
         "ties": case.study.policy_map.ties,
         "escaped_probability": case.predicted.escaped,

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.book.configured import head_of
+from synth.book.exit_figures import CHANCE_ONLY, MODEL_ONLY
 from synth.book.tables_configuration import configuration_for
 from synth.book.validation.options import ValidateOptions
 from synth.configuration.config_file import parse_config
@@ -24,10 +25,7 @@ if TYPE_CHECKING:
     from tuning_tables import ControllerTable
     from tuning_tables.passages.passage_table import PassageTable
 
-LIMITS_OF_USE = (
-    "All errors are those of a model with the parameters listed here, not of a retarder.",
-    "Intervals (95 %) cover the chance of the simulated passes only, neither the parameters nor the model.",
-)
+LIMITS_OF_USE = (MODEL_ONLY, CHANCE_ONLY)
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ def test_what_must_never_happen_does_not_and_right_sensors_find_all(name: str, s
     missed and none is false; a gap in which a cut stalls tells nothing, so there uncouplings are not judged."""
     scene = SCENES[name]
     judged = judgement(random_humping(seed, scene))
-    none = NEVER
+    none: tuple[str, ...] = NEVER
     if scene.faults == 0 or scene.points_alone:
         none += CATCH_UPS if scene.stalled_share else CATCH_UPS + UNCOUPLINGS
     assert {key: judged[key] for key in none} == dict.fromkeys(none, 0)
