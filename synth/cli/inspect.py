@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -206,7 +206,12 @@ def checked_summary(directory: Path) -> dict[str, Any] | None:
         if hashlib.sha256(file.read_bytes()).hexdigest() != sha256:
             raise DamagedTable(f"{file}: its SHA-256 is not the one in summary.json; tune again")
     accepted = "accepted" if document.get("accepted") else "not accepted"
-    limits = document.get("limits")
-    verdict = Verdict(tuple(Limit(**each) for each in limits) if isinstance(limits, list) else ())
-    sentence = f"all {len(listed)} files that it lists are there unchanged; {accepted}: {verdict.sentence}"
+    sentence = f"all {len(listed)} files that it lists are there unchanged; {accepted}: {verdict_in(document)}"
     return {"files": len(listed), "accepted": document.get("accepted"), "sentence": sentence}
+
+
+def verdict_in(document: Mapping[str, object]) -> str:
+    """What a summary says of the limits, as its command said it; '' for a document without any."""
+    limits = document.get("limits")
+    told = [each for each in limits if isinstance(each, dict)] if isinstance(limits, list) else []
+    return Verdict(tuple(Limit(str(each.get("sentence")), each.get("kept") is True) for each in told)).sentence

@@ -86,7 +86,7 @@ def book_summary(figures: BookFigures, created: str) -> bytes:
         **summary_head("sweep", head_of(config), created),
         "condition": figures.condition.name or None,
         "accepted": None,
-        "verdict": verdict(figures),
+        "limits": [{"sentence": verdict(figures), "kept": None}],
         "criterion": config.criterion.sentence,
         "tables": {
             "cases": figures.cases,

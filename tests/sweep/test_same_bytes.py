@@ -63,11 +63,12 @@ def test_tables_for_the_measured_speed_are_those_of_a_tune(command: Callable[...
     assert all(one == other for one, other in zip(swept, tuned, strict=True))
 
 
-def test_the_other_commands_take_what_a_sweep_leaves(command: Callable[..., Ran], serial: Path) -> None:
+def test_the_other_commands_take_what_a_sweep_leaves(command: Callable[..., Ran], serial: Path, tmp_path: Path) -> None:
     code, said, _ = command("inspect", serial)
     assert code == 0
     assert "files that it lists are there unchanged" in said
-    code, said, warned = command("validate", serial / "book.h5", "--config", serial / "config.toml", "--passes", "1000")
+    given = ("validate", serial / "book.h5", "--config", serial / "config.toml", "--passes", "1000")
+    code, said, warned = command(*given, "-o", tmp_path)
     assert code in (0, 1)
     assert said
     assert "another configuration" not in warned

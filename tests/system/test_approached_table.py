@@ -48,12 +48,12 @@ def test_a_table_of_before_is_told_which_key_it_needs(
     table = read_json(tuned / "tables" / "gondola-4-22t-to-1.5-m-s.json")
     path, config = tmp_path / "before.json", tmp_path / "with_the_key.toml"
     write_json(replace(table, approach=None, valid=replace(table.valid, s_m=(0.0, table.valid.s_m[1]))), path)
-    ran = command("validate", path, "--config", two_classes, "--passes", "1000")
+    ran = command("validate", path, "--config", two_classes, "--passes", "1000", "-o", tmp_path / "out")
     assert ran.code == 2
     assert "differs in regulator.approach_m (4, in the table 0)" in ran.sentence
     assert ran.sentence.endswith("by --config, with regulator.approach_m = 0 in it if it names none")
     config.write_text(two_classes.read_text(encoding="utf-8") + "[regulator]\napproach_m = 0.0\n", encoding="utf-8")
-    assert "rms" in command("validate", path, "--config", config, "--passes", "1000").out
+    assert "rms" in command("validate", path, "--config", config, "--passes", "1000", "-o", tmp_path / "out").out
 
 
 def test_an_approach_that_makes_every_cut_faster_is_one_sentence(

@@ -172,7 +172,7 @@ def command_lines(table: Path, config: Path, output: Path) -> list[tuple[object,
     """Every command that reads a table."""
     return [
         ("inspect", table),
-        ("validate", table, "--config", config),
+        ("validate", table, "--config", config, "-o", output),
         ("plot", table, "-o", output),
         ("export", table, "--format", "json", "-o", output),
     ]

@@ -191,7 +191,7 @@ def test_validate_refuses_a_log_that_cannot_be(
     assert not (tmp_path / "out").exists()
 
 
-def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_classes: Path) -> None:
+def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_classes: Path, tmp_path: Path) -> None:
     path = tuned / "tables" / f"{ID}.json"
     table = read_json(path)
     text = to_json(table).decode().replace(f'"rms_m_s": {table.predicted.rms_m_s!r}', '"rms_m_s": 0.005')
@@ -199,13 +199,13 @@ def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_cla
     document.pop("crc32")
     document["crc32"] = document_checksum(document)
     path.write_bytes(canonical_json(document))
-    ran = command("validate", path, "--config", two_classes)
+    ran = command("validate", path, "--config", two_classes, "-o", tmp_path / "out")
     assert ran.code == 1
     assert "predicted / simulated rms 0.2" in ran.out
 
 
-def test_validate_refuses_a_plant_that_does_not_fit(command: Command, tuned: Path) -> None:
-    ran = command("validate", tuned / "book.h5")
+def test_validate_refuses_a_plant_that_does_not_fit(command: Command, tuned: Path, tmp_path: Path) -> None:
+    ran = command("validate", tuned / "book.h5", "-o", tmp_path / "out")
     assert ran.code == 2
     assert "no cut class fits the table gondola-4-22t-to-1.5-m-s" in ran.sentence
     assert "retarder.zones_m" in ran.sentence
