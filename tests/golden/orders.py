@@ -58,7 +58,7 @@ KINDS = (
     "computer",
 )
 BOOK, PARK = "park/book.h5", "--config park.toml"
-LOG = "log.h5 --config park.toml"
+LOG = "validated/log.h5 --config park.toml"
 
 ORDERS: tuple[Order, ...] = (
     Order("init"),
@@ -67,7 +67,7 @@ ORDERS: tuple[Order, ...] = (
     Order("tune park.toml --workers 1", "park"),
     Order("tune measured.toml --workers 1", "measured"),
     Order("tune any-time.toml --workers 1", "any-time"),
-    Order(f"validate {BOOK} {PARK} --log log.h5 --log-passes 150"),
+    Order(f"validate {BOOK} {PARK} --log log.h5 --log-passes 150", "validated"),
     Order(f"verify {BOOK}"),
     Order(f"inspect {BOOK}"),
     Order(f"plot {BOOK} {PARK}", "plots"),
