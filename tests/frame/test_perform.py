@@ -168,6 +168,10 @@ def test_the_help_tells_what_is_declared(app: typer.Typer) -> None:
     assert "Throws of each player; as configured unless given." in " ".join(told.split())
 
 
+def test_a_table_without_rows_is_a_word_on_the_page() -> None:
+    assert "None." in shown(Table("shares", "Shares", (Column("share", "share"),), ()), {})
+
+
 def test_two_exhibits_of_one_name_are_a_fault_of_the_command() -> None:
     table = Table("shares", "Shares", (Column("share", "share"),), ())
     head = COMMAND.head(COMMAND.resolve(asked_of(COMMAND, CoinOptions(), "init")))

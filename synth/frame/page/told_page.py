@@ -57,13 +57,19 @@ def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
         case Sentence():
             return element("p", exhibit.text)
         case Table():
-            rows = f"{len(exhibit.rows)} rows in {exhibit.file}."
-            return joined((element("h3", exhibit.title), element("p", rows) if exhibit.long else shown_table(exhibit)))
+            return joined((element("h3", exhibit.title), table_or_words(exhibit)))
         case Chart() if exhibit.name in pictures:
             return figure(pictures[exhibit.name])
         case File() if exhibit.title:
             return element("p", element("a", exhibit.title, href=exhibit.name))
     return Markup()
+
+
+def table_or_words(of: Table) -> Markup:
+    """The table, or a sentence about one that is empty or too long for a page."""
+    if not of.rows:
+        return element("p", "None.")
+    return element("p", f"{len(of.rows)} rows in {of.file}.") if of.long else shown_table(of)
 
 
 def shown_table(of: Table) -> Markup:
