@@ -13,7 +13,7 @@ from synth.book.tune_options import TuneOptions
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
-from synth.frame.exhibits import Chapter
+from synth.frame.exhibits import Chapter, Sentence
 from synth.frame.processors import available
 
 if TYPE_CHECKING:
@@ -143,7 +143,8 @@ def show(found: FoundBook) -> Iterator[Chapter]:
     yield Chapter("Predicted against simulated", tuple(predictions(found)))
     yield Chapter("Limit cycles and doubts", tuple(checks(found.book.cases)))
     yield from chapters(found.book.cases)
-    yield Chapter("Tables", found.files)
+    where = "A controller loads tables/*.json, or is compiled with c/; book.h5 holds the same tables as arrays."
+    yield Chapter("Tables", (Sentence(where), *found.files))
 
 
 COMMAND = Command(

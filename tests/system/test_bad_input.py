@@ -117,8 +117,8 @@ def test_a_date_that_is_none(
 
 @pytest.mark.parametrize(
     "arguments",
-    [("tuna",), ("tune", "--workers", "0"), ("tune", "--wrokers", "2"), ("export", "x.json"), ("validate",),
-     ("validate", "x.json", "--passes", "many"), ("tune", "a.toml", "b.toml")],
+    [("tuna",), ("sweep", "x.toml", "--workers", "0"), ("tune", "--wrokers", "2"), ("export", "x.json"), ("verify",),
+     ("verify", "x.json", "--passes", "many"), ("tune", "a.toml", "b.toml")],
 )  # fmt: skip
 def test_faults_of_use(command: Command, arguments: tuple[str, ...]) -> None:
     ran = command(*arguments)

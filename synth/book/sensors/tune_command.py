@@ -14,7 +14,7 @@ from synth.configuration.config_file import parse_config
 from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
-from synth.frame.exhibits import Chapter
+from synth.frame.exhibits import Chapter, Sentence
 from synth.frame.input_error import InputError
 from synth.frame.processors import available
 from synth.frame.settings.settings_file import BUILT_IN
@@ -128,7 +128,8 @@ def show(found: FoundPassages) -> Iterator[Chapter]:
     yield Chapter("Sensors and passages", tuple(heard(found.book)))
     yield Chapter("How the tables were found", tuple(designs(found.book)))
     yield from chapters(found.book.cases)
-    yield Chapter("Tables", found.files)
+    where = Sentence("A controller loads tables/*.json, or is compiled with c/ or st/.")
+    yield Chapter("Tables", (where, *found.files))
 
 
 COMMAND = Command(
