@@ -169,7 +169,7 @@ def test_the_worst_is_the_largest_ratio() -> None:
     assert (worst.case, worst.key, worst.ratio) == (other, "low_friction", 9.5)
     assert worst.told.endswith(
         "the worst is gondola-85t, target 4 m/s with friction × 0.7: rms 0.3800 [0.3700, 0.3900] m/s, "
-        "9.5 times the nominal"
+        "9.5 times the nominal."
     )
 
 

@@ -57,8 +57,8 @@ def check_file(path: Path) -> None:
         case "c", ".c" | ".h":
             assert content.startswith(b"/* ")
             assert content.endswith((b"\n}\n", b"#endif\n"))
-        case "c", ".csv":
-            assert content.endswith(b"\r\n")
+        case "c" | "sheets", ".csv":
+            assert content.endswith(b"\n")
         case "plots", ".png":
             assert content.startswith(b"\x89PNG")
             assert content.endswith(b"IEND\xaeB`\x82")
@@ -73,7 +73,7 @@ def check_file(path: Path) -> None:
             json.loads(content)
 
 
-MOMENTS = (("", 3.0), ("computed in", 0.9), ("pictures drawn", 0.12))
+MOMENTS = (("", 3.0), ("[1/1]", 0.9), ("pictures drawn", 0.12))
 """(what to wait for, longest further wait in seconds) of each kill."""
 
 

@@ -56,15 +56,29 @@ class Polished(Protocol):
     """What every polish tells."""
 
     @property
-    def cost_before(self) -> float: ...
+    def cost_before(self) -> float:
+        """Of the lines that it began with, m²/s²."""
+        ...
+
     @property
-    def cost_after(self) -> float: ...
+    def cost_after(self) -> float:
+        """Of those that it found."""
+        ...
+
     @property
-    def evaluations(self) -> int: ...
+    def evaluations(self) -> int:
+        """How often the cost was asked for."""
+        ...
+
     @property
-    def converged(self) -> bool: ...
+    def converged(self) -> bool:
+        """Whether it ended well."""
+        ...
+
     @property
-    def status(self) -> str: ...
+    def status(self) -> str:
+        """How it ended, in words."""
+        ...
 
 
 def polish_row(polish: Polished) -> Row:
