@@ -47,9 +47,12 @@ def test_inspect_of_a_table_needs_no_solver(tuned: Path) -> None:
 
 @pytest.mark.parametrize("arguments", [["--help"], ["tune", "--help"]])
 def test_help_is_quick(arguments: list[str]) -> None:
+    """The program as it is installed: it does not look for garbage while it loads."""
+    program = f"import sys; sys.argv[1:] = {arguments}; from synth.cli import script; script()"
+
     def seconds() -> float:
         started = time.perf_counter()
-        assert python(f"from synth.cli import main; raise SystemExit(main({arguments}))").returncode == 0
+        assert python(program).returncode == 0
         return time.perf_counter() - started
 
     assert min(seconds() for _ in range(4)) < 0.4
