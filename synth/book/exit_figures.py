@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from synth.book.comparison.measured import honesty_of
 from synth.frame.exhibits import Column, Row
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, of_ten_thousand, per_cent
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics
 from synth.simulation.replicates import Interval as Ends
+from tuning_tables import Predicted
 
 CASE: Final = (
     Column("label", "case", words=True, once=True),
@@ -36,8 +38,12 @@ RISKS: Final = (
 LOOP: Final = (RMS, WITHIN_95, WITHIN_99, *RISKS, SWITCHINGS, TIME)
 """All figures of `ExitStatistics`."""
 
-POWER: Final = (OUT_OF_BRAKE, RMS_WITHIN)
-"""All figures of `BrakePower`."""
+TOLD: Final = (RMS, WITHIN_95, WITHIN_99, OUT_OF_BRAKE, PREDICTED, HONESTY)
+"""What every table of simulated tables tells first."""
+
+EFFORT: Final = (SWITCHINGS, TIME)
+DETAILS: Final = (*RISKS, RMS_WITHIN)
+"""What it tells where there is room."""
 
 LEGEND: Final = (
     "95 of 100 within ±: so many cuts leave within so many m/s of the target. Over-speed: more than 0.3 m/s above the "
@@ -45,7 +51,6 @@ LEGEND: Final = (
     "A cut that stops in the position counts with exit speed 0. Brackets, and ± their wider half: 95 % intervals, from "
     "passes in strata of the friction; the chance of these passes is all that they cover."
 )
-
 
 MODEL_ONLY: Final = (
     "All errors are those of a model with the parameters listed here, not of a retarder. Assumed parameters are "
@@ -84,9 +89,13 @@ def loop_row(found: ExitStatistics) -> Row:
     }
 
 
-def power_row(found: BrakePower, passes: int) -> Row:
-    """The figures of `POWER`."""
+def table_row(found: ExitStatistics, power: BrakePower, predicted: Predicted) -> Row:
+    """The figures of a simulated table, beside what it predicted of itself: `TOLD`, `EFFORT` and `DETAILS`."""
+    n = found.passes
     return {
-        "out_of_brake": told(found.out_of_brake, found.out_of_brake_ci95, passes),
-        "rms_within_m_s": told(found.rms_within_m_s, found.rms_within_ci95_m_s, passes),
+        **loop_row(found),
+        "out_of_brake": told(power.out_of_brake, power.out_of_brake_ci95, n),
+        "rms_within_m_s": told(power.rms_within_m_s, power.rms_within_ci95_m_s, n),
+        "predicted_rms_m_s": predicted.rms_m_s,
+        "honesty": told(*honesty_of(predicted.rms_m_s, predicted.passes, found), n),
     }

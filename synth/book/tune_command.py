@@ -14,7 +14,6 @@ from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter, Sentence
-from synth.frame.processors import available
 
 if TYPE_CHECKING:
     from synth.book.found_book import FoundBook
@@ -50,7 +49,7 @@ class AskedTune:
 def resolve(asked: Asked[ResolvedConfig, TuneOptions]) -> AskedTune:
     """Refuse what does not fit into memory."""
     config = asked.settings
-    workers = asked.options.workers or min(len(config.cuts), available())
+    workers = asked.options.workers_for(len(config.cuts))
     require_room(config, asked.place, workers)
     return AskedTune(config, asked.place, workers, asked.options.pareto)
 

@@ -7,9 +7,6 @@ from typing import Annotated
 
 import typer
 
-LARGEST_STD_KPA = 100.0
-"""What a pressure gauge takes."""
-
 Source = Annotated[Path, typer.Argument(metavar="TABLE|BOOK", help="A table (.json) or a book (.h5).")]
 SourceOrDirectory = Annotated[
     Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or what a tune left.")

@@ -7,9 +7,8 @@ from importlib.metadata import version
 from statistics import median
 from typing import Any
 
-from synth.book.comparison.measured import honesty_of
 from synth.book.configured import head_of
-from synth.book.exit_figures import loop_row, power_row, told
+from synth.book.exit_figures import table_row
 from synth.book.shown.cases import promise_row
 from synth.frame.summary import plain, summary_head
 from synth.sweep.refinement import Gap
@@ -63,7 +62,6 @@ class BookFigures:
 
 def case_of(label: str, row: Row, table: ControllerTable) -> Document:
     """One table's figures, keys as in the summary of a tune."""
-    found = row.statistics
     return {
         "id": table.id,
         "label": label,
@@ -73,9 +71,7 @@ def case_of(label: str, row: Row, table: ControllerTable) -> Document:
         "missed_limits": list(row.judgement.missed),
         "undecided_limits": list(row.judgement.undecided),
         **promise_row(table),
-        **loop_row(found),
-        **power_row(row.brake_power, found.passes),
-        "honesty": told(*honesty_of(table.predicted.rms_m_s, table.predicted.passes, found), found.passes),
+        **table_row(row.statistics, row.brake_power, table.predicted),
     }
 
 

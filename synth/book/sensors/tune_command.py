@@ -16,7 +16,6 @@ from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter, Sentence
 from synth.frame.input_error import InputError
-from synth.frame.processors import available
 from synth.frame.settings.settings_file import BUILT_IN
 
 if TYPE_CHECKING:
@@ -67,7 +66,7 @@ def resolve(asked: Asked[ResolvedConfig, SensorsTuneOptions]) -> AskedSensors:
             f"{place}: criterion.p_overspeed and criterion.worst_friction_* can be kept only by tables for a radar; "
             "set them back to 1"
         )
-    workers = asked.options.workers or min(len(config.cuts), available())
+    workers = asked.options.workers_for(len(config.cuts))
     for label, plant in config.plants():
         require_memory_for(label, config.sensors.serving(plant), (config.resolution,), place, workers)
     return AskedSensors(config, config.sensors, place, workers)

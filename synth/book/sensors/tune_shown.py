@@ -6,22 +6,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from synth.book.acceptance import CaseVerdict, advice_of
-from synth.book.comparison.measured import honesty_of
 from synth.book.exit_figures import (
     CASE,
-    HONESTY,
+    DETAILS,
+    EFFORT,
     LEGEND,
-    OUT_OF_BRAKE,
-    PREDICTED,
-    RISKS,
-    RMS,
-    RMS_WITHIN,
-    SWITCHINGS,
-    TIME,
-    WITHIN_95,
-    WITHIN_99,
-    loop_row,
-    power_row,
+    TOLD,
+    table_row,
     told,
 )
 from synth.book.sensors.found_passages import FoundPassages
@@ -43,10 +34,7 @@ from synth.book.shown.cases import (
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.printed_numbers import per_cent
 
-CASES: Final = (
-    *CASE, VERDICT, RMS, UNAVOIDABLE, WITHIN_95, WITHIN_99, OUT_OF_BRAKE, PREDICTED, HONESTY, SWITCHINGS, TIME, *RISKS,
-    RMS_WITHIN, *KEYS, *PROMISE,
-)  # fmt: skip
+CASES: Final = (*CASE, VERDICT, *TOLD, UNAVOIDABLE, *EFFORT, *DETAILS, *KEYS, *PROMISE)
 HOW_TO_READ: Final = (
     "Unavoidable: rms of what cuts leave too fast by under the harder braking of the table and of a regulator that "
     "goes to the highest stage at every passage, and too slow by if never braked; where that alone is above the limit, "
@@ -92,13 +80,11 @@ def results(found: FoundPassages) -> Iterator[Exhibit]:
 
 def case_row(case: SensorCase, verdict: CaseVerdict) -> Row:
     """Everything about one case in figures."""
-    found, promised = case.statistics, case.table.predicted
+    found = case.statistics
     return {
         **key_row(case.label, case.plant, case.table, verdict),
-        **loop_row(found),
-        **power_row(case.brake_power, found.passes),
+        **table_row(found, case.brake_power, case.table.predicted),
         "unavoidable_rms_m_s": unavoidable(case.unavoidable, found.passes),
-        "honesty": told(*honesty_of(promised.rms_m_s, promised.passes, found), found.passes),
     }
 
 

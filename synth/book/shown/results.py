@@ -11,19 +11,11 @@ from synth.book.case_result import CaseResult
 from synth.book.comparison.measured import Measured
 from synth.book.exit_figures import (
     CASE,
-    HONESTY,
+    DETAILS,
+    EFFORT,
     LEGEND,
-    OUT_OF_BRAKE,
-    PREDICTED,
-    RISKS,
-    RMS,
-    RMS_WITHIN,
-    SWITCHINGS,
-    TIME,
-    WITHIN_95,
-    WITHIN_99,
-    loop_row,
-    power_row,
+    TOLD,
+    table_row,
     told,
 )
 from synth.book.found_book import FoundBook
@@ -50,12 +42,12 @@ ENTRY: Final = (
     Column("served_entry_m_s", "of them served", "m/s", decimals(2), detail=True),
 )
 CASES: Final = (
-    *CASE, VERDICT, RMS, WITHIN_95, WITHIN_99, OUT_OF_BRAKE, PREDICTED, HONESTY,
+    *CASE, VERDICT, *TOLD,
     Column("at_rest_ratio", "rms / at rest", form=decimals(2), spare=7),
     Column("regret", "regret", form=decimals(2), spare=5),
     Column("best_baseline_m_s", "best baseline", "m/s", decimals(4), spare=6),
     Column("best_baseline", "which", words=True, spare=6),
-    UNAVOIDABLE, SWITCHINGS, TIME, *RISKS, RMS_WITHIN, *KEYS, *ENTRY, *PROMISE,
+    UNAVOIDABLE, *EFFORT, *DETAILS, *KEYS, *ENTRY, *PROMISE,
 )  # fmt: skip
 
 HOW_TO_READ: Final = (
@@ -96,10 +88,8 @@ def case_row(case: CaseResult, verdict: CaseVerdict) -> Row:
     at_rest = found.at_rest
     return {
         **key_row(case.label, case.plant, case.table, verdict),
-        **loop_row(found.table.statistics),
-        **power_row(case.brake_power, n),
+        **table_row(found.table.statistics, case.brake_power, case.table.predicted),
         "unavoidable_rms_m_s": unavoidable(case.feasibility.unavoidable, n),
-        "honesty": told(found.table.honesty, found.table.honesty_ci95, n),
         "regret": told(found.regret, found.regret_ci95, n),
         "at_rest_ratio": None if at_rest is None else table_ratio(at_rest),
         "best_baseline": best and best.name,
