@@ -24,11 +24,14 @@ class HeardShares:
     """Of the cuts heard at every passage at which is decided, in its order, the shares with 95 % intervals.
 
     `unfinished`: found a change of stage unfinished, so that nothing was decided; `mistaken`: the tracker took the
-    pulses for no passage, or for one at which nothing is decided. NaN where no cut came.
+    pulses for no passage, or for one at which nothing is decided. NaN where no cut came. `taken`: passes whose pulses
+    were taken for the passage, of which `unfinished` is told; `heard`: all heard there, of which `mistaken` is.
     """
 
     unfinished: tuple[tuple[float, Interval], ...]
     mistaken: tuple[tuple[float, Interval], ...]
+    taken: tuple[int, ...]
+    heard: tuple[int, ...]
 
 
 @frozen_arrays

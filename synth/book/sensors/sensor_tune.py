@@ -24,7 +24,15 @@ from synth.frame.creation_time import creation_time
 from synth.problem.aim import Aim
 from synth.simulation.exit_statistics import brake_power, exit_statistics
 from synth.simulation.passage_controller import of_table
-from synth.simulation.passage_sample import NO_DECISION, NOT_BELIEVED, NOT_HEARD, PassageSample, unfinished_shares
+from synth.simulation.passage_sample import (
+    DECIDED,
+    NO_DECISION,
+    NOT_BELIEVED,
+    NOT_HEARD,
+    UNFINISHED,
+    PassageSample,
+    unfinished_shares,
+)
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import share_of
@@ -159,4 +167,10 @@ def heard_shares(sample: PassageSample) -> HeardShares:
         nothing = (float("nan"), (float("nan"), float("nan")))
         lost = np.isin(outcome, (NOT_BELIEVED, NO_DECISION))
         mistaken.append(share_of(lost, weight) if weight.any() else nothing)
-    return HeardShares(tuple(unfinished_shares(sample)), tuple(mistaken))
+    outcomes = sample.outcome.T
+    return HeardShares(
+        tuple(unfinished_shares(sample)),
+        tuple(mistaken),
+        tuple(int(np.isin(outcome, (DECIDED, UNFINISHED)).sum()) for outcome in outcomes),
+        tuple(int((outcome != NOT_HEARD).sum()) for outcome in outcomes),
+    )

@@ -102,15 +102,16 @@ def heard(book: SensorBook) -> Iterator[Exhibit]:
 
 def passage_rows(case: SensorCase) -> Iterator[Row]:
     """The passages of one case."""
-    n = case.statistics.passes
-    for row, unfinished, mistaken in zip(case.table.passages, case.heard.unfinished, case.heard.mistaken, strict=True):
+    heard = case.heard
+    shares = zip(heard.unfinished, heard.taken, heard.mistaken, heard.heard, strict=True)
+    for row, (unfinished, taken, mistaken, came) in zip(case.table.passages, shares, strict=True):
         yield {
             **of(case),
             "sensor": row.sensor,
             "axle": row.axle,
             "path_m": row.path_m,
-            "unfinished": told(*unfinished, n),
-            "mistaken": told(*mistaken, n),
+            "unfinished": told(*unfinished, taken),
+            "mistaken": told(*mistaken, came),
         }
 
 

@@ -36,10 +36,10 @@ def no_notice(sentence: str) -> None:
 class Revalidation:
     """What the passes of `plant` under `table` gave, beside what the file says of itself.
 
-    `overspeed`: share of passes above target + margin of the limits, with its interval; `honesty`: the file's predicted
-    rms / simulated rms, with its interval; `confirmed`: the 95 % intervals of the file and of these passes overlap,
-    None where the file has none; `judgement`: what the passes say of the limits; `infeasible`: the summary beside the
-    file calls the case so; `same_config`: the table was made from this very configuration.
+    `overspeed`: share of passes above target + margin of the limits, with its interval; `confirmed`: the 95 % intervals
+    of the file and of these passes overlap, None where the file has none; `judgement`: what the passes say of the
+    limits; `infeasible`: the summary beside the file calls the case so; `same_config`: the table was made from this
+    very configuration.
     """
 
     table: AnyTable

@@ -112,7 +112,7 @@ def case(spread_m_s: float, least: float, ci95: tuple[float, float]) -> SensorCa
         statistics=found,
         brake_power=BrakePower(0.0, (0.0, 0.001), found.rms_m_s, found.rms_ci95_m_s),
         unavoidable=UnavoidableError(least, ci95, too_fast=True),
-        heard=HeardShares((), ()),
+        heard=HeardShares((), (), (), ()),
         traces=(),
         trace_factors=(),
     )
