@@ -25,23 +25,23 @@ if TYPE_CHECKING:
         tabulate,
         trace,
     )
-    from synth.configuration.hump import load_hump
+    from synth.hump.control.event_file import read_events, write_events
+    from synth.hump.control.hump_control import HumpControl, Operation
+    from synth.hump.control.hump_state import replayed
+    from synth.hump.control.machine_record import machine_record, record_of_word
+    from synth.hump.control.moving_cut import moving_cut
+    from synth.hump.control.practice_rules import PracticeRules
+    from synth.hump.control.reference_track import ReferenceTrack
+    from synth.hump.control.route_table import RouteTable
+    from synth.hump.control.sorting_list_file import load_sorting_list
+    from synth.hump.control.train_population import TrainPopulation
+    from synth.hump.hump_file import load_hump
     from synth.problem.aim import Aim
     from synth.problem.criterion import Criterion
     from synth.problem.problem import Problem
     from synth.problem.resolution import Resolution
     from synth.simulation.passage_loop import close_passage_loop
     from synth.simulation.sensor_fault_figures import fault_figures, single_faults
-    from synth.yard.hump.event_file import read_events, write_events
-    from synth.yard.hump.hump_control import HumpControl, Operation
-    from synth.yard.hump.hump_state import replayed
-    from synth.yard.hump.machine_record import machine_record, record_of_word
-    from synth.yard.hump.moving_cut import moving_cut
-    from synth.yard.hump.practice_rules import PracticeRules
-    from synth.yard.hump.reference_track import ReferenceTrack
-    from synth.yard.hump.route_table import RouteTable
-    from synth.yard.hump.sorting_list_file import load_sorting_list
-    from synth.yard.hump.train_population import TrainPopulation
 
 __all__ = [
     "Aim",
@@ -96,20 +96,20 @@ _HOMES = {
     "Plant": "plant_models",
     "Problem": "synth.problem.problem",
     "Resolution": "synth.problem.resolution",
-    "load_hump": "synth.configuration.hump",
-    "HumpControl": "synth.yard.hump.hump_control",
-    "Operation": "synth.yard.hump.hump_control",
-    "PracticeRules": "synth.yard.hump.practice_rules",
-    "ReferenceTrack": "synth.yard.hump.reference_track",
-    "RouteTable": "synth.yard.hump.route_table",
-    "TrainPopulation": "synth.yard.hump.train_population",
-    "load_sorting_list": "synth.yard.hump.sorting_list_file",
-    "machine_record": "synth.yard.hump.machine_record",
-    "moving_cut": "synth.yard.hump.moving_cut",
-    "read_events": "synth.yard.hump.event_file",
-    "record_of_word": "synth.yard.hump.machine_record",
-    "replayed": "synth.yard.hump.hump_state",
-    "write_events": "synth.yard.hump.event_file",
+    "load_hump": "synth.hump.hump_file",
+    "HumpControl": "synth.hump.control.hump_control",
+    "Operation": "synth.hump.control.hump_control",
+    "PracticeRules": "synth.hump.control.practice_rules",
+    "ReferenceTrack": "synth.hump.control.reference_track",
+    "RouteTable": "synth.hump.control.route_table",
+    "TrainPopulation": "synth.hump.control.train_population",
+    "load_sorting_list": "synth.hump.control.sorting_list_file",
+    "machine_record": "synth.hump.control.machine_record",
+    "moving_cut": "synth.hump.control.moving_cut",
+    "read_events": "synth.hump.control.event_file",
+    "record_of_word": "synth.hump.control.machine_record",
+    "replayed": "synth.hump.control.hump_state",
+    "write_events": "synth.hump.control.event_file",
     "close_passage_loop": "synth.simulation.passage_loop",
     "fault_figures": "synth.simulation.sensor_fault_figures",
     "single_faults": "synth.simulation.sensor_fault_figures",

@@ -17,12 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.library.near_miss import near_miss
-from synth.book.checked_design import checked_design
-from synth.book.class_setup import origin_of
-from synth.book.rounded_table import with_prediction
-from synth.configuration.config_file import load_config as load_config_file
-from synth.configuration.resolved_config import ResolvedConfig
-from synth.configuration.settings import FitSettings, GridSettings
 from synth.frame.creation_time import creation_time
 from synth.frame.input_error import InputError
 from synth.kernels.cache import guarded
@@ -30,6 +24,12 @@ from synth.problem.aim import Aim
 from synth.problem.problem import Problem
 from synth.problem.requirement_found import Finding
 from synth.problem.resolution import Resolution, finer_for_check
+from synth.retarder.checked_design import checked_design
+from synth.retarder.class_setup import origin_of
+from synth.retarder.configuration.config_file import load_config as load_config_file
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.settings import FitSettings, GridSettings
+from synth.retarder.rounded_table import with_prediction
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.closed_loop import trace as trace_of
 from synth.simulation.exit_statistics import ExitStatistics, exit_statistics
@@ -210,7 +210,7 @@ def trace(
 @_as_a_command
 def plot_table(table: ControllerTable, problem: Problem | None = None, seed: int = 1) -> Figure:
     """Lines of `table`, one panel a stage; with a problem also passes of three cuts of different friction."""
-    from synth.book.pictures.table_picture import drawn_passes, table_lines
+    from synth.retarder.pictures.table_picture import drawn_passes, table_lines
 
     return table_lines(table, None if problem is None else drawn_passes(table, problem.plant, seed))
 
@@ -218,7 +218,7 @@ def plot_table(table: ControllerTable, problem: Problem | None = None, seed: int
 @_as_a_command
 def plot_passes(table: ControllerTable, problem: Problem, seed: int = 1) -> Figure:
     """Three passes over path and time, and the histogram of the exit speeds of 5000."""
-    from synth.book.pictures.table_picture import drawn_passes, table_passes
+    from synth.retarder.pictures.table_picture import drawn_passes, table_passes
 
     return table_passes(table, drawn_passes(table, problem.plant, seed))
 

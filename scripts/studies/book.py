@@ -10,14 +10,14 @@ from scripts.studies.cases import of_masses
 from scripts.studies.markdown_table import MarkdownTable, around, table
 from scripts.studies.options import option
 from scripts.studies.study import Findings, Method, Tell
-from synth.book.acceptance import CaseVerdict, judged
-from synth.book.case_result import CaseResult
-from synth.book.off_nominal.outcome import Outcome
-from synth.book.tune import tune
-from synth.book.tuned_table import read_back
-from synth.book.watcher import Teller
-from synth.configuration.config_file import load_config
 from synth.frame.printed_numbers import ABSENT, few, percent
+from synth.retarder.acceptance import CaseVerdict, judged
+from synth.retarder.case_result import CaseResult
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.off_nominal.outcome import Outcome
+from synth.retarder.tune import tune
+from synth.retarder.tuned_table import read_back
+from synth.retarder.watcher import Teller
 from synth.simulation.replicates import Interval
 
 

@@ -10,7 +10,7 @@ from synth.frame.input_error import InputError
 
 if TYPE_CHECKING:
     from plant_models import Plant
-    from synth.configuration.resolved_config import ResolvedConfig
+    from synth.retarder.configuration.resolved_config import ResolvedConfig
 
 
 OTHER_PLANTS = (

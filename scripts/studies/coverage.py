@@ -18,16 +18,16 @@ from scripts.studies.markdown_table import ABSENT, Interval, MarkdownTable, tabl
 from scripts.studies.options import option
 from scripts.studies.side_by_side import THREADS
 from scripts.studies.study import Findings, Method, Tell, silent
-from synth.book.tune import tune
-from synth.book.tuned_table import read_back
-from synth.book.watcher import Teller
 from synth.checker.coarse_simulation import Passes
 from synth.checker.coarse_simulation import simulate as simulate_coarsely
 from synth.checker.plant import plant_of
 from synth.checker.statistics import figures_of
 from synth.checker.table_reading import read_table
-from synth.configuration.config_file import parse_config
 from synth.frame.input_error import InputError
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.tune import tune
+from synth.retarder.tuned_table import read_back
+from synth.retarder.watcher import Teller
 from synth.simulation.closed_loop import LineController, TableController, simulate_many
 from synth.simulation.controllers import full_brake
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio

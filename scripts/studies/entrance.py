@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from synth.configuration.config_file import load_config, parse_config
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 
 
 def from_the_entrance(config: Path | None) -> ResolvedConfig:

@@ -22,12 +22,12 @@ from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Findings, Method, Tell
 from scripts.studies.told_friction import THOROUGH
 from scripts.studies.tuned_table import CREATED
-from synth.book.class_setup import ClassSetup, class_setup, origin_of
-from synth.book.comparison.friction_bound import bound_of
-from synth.book.comparison.told_regulator import best_by_others, by_lines, run_told
-from synth.book.tuned_table import solutions, tuned_table
-from synth.configuration.config_file import load_config
 from synth.problem.aim import Aim
+from synth.retarder.class_setup import ClassSetup, class_setup, origin_of
+from synth.retarder.comparison.friction_bound import bound_of
+from synth.retarder.comparison.told_regulator import best_by_others, by_lines, run_told
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.tuned_table import solutions, tuned_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.replicates import Interval

@@ -19,9 +19,9 @@ from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Findings, Method, Tell
 from scripts.studies.tuned_table import lines_of_solution, rounded
-from synth.configuration.config_file import load_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import TableController, simulate
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import Interval, mean_of, rms_of

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from typing import Final
 
 from plant_models import Plant
-from synth.configuration.plant_parameter import nominal_value
-from synth.configuration.plant_values import SLOPES, with_values
+from synth.retarder.configuration.plant_parameter import nominal_value
+from synth.retarder.configuration.plant_values import SLOPES, with_values
 
 AIR: Final = "retarder.pneumatics."
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from plant_models import Plant
-from synth.book.comparison.told_regulator import Told, by_lines, run_told
 from synth.problem.aim import Aim
+from synth.retarder.comparison.told_regulator import Told, by_lines, run_told
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from plant_models import Plant
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import persistent_chain

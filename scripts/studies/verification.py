@@ -21,18 +21,18 @@ from scripts.studies.markdown_table import Interval, MarkdownTable, around, tabl
 from scripts.studies.options import option
 from scripts.studies.side_by_side import THREADS
 from scripts.studies.study import Findings, Method, Tell
-from synth.book.configured import head_of
-from synth.book.tune import tune
-from synth.book.tuned_table import read_back
-from synth.book.watcher import Teller
 from synth.checker.claims import Honesty, own_faults, simulated_faults
 from synth.checker.coarse_simulation import Passes, simulate
 from synth.checker.low_friction import GROUP
 from synth.checker.statistics import figures_of
 from synth.checker.summary import read_summary
 from synth.checker.table_reading import Table, read_table
-from synth.configuration.config_file import load_config
 from synth.frame.summary import plain, summary_head
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configured import head_of
+from synth.retarder.tune import tune
+from synth.retarder.tuned_table import read_back
+from synth.retarder.watcher import Teller
 from tuning_tables import write_json
 
 FACTORS = (1.0, 0.5, 0.8, 1.25)

@@ -13,8 +13,8 @@ from synth.frame.terminal.telling import say
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from synth.book.forms.code_options import CodeOptions
-    from synth.book.forms.table_forms import Files
+    from synth.retarder.forms.code_options import CodeOptions
+    from synth.retarder.forms.table_forms import Files
     from tuning_tables import ControllerTable, PassageTable
     from tuning_tables.aim import AimTable
 
@@ -31,12 +31,12 @@ class AskedCode:
 
 def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_json: bool) -> int:
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
-    from synth.book.forms.aim_file import read_aims
-    from synth.book.forms.code_options import code_options
-    from synth.book.forms.passage_file import read_passages
-    from synth.book.forms.table_file import files_at, read_tables
-    from synth.book.forms.table_forms import FORMS
     from synth.frame.results_directory import results_directory
+    from synth.retarder.forms.aim_file import read_aims
+    from synth.retarder.forms.code_options import code_options
+    from synth.retarder.forms.passage_file import read_passages
+    from synth.retarder.forms.table_file import files_at, read_tables
+    from synth.retarder.forms.table_forms import FORMS
     from tuning_tables import InvalidTable
 
     if form not in FORMS:
@@ -65,10 +65,10 @@ def exported_files(
     options: CodeOptions,
 ) -> Files:
     """The files in `form` of the tables, which are of one of the three kinds, and of a correction if one is asked."""
-    from synth.book.forms.aim_forms import AIM_FORMS
-    from synth.book.forms.correction_form import correction_files
-    from synth.book.forms.passage_forms import PASSAGE_FORMS
-    from synth.book.forms.table_forms import FORMS
+    from synth.retarder.forms.aim_forms import AIM_FORMS
+    from synth.retarder.forms.correction_form import correction_files
+    from synth.retarder.forms.passage_forms import PASSAGE_FORMS
+    from synth.retarder.forms.table_forms import FORMS
 
     if aims:
         files = AIM_FORMS[form](aims, options)

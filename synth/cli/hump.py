@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.frame.terminal.printed_page import print_page
 from synth.frame.terminal.telling import OK
-from synth.yard.hump.number_ranges import ranges
+from synth.hump.control.number_ranges import ranges
 
 if TYPE_CHECKING:
     from plant_models.hump import HumpGraph, Route
@@ -21,8 +21,8 @@ MOST_TOLD = 30
 
 def check_command(source: Path, as_json: bool) -> int:
     """Tell what the hump in `source` has, and what its file leaves open; `InputError` for the first fault of it."""
-    from synth.configuration.hump import read_hump
-    from synth.yard.hump.hump_document import checked_document
+    from synth.hump.control.hump_document import checked_document
+    from synth.hump.hump_file import read_hump
 
     read = read_hump(source)
     found = checked_document(read.entry)
@@ -70,8 +70,8 @@ def span(ends: Sequence[float], unit: str) -> str:
 
 def routes_command(source: Path, as_json: bool) -> int:
     """Print every route of the hump in `source`, and the lists of tracks of its switches."""
-    from synth.configuration.hump import read_hump
-    from synth.yard.hump.hump_document import routes_document
+    from synth.hump.control.hump_document import routes_document
+    from synth.hump.hump_file import read_hump
 
     graph = read_hump(source).entry.graph
     if as_json:
@@ -99,15 +99,15 @@ def route_words(route: Route) -> str:
 
 def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -> int:
     """Draw the hump in `source` into the directory `output`; the profile is that of `track`."""
-    from synth.configuration.hump import read_hump
     from synth.frame.results_directory import results_directory
+    from synth.hump.hump_file import read_hump
 
     hump = read_hump(source).entry
     route = drawn_route(hump.graph, track)
     from synth.frame.picture.figure_file import figure_files
+    from synth.hump.control.pictures.hump_picture import hump_picture
+    from synth.hump.design_runners import roll_runners
     from synth.kernels.cache import guarded
-    from synth.yard.design_runners import roll_runners
-    from synth.yard.hump.pictures.hump_picture import hump_picture
 
     with results_directory(output, "hump draw", [source]) as directory:
         rolls = guarded(roll_runners, route)
@@ -121,10 +121,10 @@ def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -
 
 def export_command(source: Path, output: Path) -> int:
     """Write the hump in `source` as railML into the file `output`."""
-    from synth.configuration.hump import RAILML_SUFFIXES, read_hump
-    from synth.configuration.railml.write import to_railml
     from synth.frame.input_error import InputError
     from synth.frame.new_file import require_new
+    from synth.hump.hump_file import RAILML_SUFFIXES, read_hump
+    from synth.hump.railml.write import to_railml
     from tuning_tables.atomic_file import write_atomically
 
     if output.suffix not in RAILML_SUFFIXES:

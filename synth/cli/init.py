@@ -54,18 +54,18 @@ CONFIGURATIONS = {
 def model_of(kind: str) -> type[Section]:
     """The declared model of a kind of configuration."""
     if kind == "aim":
-        from synth.configuration.aim.settings import AimFileSettings
+        from synth.aim.configuration.settings import AimFileSettings
 
         return AimFileSettings
     if kind == "hump":
-        from synth.configuration.humping.settings import HumpTrialSettings
+        from synth.hump.configuration.settings import HumpTrialSettings
 
         return HumpTrialSettings
     if kind == "computer":
         from synth.computer.settings import ComputerSettings
 
         return ComputerSettings
-    from synth.configuration.settings import Settings
+    from synth.retarder.configuration.settings import Settings
 
     return Settings
 
@@ -73,10 +73,10 @@ def model_of(kind: str) -> type[Section]:
 def asked_for(types: dict[str, str | None]) -> tuple[str, str]:
     """(key in JSON, text) of what is to be printed; `InputError` where two files are asked for at once."""
     from plant_models.library import BUILT_IN, KINDS, POSITIONS, RETARDERS
-    from synth.configuration.config_template import default_config_toml
-    from synth.configuration.position_choice import require_held
-    from synth.configuration.type_template import type_toml
+    from synth.cli.type_template import type_toml
     from synth.frame.input_error import InputError
+    from synth.retarder.configuration.config_template import default_config_toml
+    from synth.retarder.configuration.position_choice import require_held
 
     asked = [kind for kind in KINDS if types.get(kind.folder) is not None]
     aim, hump, computer = types.get("aim"), types.get("hump"), types.get("computer")
@@ -105,8 +105,8 @@ def aim_file(name: str) -> tuple[str, str]:
     """As `asked_for`: an aim configuration, or the file of the track or car mix `name`."""
     from plant_models.library import BUILT_IN, CAR_MIXES, TRACKS
     from plant_models.library.near_miss import near_miss
-    from synth.configuration.aim.template import default_aim_toml
-    from synth.configuration.type_template import type_toml
+    from synth.aim.configuration.template import default_aim_toml
+    from synth.cli.type_template import type_toml
     from synth.frame.input_error import InputError
 
     if not name:
@@ -122,9 +122,9 @@ def hump_file(name: str) -> tuple[str, str]:
     """As `asked_for`: a hump trial configuration, or the file of the hump `name`."""
     from plant_models.library.hump_entry import hump_names
     from plant_models.library.near_miss import near_miss
-    from synth.configuration.hump import hump_text
-    from synth.configuration.humping.template import default_trial_toml
     from synth.frame.input_error import InputError
+    from synth.hump.configuration.template import default_trial_toml
+    from synth.hump.hump_file import hump_text
 
     if not name:
         return "configuration", default_trial_toml()
@@ -147,8 +147,8 @@ def computer_file(name: str) -> tuple[str, str]:
 def sensors_file(name: str) -> tuple[str, str]:
     """As `asked_for`: a configuration with point sensors, of the position `name`."""
     from plant_models.library import BUILT_IN, POSITIONS
-    from synth.configuration.point_sensors.template import DUMPER_POSITION, default_sensors_toml
-    from synth.configuration.position_choice import require_held
+    from synth.retarder.configuration.point_sensors.template import DUMPER_POSITION, default_sensors_toml
+    from synth.retarder.configuration.position_choice import require_held
 
     require_held("retarder-synth init: --sensors", POSITIONS, name or DUMPER_POSITION, BUILT_IN)
     return "configuration", default_sensors_toml(name or DUMPER_POSITION)

@@ -10,10 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from synth.book.forms.aim_file import read_aims
-from synth.book.forms.exported_code import exported_code
-from synth.book.forms.passage_file import read_passages
-from synth.book.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
 from synth.cli.inspect_aim import aim_document, aim_page
 from synth.cli.inspect_passages import passage_document, passage_page
 from synth.frame.command import Limit, Verdict
@@ -21,6 +17,10 @@ from synth.frame.printed_numbers import counted
 from synth.frame.terminal.printed_page import Exhibit, print_page
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
+from synth.retarder.forms.aim_file import read_aims
+from synth.retarder.forms.exported_code import exported_code
+from synth.retarder.forms.passage_file import read_passages
+from synth.retarder.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
 from tuning_tables import DamagedTable
 from tuning_tables.approach import Approach
 from tuning_tables.decisions import Decisions

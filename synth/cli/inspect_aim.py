@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from synth.book.forms.aim_file import AimFile
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
+from synth.retarder.forms.aim_file import AimFile
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.document import to_aim_document
 from tuning_tables.aim.purpose import CategoryAlone

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from synth.book.highest_stage import highest_stage
 from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
+from synth.retarder.highest_stage import highest_stage
 from tuning_tables.passages.document import to_passage_document
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable

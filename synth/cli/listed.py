@@ -13,8 +13,8 @@ from synth.frame.command_line import Listed
 COMMANDS: Final = (
     Listed(
         "tune",
-        "synth.book.tune_command:COMMAND",
-        "synth.book.tune_options:TuneOptions",
+        "synth.retarder.tune_command:COMMAND",
+        "synth.retarder.tune_options:TuneOptions",
         "init",
         "Make a book of tables, its pictures and report.\n\n"
         "Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.",
@@ -22,8 +22,8 @@ COMMANDS: Final = (
     ),
     Listed(
         "aim",
-        "synth.yard.aim.command:COMMAND",
-        "synth.yard.aim.options:AimOptions",
+        "synth.aim.command:COMMAND",
+        "synth.aim.options:AimOptions",
         "init --aim",
         "Make aim tables: the exit speeds at which a park position lets cuts go.\n\n"
         "Random cuts roll to the standing cars; the tables keep a required probability of coupling too fast. Exit code "
@@ -31,16 +31,16 @@ COMMANDS: Final = (
     ),
     Listed(
         "validate",
-        "synth.book.validation.command:COMMAND",
-        "synth.book.validation.options:ValidateOptions",
+        "synth.retarder.validation.command:COMMAND",
+        "synth.retarder.validation.options:ValidateOptions",
         "init",
         "Simulate exported tables once more.\n\nNothing is solved. Exit code 1 if a table misses a limit of the "
         "configuration.",
     ),
     Listed(
         "sensitivity",
-        "synth.book.sensitivity.command:COMMAND",
-        "synth.book.sensitivity.options:SensitivityOptions",
+        "synth.retarder.sensitivity.command:COMMAND",
+        "synth.retarder.sensitivity.options:SensitivityOptions",
         "init",
         "Tell which number of a configuration to measure first.\n\n"
         "The table stays; the numbers vary over their ranges. Shares of the variance of rms, mean and over-speed by "
@@ -48,8 +48,8 @@ COMMANDS: Final = (
     ),
     Listed(
         "permissions",
-        "synth.book.permissions.command:COMMAND",
-        "synth.book.permissions.options:PermissionsOptions",
+        "synth.retarder.permissions.command:COMMAND",
+        "synth.retarder.permissions.options:PermissionsOptions",
         "init",
         "Tell what to ask of the hardware: what each permission would give in every case.\n\n"
         "Commands during a change of stage, with and without a pressure gauge; an estimator; the approach. Simulated "
@@ -65,32 +65,32 @@ COMMANDS: Final = (
     ),
     Listed(
         "watch",
-        "synth.yard.measured_passes.drift.command:COMMAND",
-        "synth.yard.measured_passes.drift.options:WatchOptions",
+        "synth.logs.drift.command:COMMAND",
+        "synth.logs.drift.options:WatchOptions",
         "init",
         "Watch measured passes of a position for drifts.\n\n"
         "What drifted, since when, what it costs, whether to retune or to repair. Exit code 1 if something drifted.",
     ),
     Listed(
         "identify",
-        "synth.yard.measured_passes.identify_command:COMMAND",
-        "synth.yard.measured_passes.log_options:LogOptions",
+        "synth.logs.identify_command:COMMAND",
+        "synth.logs.log_options:LogOptions",
         "init",
         "Tell the numbers of a position from its measured passes, and write them as a configuration.\n\n"
         "Exit code 1 if a test says that the model does not hold for these passes.",
     ),
     Listed(
         "replay",
-        "synth.yard.measured_passes.replay.command:COMMAND",
-        "synth.yard.measured_passes.replay.options:ReplayOptions",
+        "synth.logs.replay.command:COMMAND",
+        "synth.logs.replay.options:ReplayOptions",
         "init",
         "Tell what other tables would have commanded in measured passes, and how the cuts would have left.\n\n"
         "Exit code 1 if the measured exits are not those that the configuration predicts for the tables of the log.",
     ),
     Listed(
         "retune",
-        "synth.yard.measured_passes.retune.command:COMMAND",
-        "synth.yard.measured_passes.retune.options:RetuneOptions",
+        "synth.logs.retune.command:COMMAND",
+        "synth.logs.retune.options:RetuneOptions",
         "init",
         "Make new tables for what measured passes say of the plant, and tell what they gain.\n\n"
         "Exit code 1, and no book, if the gain is within noise in every case; also 1 if a case has no new table.",
@@ -101,16 +101,16 @@ COMMANDS: Final = (
 SENSORS: Final = (
     Listed(
         "sensors tune",
-        "synth.book.sensors.tune_command:COMMAND",
-        "synth.book.sensors.tune_options:SensorsTuneOptions",
+        "synth.retarder.sensors.tune_command:COMMAND",
+        "synth.retarder.sensors.tune_options:SensorsTuneOptions",
         "init --sensors",
         "Make tables that decide where axles pass point sensors, with their code, pictures and report.\n\n"
         "Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.",
     ),
     Listed(
         "sensors plan",
-        "synth.book.sensors.plan_command:COMMAND",
-        "synth.book.sensors.plan_options:PlanOptions",
+        "synth.retarder.sensors.plan_command:COMMAND",
+        "synth.retarder.sensors.plan_options:PlanOptions",
         "init",
         "Plan where point sensors stand: the least rms for each number, and the fewest for a wanted rms.\n\n"
         "Compared with equal sections, with the rule that each change of stage ends inside its section, and with the "
@@ -122,16 +122,16 @@ SENSORS: Final = (
 HUMP: Final = (
     Listed(
         "hump simulate",
-        "synth.sweep.trains.command:COMMAND",
-        "synth.sweep.trains.options:SimulateOptions",
+        "synth.hump.trains.simulate_command:COMMAND",
+        "synth.hump.trains.simulate_options:SimulateOptions",
         "init --hump",
         "Hump whole trains: catch-ups, couplings, gaps and cars an hour, with intervals; resumable.\n\n"
         "The same command goes on after an end of any kind. Exit code 1 if a limit of the configuration is missed.",
     ),
     Listed(
         "hump speed",
-        "synth.yard.humping.speed_command:COMMAND",
-        "synth.yard.humping.trial_options:SpeedOptions",
+        "synth.hump.trains.speed_command:COMMAND",
+        "synth.hump.trains.trial_options:SpeedOptions",
         "init --hump",
         "Plan one train: hump speeds for the locomotive, and the uncoupler's sheet.",
     ),

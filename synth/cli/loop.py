@@ -14,9 +14,9 @@ from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from synth.book.control_loop import ControlLoop
-    from synth.book.passage_control_loop import PassageControlLoop
-    from synth.configuration.resolved_config import ResolvedConfig
+    from synth.retarder.configuration.resolved_config import ResolvedConfig
+    from synth.retarder.control_loop import ControlLoop
+    from synth.retarder.passage_control_loop import PassageControlLoop
     from tuning_tables.any_table import AnyTable
 
     AnyLoop: TypeAlias = ControlLoop | PassageControlLoop
@@ -26,11 +26,11 @@ DOCUMENT = "loops.json"
 
 def loop_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw and tell the loops of the tables in `source`; 1 if python-control and the simulator do not agree on one."""
-    from synth.book.forms.table_file import file_stem, files_at
-    from synth.configuration.config_file import BUILT_IN, load_config
     from synth.frame.results_directory import results_directory
     from synth.frame.terminal.interrupt import interruptible
     from synth.kernels.cache import guarded
+    from synth.retarder.configuration.config_file import BUILT_IN, load_config
+    from synth.retarder.forms.table_file import file_stem, files_at
 
     config = load_config(config_path)
     closings = [closing(table, config, str(config_path or BUILT_IN)) for table in any_tables(source)]
@@ -59,8 +59,8 @@ def loop_command(source: Path, output: Path, config_path: Path | None, as_json: 
 
 def any_tables(source: Path) -> list[AnyTable]:
     """The tables at `source`, of both kinds of decision; faults as `read_tables` has them."""
-    from synth.book.forms.passage_file import read_passages
-    from synth.book.forms.table_file import holds_tables, read_tables
+    from synth.retarder.forms.passage_file import read_passages
+    from synth.retarder.forms.table_file import holds_tables, read_tables
 
     passages = read_passages(source)
     if passages and not holds_tables(source):
@@ -70,10 +70,10 @@ def any_tables(source: Path) -> list[AnyTable]:
 
 def closing(table: AnyTable, config: ResolvedConfig, source: str) -> Callable[[], AnyLoop]:
     """What closes the loop of `table` with the plant of `config` that it is for; `InputError` if there is none."""
-    from synth.book.control_loop import control_loop
-    from synth.book.passage_class import passage_class
-    from synth.book.passage_control_loop import passage_control_loop
-    from synth.book.validation.revalidation import plant_for
+    from synth.retarder.control_loop import control_loop
+    from synth.retarder.passage_class import passage_class
+    from synth.retarder.passage_control_loop import passage_control_loop
+    from synth.retarder.validation.revalidation import plant_for
     from tuning_tables.decisions import Decisions
     from tuning_tables.passages.passage_table import PassageTable
 
@@ -89,11 +89,11 @@ def closing(table: AnyTable, config: ResolvedConfig, source: str) -> Callable[[]
 
 def pictures(loop: AnyLoop) -> dict[str, Figure]:
     """The pictures of a loop by the end of their name."""
-    from synth.book.passage_control_loop import PassageControlLoop
-    from synth.book.pictures.loop_cycle import loop_cycle
-    from synth.book.pictures.loop_portrait import loop_portrait
-    from synth.book.pictures.loop_response import loop_response
-    from synth.book.pictures.loop_structure import loop_structure
+    from synth.retarder.passage_control_loop import PassageControlLoop
+    from synth.retarder.pictures.loop_cycle import loop_cycle
+    from synth.retarder.pictures.loop_portrait import loop_portrait
+    from synth.retarder.pictures.loop_response import loop_response
+    from synth.retarder.pictures.loop_structure import loop_structure
 
     if isinstance(loop, PassageControlLoop):
         return {"response": loop_response(loop), "structure": loop_structure(loop)}
@@ -107,8 +107,8 @@ def pictures(loop: AnyLoop) -> dict[str, Figure]:
 
 def document_of(loop: AnyLoop) -> dict[str, Any]:
     """A loop for programs."""
-    from synth.book.control_loop import loop_document
-    from synth.book.passage_control_loop import PassageControlLoop, passage_loop_document
+    from synth.retarder.control_loop import loop_document
+    from synth.retarder.passage_control_loop import PassageControlLoop, passage_loop_document
 
     return passage_loop_document(loop) if isinstance(loop, PassageControlLoop) else loop_document(loop)
 
@@ -123,9 +123,9 @@ def sentence(loop: AnyLoop) -> str:
 
 def print_loops(loops: Sequence[AnyLoop], files: str) -> None:
     """A table with one row for each loop, what its columns mean, and where the `files` are."""
-    from synth.book.control_loop import TOLERANCE_M_S
     from synth.frame.terminal.printed_page import Exhibit, print_page
     from synth.frame.terminal.printed_table import Column, PrintedTable
+    from synth.retarder.control_loop import TOLERANCE_M_S
 
     def difference(loop: AnyLoop) -> str:
         found = loop.difference
@@ -155,7 +155,7 @@ def print_loops(loops: Sequence[AnyLoop], files: str) -> None:
 
 def forecast(loop: AnyLoop) -> str | None:
     """Mean commands of real passes, and how many of them the noise of the radar makes."""
-    from synth.book.passage_control_loop import PassageControlLoop
+    from synth.retarder.passage_control_loop import PassageControlLoop
 
     if isinstance(loop, PassageControlLoop) or loop.forecast is None:
         return None
@@ -164,7 +164,7 @@ def forecast(loop: AnyLoop) -> str | None:
 
 def cycles(loop: AnyLoop) -> str:
     """The predicted limit cycles in one line; a regulator that decides at passages has no period to hunt with."""
-    from synth.book.passage_control_loop import PassageControlLoop
+    from synth.retarder.passage_control_loop import PassageControlLoop
 
     if isinstance(loop, PassageControlLoop):
         return "–"

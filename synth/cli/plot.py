@@ -13,7 +13,7 @@ from synth.frame.terminal.telling import say
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from synth.configuration.resolved_config import ResolvedConfig
+    from synth.retarder.configuration.resolved_config import ResolvedConfig
     from tuning_tables import ControllerTable
     from tuning_tables.any_table import AnyTable
     from tuning_tables.passages.passage_table import PassageTable
@@ -23,11 +23,11 @@ Drawn = TypeVar("Drawn")
 
 def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
-    from synth.book.forms.table_file import file_stem, files_at
-    from synth.book.tables_configuration import configuration_for
     from synth.cli.loop import any_tables
     from synth.frame.results_directory import results_directory
     from synth.frame.terminal.interrupt import interruptible
+    from synth.retarder.forms.table_file import file_stem, files_at
+    from synth.retarder.tables_configuration import configuration_for
     from tuning_tables.passages.passage_table import PassageTable
 
     tables = any_tables(source)
@@ -76,8 +76,8 @@ def figures_of(table: AnyTable, around: Surroundings) -> Mapping[str, Figure]:
 
 def line_figures(table: ControllerTable, around: Surroundings) -> Mapping[str, Figure]:
     """The pictures of a table with lines by the end of their names."""
-    from synth.book.pictures.table_picture import Passes, drawn_passes, table_lines, table_passes, table_surfaces
-    from synth.book.validation.revalidation import plant_for
+    from synth.retarder.pictures.table_picture import Passes, drawn_passes, table_lines, table_passes, table_surfaces
+    from synth.retarder.validation.revalidation import plant_for
 
     def simulate() -> Passes:
         plant = plant_for(table, around.config, around.place)[1]
@@ -90,11 +90,11 @@ def line_figures(table: ControllerTable, around: Surroundings) -> Mapping[str, F
 
 def passage_figures(table: PassageTable, around: Surroundings) -> Mapping[str, Figure]:
     """The pictures of a table for point sensors by the end of their names."""
-    from synth.book.passage_class import passage_class
-    from synth.book.pictures.table_picture import FACTORS, subject
-    from synth.book.sensors.pictures.passes_with_readings import passes_figure
-    from synth.book.sensors.pictures.switching_speeds import switching_speeds
-    from synth.book.sensors.sensor_class import sensor_passes
+    from synth.retarder.passage_class import passage_class
+    from synth.retarder.pictures.table_picture import FACTORS, subject
+    from synth.retarder.sensors.pictures.passes_with_readings import passes_figure
+    from synth.retarder.sensors.pictures.switching_speeds import switching_speeds
+    from synth.retarder.sensors.sensor_class import sensor_passes
     from synth.simulation.passage_controller import of_table
     from synth.simulation.passage_sample import PassageTrace
     from synth.simulation.stratified_passes import stratified_passes

@@ -13,10 +13,10 @@ from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
     from synth.frame.terminal.progress import Progress
-    from synth.sweep.plan import Unit
-    from synth.sweep.run import Task
-    from synth.sweep.sweep_directory import SweepDirectory
-    from synth.sweep.work import Engine
+    from synth.frame.workers.engine import Engine
+    from synth.retarder.sweep.plan import Unit
+    from synth.retarder.sweep.run import Task
+    from synth.retarder.sweep.sweep_directory import SweepDirectory
 
 
 def sweep_command(
@@ -41,11 +41,11 @@ def sweep_command(
 
 def run_command(path: Path, output: Path, workers: int | None, scheduler: str | None, as_json: bool) -> int:
     """Run or resume the sweep in the file `path` into the directory `output`."""
-    from synth.book.configured import sensors_left_aside
     from synth.frame.creation_time import require_date
-    from synth.sweep.run import run_sweep, task_of
-    from synth.sweep.sweep_directory import held_sweep
-    from synth.sweep.sweep_file import load_sweep
+    from synth.retarder.configured import sensors_left_aside
+    from synth.retarder.sweep.run import run_sweep, task_of
+    from synth.retarder.sweep.sweep_directory import held_sweep
+    from synth.retarder.sweep.sweep_file import load_sweep
 
     file = load_sweep(path)
     require_date()
@@ -72,21 +72,22 @@ def run_command(path: Path, output: Path, workers: int | None, scheduler: str | 
 
 def engine_for(task: Task, workers: int | None, scheduler: str | None) -> Engine:
     """Processes on this machine as far as memory allows, or the cluster that was named."""
-    from synth.sweep.run import fitting_workers
+    from synth.retarder.sweep.run import fitting_workers
+    from synth.retarder.sweep.unit_answer import answer
 
     if scheduler is not None:
-        from synth.sweep.dask_cluster import connect
+        from synth.frame.workers.dask_cluster import connect
 
-        cluster = connect(scheduler)
+        cluster = connect(scheduler, answer)
         say(f"the scheduler at {scheduler} has {cluster.threads()} threads of workers; more may join")
         return cluster
-    from synth.sweep.local_workers import LocalWorkers
+    from synth.frame.workers.local_workers import LocalWorkers
 
     asked = workers or available()
     fit = fitting_workers(task, asked)
     if fit < min(asked, len(task.missing)):
         say(f"warning: memory allows for {fit} of {asked} workers")
-    return LocalWorkers(fit)
+    return LocalWorkers(fit, answer)
 
 
 class Pace:
@@ -171,7 +172,7 @@ def status_command(path: Path, as_json: bool) -> int:
     from dataclasses import asdict
 
     from synth.frame.terminal.printed_page import print_page
-    from synth.sweep.status import status_of
+    from synth.retarder.sweep.status import status_of
 
     status = status_of(path)
     if as_json:
@@ -198,7 +199,7 @@ def failed_command(path: Path, as_json: bool) -> int:
     from dataclasses import asdict
 
     from synth.frame.terminal.printed_page import print_page
-    from synth.sweep.status import failed_units
+    from synth.retarder.sweep.status import failed_units
 
     found = failed_units(path)
     if as_json:

@@ -40,8 +40,8 @@ def figure_sources(rates: RatesSettings, folder: Path, place: str) -> HumpFigure
         return HumpFigures(rates.today, rates.change)
     # Whoever tells figures needs nothing of how trains are humped.
     from synth.computer.economics.hump_day_change import change_of_figures, change_of_trains, figures_of_trains
-    from synth.yard.humping.outcome_file import TRAINS
-    from synth.yard.humping.stored_trains import stored_trains
+    from synth.hump.trains.outcome_file import TRAINS
+    from synth.hump.trains.stored_trains import stored_trains
 
     folders = {"today_trial": folder / rates.today_trial, "new_trial": folder / rates.new_trial}
     stored = {key: stored_trains(each, f"{place}: rates.{key} is {str(each)!r}") for key, each in folders.items()}

@@ -17,13 +17,13 @@ from synth.computer.economics.uncertainty.ranges import Range
 from synth.computer.long_work import long_work
 from synth.computer.settings import ComputerSettings
 from synth.computer.sizing.task import TaskMix
-from synth.configuration.hump import read_graph
-from synth.configuration.humping.trial_file import hump_source
-from synth.configuration.railml.write import to_railml
 from synth.frame.command import Head
 from synth.frame.input_error import InputError
 from synth.frame.settings.file_fault import in_file
 from synth.frame.settings.numbers import numbers_of, range_warnings
+from synth.hump.configuration.trial_file import hump_source
+from synth.hump.hump_file import read_graph
+from synth.hump.railml.write import to_railml
 from tuning_tables.canonical import canonical_json
 
 SIMULATED = "trials of 'hump simulate'"

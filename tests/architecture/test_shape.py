@@ -208,12 +208,12 @@ def test_a_command_or_the_front_door_reaches_every_module() -> None:
 def test_a_module_that_nobody_needs_is_found() -> None:
     planted = {
         **SOURCES,
-        "synth/book/intruder.py": "from synth.book import tune",
-        "scripts/studies/intruder.py": "from synth.book import intruder\nfrom plant_models import intruder",
+        "synth/retarder/intruder.py": "from synth.retarder import tune",
+        "scripts/studies/intruder.py": "from synth.retarder import intruder\nfrom plant_models import intruder",
         "plant_models/intruder.py": "",
         "tuning_tables/intruder.py": "",
     }
-    assert unreached(planted) - KNOWN_UNREACHED == {"synth.book.intruder", "tuning_tables.intruder"}
+    assert unreached(planted) - KNOWN_UNREACHED == {"synth.retarder.intruder", "tuning_tables.intruder"}
 
 
 def array_fields(node: ast.ClassDef, words: set[str]) -> list[ast.AnnAssign]:

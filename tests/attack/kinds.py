@@ -14,23 +14,23 @@ from typing import Final
 import h5py
 import numpy as np
 
-from synth.book.sensors.tune_command import COMMAND as SENSORS_TUNE
-from synth.book.sensors.tune_options import SensorsTuneOptions
+from synth.aim.command import COMMAND as AIM
+from synth.aim.configuration.template import default_aim_toml
 from synth.cli.hump import check_command
 from synth.computer.command import COMMAND as COMPUTER
 from synth.computer.settings import ComputerSettings
-from synth.configuration.aim.template import default_aim_toml
-from synth.configuration.config_file import load_config
-from synth.configuration.hump import parse_hump
-from synth.configuration.humping.template import default_trial_toml
-from synth.configuration.point_sensors.template import default_sensors_toml
-from synth.configuration.railml.write import to_railml
 from synth.frame.asked_file import asked_of
 from synth.frame.settings.template import template
 from synth.frame.terminal.telling import say
-from synth.sweep.trains.command import COMMAND as SIMULATE
-from synth.yard.aim.command import COMMAND as AIM
-from synth.yard.measured_passes.loaded_passes import loaded_passes
+from synth.hump.configuration.template import default_trial_toml
+from synth.hump.hump_file import parse_hump
+from synth.hump.railml.write import to_railml
+from synth.hump.trains.simulate_command import COMMAND as SIMULATE
+from synth.logs.loaded_passes import loaded_passes
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.point_sensors.template import default_sensors_toml
+from synth.retarder.sensors.tune_command import COMMAND as SENSORS_TUNE
+from synth.retarder.sensors.tune_options import SensorsTuneOptions
 from tests.attack.attempt import Kind, Reading
 from tests.attack.railml_attributes import attribute_kind
 from tests.attack.trains import trains_kind

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree as Xml
 
-from synth.configuration.hump import read_hump
+from synth.hump.hump_file import read_hump
 from tests.attack.attempt import Changed, Kind, Reading
 
 MEANINGLESS: Final = ("id", "language", "descriptionLevel")

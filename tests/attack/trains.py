@@ -13,12 +13,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from synth.configuration.humping.trial_file import parse_trial_file
-from synth.yard.humping.made_trial import made_trial
-from synth.yard.humping.outcome_file import TrialTrains, to_npz
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.resolved_trial import resolve_trial
-from synth.yard.humping.stored_trains import stored_trains
+from synth.hump.configuration.trial_file import parse_trial_file
+from synth.hump.trains.made_trial import made_trial
+from synth.hump.trains.outcome_file import TrialTrains, to_npz
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.resolved_trial import resolve_trial
+from synth.hump.trains.stored_trains import stored_trains
 from tests.attack.attempt import Changed, Kind, Reading
 from tests.attack.mutants import mutant
 from tuning_tables.seal import seal_of

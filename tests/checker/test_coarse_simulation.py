@@ -90,9 +90,9 @@ def test_lost_readings_come_in_bursts_as_stated(plant: Plant, share: float, burs
 
 def test_lost_readings_cost_here_what_they_cost_in_the_simulator(summary: Summary, table: Table, plant: Plant) -> None:
     """Two simulators that know nothing of one another, without and with a third of the readings lost."""
-    from synth.book.validation.revalidation import plant_for
-    from synth.configuration.config_file import parse_config
-    from synth.configuration.plant_values import with_values
+    from synth.retarder.configuration.config_file import parse_config
+    from synth.retarder.configuration.plant_values import with_values
+    from synth.retarder.validation.revalidation import plant_for
     from synth.simulation.closed_loop import TableController
     from synth.simulation.closed_loop import simulate as simulate_passes
     from synth.simulation.exit_statistics import exit_statistics

@@ -12,7 +12,7 @@ import pytest
 from plant_models import EntryLaw, EntrySpeed, HistogramEntrySpeed, NormalEntrySpeed
 from synth.checker.entry import Entry, Histogram, Normal, Uniform
 from synth.checker.plant import UnusableConfigError, plant_of
-from synth.configuration.config_file import parse_config
+from synth.retarder.configuration.config_file import parse_config
 
 DRAWS = 40_000
 CUT = '[[cut]]\ncar = "gondola-4"\nmass_t = 22\n'

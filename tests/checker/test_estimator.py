@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor
-from synth.book.estimation.estimator_design import estimator_of, frozen_readings
 from synth.checker.claims import Honesty
 from synth.checker.estimator import Observer
 from synth.checker.estimator import estimator_of as read_estimator
 from synth.checker.estimator_sense import chance_of_equals, estimator_faults, frozen_after, work_of
 from synth.checker.float32 import bits
 from synth.checker.plant import Plant, plant_of
-from synth.configuration.config_file import parse_config
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.estimation.estimator_design import estimator_of, frozen_readings
 from tests.checker.planted_fault import Document
 from tuning_tables.estimator import Estimator, alarms, begin, observe
 

@@ -10,10 +10,10 @@ from typing import Any, cast
 
 import pytest
 
-from synth.book.off_nominal.condition import CONDITIONS
 from synth.checker.stated_off_nominal import KEYS, off_nominal_faults
 from synth.checker.summary import by_case
 from synth.checker.verdict import verify
+from synth.retarder.off_nominal.condition import CONDITIONS
 
 Row = dict[str, Any]
 Rows = list[Any]

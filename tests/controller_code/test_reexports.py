@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from scripts.studies.in_the_loop.controller_process import COMMAND, build_controller
-from synth.configuration.config_file import parse_config
+from synth.retarder.configuration.config_file import parse_config
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
 from tuning_tables import ControllerTable

@@ -11,7 +11,7 @@ import pytest
 
 from scripts.studies.in_the_loop.controller_process import build_controller
 from scripts.studies.in_the_loop.software_in_the_loop import PipeLine, closed_loop_with_process
-from synth.book.estimation.estimator_design import estimator_of
+from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.random_passes import random_passes
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import with_slopes

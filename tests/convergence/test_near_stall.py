@@ -8,10 +8,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from synth.configuration.config_file import parse_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.resolution import LONG_PASS_M, Resolution
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import LineController, simulate_many
 from synth.simulation.exit_statistics import exit_statistics
 from synth.solver.backward_induction import solve

@@ -9,9 +9,9 @@ import pytest
 
 from plant_models import Plant
 from scripts.studies.tuned_table import tuned_table
-from synth.book.rounded_table import predict
-from synth.configuration.config_file import load_config, parse_config
 from synth.problem.resolution import Resolution, finer_for_check
+from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.rounded_table import predict
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.replicates import share_of
 from synth.solver.chain.chain import Chain, check_chain

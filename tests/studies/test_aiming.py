@@ -21,10 +21,10 @@ from scripts.studies.aiming.trial import Cuts, Draws, outcomes, tried, value_of
 from scripts.studies.yard_chain.chain import CATEGORY, ESTIMATED, MEASURED, BookSize, Kind, chain_samples
 from scripts.studies.yard_chain.faults import HandBraked, WithMissing
 from scripts.studies.yard_chain.practices import TODAY_EXIT, Samples, practice, saved
-from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement
-from synth.yard.aim.position_models import NormalPosition, PositionModel
-from synth.yard.aim.readings import ResistanceByTwoSpeeds
-from synth.yard.aim.scene import SceneCuts
+from synth.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement
+from synth.aim.position_models import NormalPosition, PositionModel
+from synth.aim.readings import ResistanceByTwoSpeeds
+from synth.aim.scene import SceneCuts
 
 P = 0.1
 TWO = ResistanceByTwoSpeeds(0.03)

@@ -22,9 +22,9 @@ from scripts.studies.humping.base_trial import Day
 from scripts.studies.humping.runs import Group
 from synth.computer.economics.hump_rates import RATES, HumpRates
 from synth.computer.sizing.demand_service import Discipline
-from synth.yard.humping.made_trial import brake_of
-from synth.yard.humping.outcomes import joined
-from synth.yard.humping.resolved_trial import load_trial
+from synth.hump.trains.made_trial import brake_of
+from synth.hump.trains.outcomes import joined
+from synth.hump.trains.resolved_trial import load_trial
 
 ROOT = Path(__file__).parents[2]
 REQUESTS = 30_000

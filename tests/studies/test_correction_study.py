@@ -13,7 +13,7 @@ from scripts.studies.correction.findings import Corrected, Row
 from scripts.studies.correction.sequence import corrected, run_sequence
 from scripts.studies.correction.study import rms_ratio
 from scripts.studies.tuned_table import tuned_table
-from synth.configuration.config_file import load_config
+from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
 from synth.simulation.random_passes import random_passes
 from tuning_tables.active_table import ActiveTable, active

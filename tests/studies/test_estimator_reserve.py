@@ -12,8 +12,8 @@ from scripts.studies.estimator.reserve_findings import CaseRows, Excess, Reserve
 from scripts.studies.estimator.reserve_picture import picture
 from scripts.studies.estimator.reserve_study import excess_outside
 from scripts.studies.estimator.wrong import braking_otherwise
-from synth.configuration.plant_parameter import nominal_value
-from synth.configuration.plant_values import SLOPES
+from synth.retarder.configuration.plant_parameter import nominal_value
+from synth.retarder.configuration.plant_values import SLOPES
 from synth.simulation.passes import ExitSample
 from tests.synth.conftest import pilot_plant
 

@@ -20,7 +20,7 @@ from scripts.studies.every_cut.random_case import CARS_OF_A_CUT, RandomCase, ran
 from scripts.studies.every_cut.study import METHOD, Options, configuration
 from scripts.studies.result import Result, run_study
 from scripts.studies.study import Study, silent
-from synth.configuration.config_file import parse_config
+from synth.retarder.configuration.config_file import parse_config
 from synth.solver.one_blas_thread import one_blas_thread
 
 MANY = [random_case(5, number) for number in range(400)]

@@ -28,12 +28,12 @@ from scripts.studies.humping.findings import HumpDay
 from scripts.studies.humping.runs import Group, measured
 from scripts.studies.humping.sensitivity import on_graph, on_section, thrown_in, with_king_switch, with_switches
 from scripts.studies.humping.table_positions import FRICTION, SUPPLY, TablePositions
-from synth.yard.humping.class_choice import ClassChoice
-from synth.yard.humping.hump_routes import Mark
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.table_hump_position import TableHumpPosition
-from synth.yard.humping.trial import HumpTrial
-from tests.synth.yard.humping.coarse_book import coarse_classes, coming
+from synth.hump.trains.class_choice import ClassChoice
+from synth.hump.trains.hump_routes import Mark
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.table_hump_position import TableHumpPosition
+from synth.hump.trains.trial import HumpTrial
+from tests.synth.hump.trains.coarse_book import coarse_classes, coming
 
 ROOT = Path(__file__).parents[2]
 TRAINS = 4

@@ -26,10 +26,10 @@ from scripts.studies.humping.frontier import (
 from scripts.studies.humping.gains import normal_gains, table_gains
 from scripts.studies.humping.runs import OUTCOMES
 from scripts.studies.humping.table_positions import TablePositions
-from synth.yard.humping.hump_position import Arrivals, HumpPosition, Passed
-from synth.yard.humping.outcomes import TrainOutcomes, joined
-from synth.yard.humping.trial import HumpTrial
-from tests.synth.yard.humping.coarse_book import coarse_classes
+from synth.hump.trains.hump_position import Arrivals, HumpPosition, Passed
+from synth.hump.trains.outcomes import TrainOutcomes, joined
+from synth.hump.trains.trial import HumpTrial
+from tests.synth.hump.trains.coarse_book import coarse_classes
 
 TRAINS, STDS_M_S = 4, (0.03, 0.15, 0.35)
 

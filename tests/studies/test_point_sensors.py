@@ -17,12 +17,12 @@ from scripts.studies.point_sensors.sensor_table import AXLES, SensorTable, tabul
 from scripts.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
 from scripts.studies.point_sensors.tables import kind_of, tables_of
 from scripts.studies.point_sensors.told import RESISTANCES, speeds_for, squares_at, told_bound
-from synth.book.sensors.candidate_places import LayoutCase, candidate_places
-from synth.book.sensors.layout import equal_layout, with_layout
-from synth.book.sensors.layout_plan import LayoutProblem, best_places, found_layouts
-from synth.book.sensors.tuned_passages import PassageChains, TunedPassages, passage_chains, tuned_passages
 from synth.frame.input_error import InputError
 from synth.problem.resolution import Resolution
+from synth.retarder.sensors.candidate_places import LayoutCase, candidate_places
+from synth.retarder.sensors.layout import equal_layout, with_layout
+from synth.retarder.sensors.layout_plan import LayoutProblem, best_places, found_layouts
+from synth.retarder.sensors.tuned_passages import PassageChains, TunedPassages, passage_chains, tuned_passages
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample
 from synth.simulation.stratified_passes import stratified_passes

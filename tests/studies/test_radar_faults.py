@@ -22,7 +22,7 @@ from scripts.studies.radar_faults.faults import (
 )
 from scripts.studies.radar_faults.study import chance, joined, moments_s
 from scripts.studies.radar_faults.watched_passes import passes_by_weight, watched_passes
-from synth.book.estimation.estimator_design import estimator_of
+from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop, simulate
 from synth.simulation.random_passes import RandomPasses, random_passes
 from tests.synth.case_factory import make_plant, make_table

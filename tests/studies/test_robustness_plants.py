@@ -13,12 +13,18 @@ from plant_models import Friction, Plant, PlantError, WeightForce
 from scripts.studies.plant_changes import aged_valves, friction
 from scripts.studies.robustness.condition import conditions, out_of_service, shifted_stages
 from scripts.studies.robustness.perturbation import at_value, sensible_ends
-from synth.configuration.config_file import load_config
-from synth.configuration.cut_class import CutClass
-from synth.configuration.plant_parameter import LEFT_OUT, Parameter, assumed_keys, parameters
-from synth.configuration.plant_values import NEARLY_SUPPLY, SLOPE_BY_AXLES, STAGE_PRESSURES, by_axles, with_values
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.kernels.loop.closed_loop import brake_rows
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.cut_class import CutClass
+from synth.retarder.configuration.plant_parameter import LEFT_OUT, Parameter, assumed_keys, parameters
+from synth.retarder.configuration.plant_values import (
+    NEARLY_SUPPLY,
+    SLOPE_BY_AXLES,
+    STAGE_PRESSURES,
+    by_axles,
+    with_values,
+)
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines

@@ -9,10 +9,10 @@ from scripts.studies.robustness.perturbation import Perturbation
 from scripts.studies.robustness.study import one_at_a_time
 from scripts.studies.robustness.trial import Trial, trial_of
 from scripts.studies.tuned_table import tuned_table as retuned
-from synth.book.rounded_table import predict
-from synth.configuration.config_file import load_config
-from synth.configuration.plant_parameter import Parameter
 from synth.problem.resolution import finer_for_check
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.plant_parameter import Parameter
+from synth.retarder.rounded_table import predict
 from synth.simulation.random_passes import random_passes
 from synth.solver.chain.chain import check_chain
 from tests.synth.case_factory import make_plant, make_table

@@ -17,7 +17,7 @@ from scripts.studies.sensor_fault import (
     at_random,
     reading_times_s,
 )
-from synth.book.comparison.baselines import energy_rule
+from synth.retarder.comparison.baselines import energy_rule
 from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate, trace
 from synth.simulation.exit_statistics import clopper_pearson
 from synth.simulation.passes import PassTrace

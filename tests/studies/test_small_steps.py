@@ -11,12 +11,12 @@ from scripts.studies.book import Measure, cells, row_of, short_cell
 from scripts.studies.cases import class_cases, named_cases, of_masses
 from scripts.studies.criteria.study import BINS_M_S, criteria, density_of
 from scripts.studies.side_by_side import side_by_side
-from synth.book.acceptance import judge_case
-from synth.configuration.config_file import load_config
-from synth.configuration.settings import AcceptanceSettings
 from synth.frame.input_error import InputError
 from synth.frame.printed_numbers import few
 from synth.problem.criterion import SQUARED_ERROR_CRITERION
+from synth.retarder.acceptance import judge_case
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.settings import AcceptanceSettings
 from tests.synth.case_factory import make_case, make_sample
 
 

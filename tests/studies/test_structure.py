@@ -22,8 +22,8 @@ from scripts.studies.structure.study import (
 )
 from scripts.studies.structure.wired_pressure import first_time
 from scripts.studies.structure.wired_radar import wired_radar_pass
-from synth.configuration.config_file import load_config
 from synth.frame.input_error import InputError
+from synth.retarder.configuration.config_file import load_config
 from synth.simulation.controllers import TableController
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant
 from synth.simulation.passage_loop import close_passage_loop

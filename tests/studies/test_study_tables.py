@@ -7,13 +7,13 @@ import pytest
 
 from scripts.studies.cases import named_cases
 from scripts.studies.tuned_table import CREATED, tuned_table
-from synth.book.class_setup import class_setup, origin_of
-from synth.book.comparison.told_regulator import by_lines, run_told
-from synth.book.tuned_table import solutions
-from synth.book.tuned_table import tuned_table as tuned_table_of_a_tune
-from synth.configuration.config_file import load_config, parse_config
 from synth.problem.aim import Aim
 from synth.problem.resolution import finer_for_check
+from synth.retarder.class_setup import class_setup, origin_of
+from synth.retarder.comparison.told_regulator import by_lines, run_told
+from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.tuned_table import solutions
+from synth.retarder.tuned_table import tuned_table as tuned_table_of_a_tune
 from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import random_passes

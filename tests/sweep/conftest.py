@@ -15,12 +15,13 @@ from typing import Any
 import pytest
 
 from synth.cli import main
-from synth.sweep.bind import Outcome
-from synth.sweep.run import run_sweep, task_of
-from synth.sweep.sweep_directory import held_sweep
-from synth.sweep.sweep_file import load_sweep
-from synth.sweep.work import Engine, InThisProcess
-from synth.yard.humping.trial import BATCH
+from synth.frame.workers.engine import Engine, InThisProcess
+from synth.hump.trains.trial import BATCH
+from synth.retarder.sweep.bind import Outcome
+from synth.retarder.sweep.run import run_sweep, task_of
+from synth.retarder.sweep.sweep_directory import held_sweep
+from synth.retarder.sweep.sweep_file import load_sweep
+from synth.retarder.sweep.unit_answer import answer
 
 EPOCH = "1700000000"
 PLANT = """\
@@ -153,7 +154,7 @@ def serial(config: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("serial") / "out"
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
-        outcome = run(config, directory, InThisProcess())
+        outcome = run(config, directory, InThisProcess(answer))
     assert outcome.failures == ()
     return directory
 

@@ -7,10 +7,11 @@ import signal
 from dataclasses import replace
 from pathlib import Path
 
+from synth.frame.workers.engine import Answer
+from synth.hump.trains.batch import BatchOrder, answer_batch
 from synth.kernels.cache import cache_in_use
-from synth.sweep.plan import UnitOrder
-from synth.sweep.trains.batch import BatchOrder, answer_batch
-from synth.sweep.work import Answer, answer
+from synth.retarder.sweep.plan import UnitOrder
+from synth.retarder.sweep.unit_answer import answer
 
 POISONED = "gondola-4-26t"
 

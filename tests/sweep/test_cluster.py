@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from synth.sweep.ledger import DONE, STARTED
+from synth.retarder.sweep.ledger import DONE, STARTED
 from tests.sweep.conftest import begin, contents, events, kill_and_reap, wait_until
 
 pytestmark = pytest.mark.skipif(find_spec("distributed") is None, reason="the extra [sweep] is not installed")

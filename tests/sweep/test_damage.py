@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 
 from synth.frame.held_directory import is_held
-from synth.sweep.ledger import DONE, PLAN, LedgerWriter, read_ledger
-from synth.sweep.sweep_directory import SweepDirectory, held_sweep
-from synth.sweep.unit_result import from_bytes, to_bytes
-from synth.sweep.work import InThisProcess
+from synth.frame.workers.engine import InThisProcess
+from synth.retarder.sweep.ledger import DONE, PLAN, LedgerWriter, read_ledger
+from synth.retarder.sweep.sweep_directory import SweepDirectory, held_sweep
+from synth.retarder.sweep.unit_answer import answer
+from synth.retarder.sweep.unit_result import from_bytes, to_bytes
 from tests.sweep.conftest import Ran, Silence, contents, events, run
 from tuning_tables import DamagedTable
 
@@ -43,7 +44,7 @@ def test_a_damaged_result_is_computed_again(config: Path, serial: Path, tmp_path
     bad.write_bytes(bad.read_bytes().replace(b"3", b"4", 1))
     (out / "book.h5").unlink()
     watcher = Silence()
-    run(config, out, InThisProcess(), watcher)
+    run(config, out, InThisProcess(answer), watcher)
     assert len(watcher.ended) == 1
     assert bad.name in watcher.notes[0]
     assert "damaged" in watcher.notes[0]
@@ -66,7 +67,7 @@ def test_a_torn_ledger_is_passed_over_and_continued(
     assert code == 0
     assert "2 lines of the ledger are torn or damaged" in said
     watcher = Silence()
-    run(config, out, InThisProcess(), watcher)
+    run(config, out, InThisProcess(answer), watcher)
     assert watcher.ended == []
     assert read_ledger(ledger).bad_lines == 2
     assert len(read_ledger(ledger).of(PLAN)) == 2
@@ -80,7 +81,7 @@ def test_the_date_is_that_of_the_first_run(
     for path in list((out / "sweep" / "units").iterdir())[:1]:
         path.unlink()
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1800000000")
-    run(config, out, InThisProcess())
+    run(config, out, InThisProcess(answer))
     assert contents(out) == contents(serial)
 
 

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from synth.frame.interval import Interval
-from synth.sweep.heat_map import heat_map
-from synth.sweep.local_workers import LocalWorkers
-from synth.sweep.sweep_file import load_sweep
-from synth.sweep.work import InThisProcess, Work
+from synth.frame.workers.engine import InThisProcess, Work
+from synth.frame.workers.local_workers import LocalWorkers
+from synth.retarder.sweep.heat_map import heat_map
+from synth.retarder.sweep.sweep_file import load_sweep
 from tests.sweep import poison
 from tests.sweep.conftest import COMMAND, Ran, Silence, contents, events, run
 from tuning_tables import read_book
@@ -149,12 +149,12 @@ def test_another_program_on_a_worker_is_refused(config: Path, tmp_path: Path) ->
 def test_a_full_memory_is_refused_before_anything_is_computed(
     command: Callable[..., Ran], monkeypatch: pytest.MonkeyPatch, config: Path, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("synth.sweep.run.available_memory_bytes", lambda: 100 * 2**20)
+    monkeypatch.setattr("synth.retarder.sweep.run.available_memory_bytes", lambda: 100 * 2**20)
     code, out, said = command("sweep", config, "-o", tmp_path / "out")
     assert (code, out) == (2, "")
     assert "make a step larger" in said
     assert [line for line in said.splitlines() if "warning: " not in line] == [said.splitlines()[-1]]
-    monkeypatch.setattr("synth.sweep.run.available_memory_bytes", lambda: 800 * 2**20)
+    monkeypatch.setattr("synth.retarder.sweep.run.available_memory_bytes", lambda: 800 * 2**20)
     code, _, said = command("sweep", config, "-o", tmp_path / "out", "--workers", "3")
     assert code == 0
     assert "memory allows for 1 of 3 workers" in said
@@ -171,9 +171,9 @@ WORKERS_WITHOUT_A_CACHE = """
 import sys
 from pathlib import Path
 from synth.frame.terminal.telling import leave
-from synth.sweep.local_workers import LocalWorkers
-from synth.sweep.plan import plan_of
-from synth.sweep.sweep_file import load_sweep
+from synth.frame.workers.local_workers import LocalWorkers
+from synth.retarder.sweep.plan import plan_of
+from synth.retarder.sweep.sweep_file import load_sweep
 from tests.sweep.poison import caching
 orders = [unit.order for unit in plan_of(load_sweep(Path(sys.argv[1])), "2020-01-01T00:00:00Z").units]
 print({answer.reason for answer in LocalWorkers(2, caching).answers(orders, lambda order: None)}, flush=True)

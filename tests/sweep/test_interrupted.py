@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.sweep.ledger import DONE, STARTED
+from synth.retarder.sweep.ledger import DONE, STARTED
 from tests.sweep.conftest import Ran, begin, contents, events, kill_and_reap, wait_until
 
 

@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 
 from plant_models.library import BUILT_IN, CARS, RETARDERS
-from synth.configuration.config_file import load_config
-from synth.sweep.plan import plan_of
-from synth.sweep.sweep_file import load_sweep
-from synth.sweep.tune_unit import tune_unit
-from synth.sweep.work import InThisProcess
+from synth.frame.workers.engine import InThisProcess
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.sweep.plan import plan_of
+from synth.retarder.sweep.sweep_file import load_sweep
+from synth.retarder.sweep.tune_unit import tune_unit
+from synth.retarder.sweep.unit_answer import answer
 from tests.sweep.conftest import EPOCH, PLANT, run
 from tuning_tables import read_book
 
@@ -55,7 +56,7 @@ def test_a_unit_needs_no_file_and_a_book_keeps_the_types_beside_it(
     (tmp_path / "gone").rename(tmp_path / "mine")
 
     out = tmp_path / "out"
-    run(config, out, InThisProcess())
+    run(config, out, InThisProcess(answer))
     (tmp_path / "mine").rename(tmp_path / "gone")
     for condition in file.conditions:
         beside = load_config(out / condition.name / "config.toml")
@@ -69,10 +70,10 @@ def test_a_unit_needs_no_file_and_a_book_keeps_the_types_beside_it(
 
 def test_types_of_an_earlier_run_do_not_stay_beside_the_book(config: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    run(config, out, InThisProcess())
+    run(config, out, InThisProcess(answer))
     (tmp_path / "mine" / "cars" / "short-4.toml").rename(tmp_path / "mine" / "cars" / "new-4.toml")
     config.write_text(config.read_text(encoding="utf-8").replace("short-4", "new-4"), encoding="utf-8")
-    run(config, out, InThisProcess())
+    run(config, out, InThisProcess(answer))
     assert [path.name for path in (out / "dry" / "types" / "cars").iterdir()] == ["new-4.toml"]
 
 

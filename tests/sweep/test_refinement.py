@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from synth.frame.workers.engine import InThisProcess
+from synth.retarder.sweep.plan import Refinement, plan_of
+from synth.retarder.sweep.refinement import Bench, Gap, refined
+from synth.retarder.sweep.sweep_file import parse_sweep
+from synth.retarder.sweep.tune_unit import between_rms_m_s, setup_of, tune_unit, tuned_tables
+from synth.retarder.sweep.unit_answer import answer
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import random_passes
-from synth.sweep.plan import Refinement, plan_of
-from synth.sweep.refinement import Bench, Gap, refined
-from synth.sweep.sweep_file import parse_sweep
-from synth.sweep.tune_unit import between_rms_m_s, setup_of, tune_unit, tuned_tables
-from synth.sweep.work import InThisProcess
 from tests.sweep.conftest import MEASURED, PLANT, SWEEP, run
 from tuning_tables import TableBook, read_book
 
@@ -104,7 +105,7 @@ def test_a_refined_book_keeps_its_loss(tmp_path: Path) -> None:
     loss = 0.002
     wanted = f"interpolation_loss_m_s = {loss}\nsmallest_step_m_s = 0.05\npasses"
     config.write_text(PLANT + MEASURED + coarse.replace("passes", wanted), encoding="utf-8")
-    outcome = run(config, tmp_path / "out", InThisProcess())
+    outcome = run(config, tmp_path / "out", InThisProcess(answer))
     targets = [table.target_speed_m_s for table in read_book(tmp_path / "out" / "book.h5")]
     assert len(targets) > 2
     assert targets == sorted(targets)

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from synth.sweep.local_workers import LocalWorkers
-from synth.sweep.work import InThisProcess
+from synth.frame.workers.engine import InThisProcess
+from synth.frame.workers.local_workers import LocalWorkers
+from synth.retarder.sweep.unit_answer import answer
 from tests.sweep.conftest import MEASURED, PLANT, SWEEP, Ran, Silence, contents, run
 from tuning_tables import read_book
 
@@ -36,7 +37,7 @@ mass_t = 30
 def test_worker_processes_give_the_bytes_of_this_process(
     config: Path, serial: Path, tmp_path: Path, workers: int
 ) -> None:
-    assert run(config, tmp_path / "out", LocalWorkers(workers)).failures == ()
+    assert run(config, tmp_path / "out", LocalWorkers(workers, answer)).failures == ()
     assert contents(tmp_path / "out") == contents(serial)
 
 
@@ -56,7 +57,7 @@ def test_tables_for_the_measured_speed_are_those_of_a_tune(command: Callable[...
     (tmp_path / "sweep.toml").write_text(PLANT + MEASURED + SWEEP, encoding="utf-8")
     code, _, said = command("tune", tmp_path / "tune.toml", "-o", tmp_path / "out", "--workers", "2")
     assert code in (0, 1), said
-    assert run(tmp_path / "sweep.toml", tmp_path / "swept", LocalWorkers(2)).failures == ()
+    assert run(tmp_path / "sweep.toml", tmp_path / "swept", LocalWorkers(2, answer)).failures == ()
     tuned, swept = (read_book(tmp_path / name / "book.h5") for name in ("out", "swept"))
     assert len(tuned) == 6
     assert all(table.estimator is None for table in tuned)
@@ -81,8 +82,8 @@ def test_a_grown_grid_keeps_what_is_there(config: Path, serial: Path, tmp_path: 
     larger.write_text(config.read_text(), encoding="utf-8")
     smaller.write_text(config.read_text().replace("to = 30", "to = 26"), encoding="utf-8")
     out, watcher = tmp_path / "out", Silence()
-    assert run(smaller, out, InThisProcess()).failures == ()
-    run(larger, out, InThisProcess(), watcher)
+    assert run(smaller, out, InThisProcess(answer)).failures == ()
+    run(larger, out, InThisProcess(answer), watcher)
     assert len(watcher.ended) == 1
     kept, new = contents(out), contents(serial)
     # Tables are stamped with the configuration of the last run, whichever run computed them; results are not.

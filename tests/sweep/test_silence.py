@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import logging
 
-from synth.sweep.dask_cluster import LOGGERS, SCHEDULER_LOST, silence
+from synth.frame.workers.dask_cluster import LOGGERS, SCHEDULER_LOST, silence
 
 
 def test_the_whole_tree_of_loggers_is_silent_and_no_other() -> None:

@@ -12,10 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from synth.configuration.config_file import parse_config
 from synth.frame.settings.toml_text import toml_text
-from synth.sweep.plan import plan_of
-from synth.sweep.sweep_file import parse_sweep
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.sweep.plan import plan_of
+from synth.retarder.sweep.sweep_file import parse_sweep
 from tests.sweep.conftest import MEASURED, PLANT, SWEEP, Ran
 
 CONDITIONS = """\
@@ -89,7 +89,7 @@ def test_one_sentence_for_a_fault(command: Callable[..., Ran], tmp_path: Path, n
 def test_faults_of_use(
     command: Callable[..., Ran], monkeypatch: pytest.MonkeyPatch, config: Path, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("synth.sweep.dask_cluster.ANSWER_WITHIN_S", 1)
+    monkeypatch.setattr("synth.frame.workers.dask_cluster.ANSWER_WITHIN_S", 1)
     out = tmp_path / "out"
     for arguments, said in (
         ((config,), "give one by -o DIR"),

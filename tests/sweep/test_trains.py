@@ -15,15 +15,15 @@ import pytest
 
 from synth.frame.command import Unfinished
 from synth.frame.results_directory import results_directory
-from synth.sweep.local_workers import LocalWorkers
-from synth.sweep.trains.batch import BatchOrder, answer_batch, orders_of
-from synth.sweep.trains.train_run import BatchFiles, missing_of, run_trains
-from synth.sweep.work import Answer, InThisProcess
-from synth.yard.humping.made_trial import made_trial
-from synth.yard.humping.outcome_file import TrialTrains, from_npz, to_npz
-from synth.yard.humping.outcomes import joined
-from synth.yard.humping.resolved_trial import load_trial
-from synth.yard.humping.trial import BATCH
+from synth.frame.workers.engine import Answer, InThisProcess
+from synth.frame.workers.local_workers import LocalWorkers
+from synth.hump.trains.batch import BatchOrder, answer_batch, orders_of
+from synth.hump.trains.made_trial import made_trial
+from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
+from synth.hump.trains.outcomes import joined
+from synth.hump.trains.resolved_trial import load_trial
+from synth.hump.trains.train_run import BatchFiles, missing_of, run_trains
+from synth.hump.trains.trial import BATCH
 from tests.sweep import poison
 from tests.sweep.conftest import Ran, begin, contents, kill_and_reap, wait_until
 

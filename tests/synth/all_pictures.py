@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from synth.book.case_result import CaseResult
-from synth.book.shown.pictures import accuracy_charts, chapters
 from synth.frame.exhibits import Chart, exhibits_of
 from synth.frame.picture.picture import Picture
 from synth.frame.picture.studio import draw_chart
+from synth.retarder.case_result import CaseResult
+from synth.retarder.shown.pictures import accuracy_charts, chapters
 
 
 def all_pictures(cases: Sequence[CaseResult], limit_m_s: float) -> Iterator[Picture]:

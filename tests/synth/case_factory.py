@@ -19,15 +19,15 @@ from plant_models import (
     RollingResistance,
     TrackProfile,
 )
-from synth.book.case_result import CaseResult, CaseStudy, PolicyMap
-from synth.book.comparison.comparison import Comparison
-from synth.book.comparison.measured import Measured
-from synth.book.feasibility import Feasibility
-from synth.book.grid_check import GridCheck
-from synth.book.off_nominal.condition import CONDITIONS
-from synth.book.off_nominal.outcome import OffNominal, Outcome
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
+from synth.retarder.case_result import CaseResult, CaseStudy, PolicyMap
+from synth.retarder.comparison.comparison import Comparison
+from synth.retarder.comparison.measured import Measured
+from synth.retarder.feasibility import Feasibility
+from synth.retarder.grid_check import GridCheck
+from synth.retarder.off_nominal.condition import CONDITIONS
+from synth.retarder.off_nominal.outcome import OffNominal, Outcome
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.unavoidable_error import UnavoidableError

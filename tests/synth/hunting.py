@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from plant_models import Plant
-from synth.book.comparison.limit_cycle import LimitCycle, accelerations, relay_cycle, stage_pair
+from synth.retarder.comparison.limit_cycle import LimitCycle, accelerations, relay_cycle, stage_pair
 
 
 def limit_cycle(

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.book.acceptance import advice_of, judge_case, judged, limits_of
-from synth.book.case_result import CaseResult
-from synth.book.comparison.measured import honesty_of
-from synth.book.judgement import judgement
-from synth.book.off_nominal.worst import worst_of
-from synth.configuration.settings import AcceptanceSettings
 from synth.frame.command import Limit
+from synth.retarder.acceptance import advice_of, judge_case, judged, limits_of
+from synth.retarder.case_result import CaseResult
+from synth.retarder.comparison.measured import honesty_of
+from synth.retarder.configuration.settings import AcceptanceSettings
+from synth.retarder.judgement import judgement
+from synth.retarder.off_nominal.worst import worst_of
 from synth.simulation.exit_statistics import ExitStatistics, overspeed_of
 from synth.simulation.passes import ExitSample
 from synth.simulation.unavoidable_error import UnavoidableError

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from synth.book.comparison.baselines import (
+from synth.kernels.loop.closed_loop import LEFT, advance
+from synth.retarder.comparison.baselines import (
     FAMILIES,
     TunedBaseline,
     energy_rule,
     relay,
     tune_baselines,
 )
-from synth.kernels.loop.closed_loop import LEFT, advance
 from synth.simulation.closed_loop import close_loop, simulate
 from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import exit_statistics

@@ -10,8 +10,9 @@ from matplotlib.text import Text
 
 from plant_models import Plant
 from scripts.studies.structure.signals import SIGNALS
-from synth.book.pictures.block_diagram import block_diagram, branches, in_mathtext, parting
-from synth.book.pictures.block_layout import (
+from synth.frame.picture.figure_file import draw
+from synth.retarder.pictures.block_diagram import block_diagram, branches, in_mathtext, parting
+from synth.retarder.pictures.block_layout import (
     HEIGHT_IN,
     POINT_SENSOR_ROUTES,
     RADAR_ROUTES,
@@ -22,7 +23,6 @@ from synth.book.pictures.block_layout import (
     centre,
     corners,
 )
-from synth.frame.picture.figure_file import draw
 from synth.simulation.controllers import TableController
 from synth.simulation.passage_loop import close_passage_loop
 from synth.simulation.structure.diagram import Sketch

@@ -14,8 +14,8 @@ from scipy.integrate import solve_ivp
 
 from plant_models import Cut, Friction, Plant, PressureHistory, RollingResistance
 from plant_models.stage_regulator import stage_locked_actuator
-from synth.book.comparison.baselines import energy_rule
 from synth.kernels.loop.closed_loop import LEFT, MOVING, STALLED, Draws, advance
+from synth.retarder.comparison.baselines import energy_rule
 from synth.simulation.closed_loop import (
     ClosedLoop,
     LineController,

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from plant_models import EntrySpeed, Plant, RollingResistance, TrackProfile
-from synth.book.comparison.baselines import energy_rule, relay
-from synth.configuration.config_file import load_config
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop.lane_places import LANES
+from synth.retarder.comparison.baselines import energy_rule, relay
+from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import ClosedLoop, Controller, LineController, TableController, close_loop
 from synth.simulation.controllers import fixed
 from synth.simulation.passes import ExitSample

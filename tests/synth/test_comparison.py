@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from synth.book.shown.results import NO_REGRET, overall, remarks
+from synth.retarder.shown.results import NO_REGRET, overall, remarks
 from tests.synth.case_factory import make_case
 from tests.synth.test_report import found_book
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from synth.book.control_loop import ENTRIES, TOLERANCE_M_S, ControlLoop, control_loop, loop_document
-from synth.book.estimation.estimator_design import estimator_of
 from synth.frame.summary import plain
+from synth.retarder.control_loop import ENTRIES, TOLERANCE_M_S, ControlLoop, control_loop, loop_document
+from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant, one_pass
 from synth.simulation.nominal_response import nominal_response

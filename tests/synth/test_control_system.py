@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor, Friction, Plant, RollingResistance
-from synth.book.comparison.baselines import energy_rule, relay
+from synth.retarder.comparison.baselines import energy_rule, relay
 from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.simulation.control_system import drive_system, motion_system, nominal_loop, regulator_system
 from synth.simulation.nominal_response import SOLVER, nominal_response

@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 
 from plant_models import EntrySpeed, Plant, PlantError, PressingForce, RetarderPosition, RollingResistance
-from synth.configuration.config_file import parse_config
-from synth.configuration.config_template import default_config_toml
 from synth.frame.input_error import InputError
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
@@ -20,6 +18,8 @@ from synth.problem.requirement import FrictionRange, OverspeedLimit
 from synth.problem.requirement_found import OverspeedLimitFound
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.problem.terminal_cost import AsymmetricSquare, PenalisedOverspeed, SquaredError, TerminalCost, share_above
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.config_template import default_config_toml
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.exit_statistics import clopper_pearson, exit_statistics
 from synth.simulation.random_passes import random_passes

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, Plant
-from synth.book.comparison.friction_bound import bound_of
-from synth.book.comparison.told_regulator import Told, best_by_others, by_lines, run_told
-from synth.book.estimation.estimated_table import controller_of, moved
-from synth.book.estimation.estimator_design import estimator_of
-from synth.book.estimation.told_estimator import Bias, ToldWithEstimator, knowing, levelled, no_bias
+from synth.retarder.comparison.friction_bound import bound_of
+from synth.retarder.comparison.told_regulator import Told, best_by_others, by_lines, run_told
+from synth.retarder.estimation.estimated_table import controller_of, moved
+from synth.retarder.estimation.estimator_design import estimator_of
+from synth.retarder.estimation.told_estimator import Bias, ToldWithEstimator, knowing, levelled, no_bias
 from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio

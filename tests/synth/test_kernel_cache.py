@@ -24,7 +24,7 @@ SOURCES = (
 OTHERS = (
     "plant_models/cut.py",
     "scripts/studies/peers/study.py",
-    "synth/configuration/settings.py",
+    "synth/retarder/configuration/settings.py",
     "tuning_tables/table.py",
 )
 

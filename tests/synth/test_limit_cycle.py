@@ -18,9 +18,9 @@ from plant_models import (
     RollingResistance,
     TrackProfile,
 )
-from synth.book.comparison.cycle_wave import cycle_wave
-from synth.book.comparison.describing_function import describing_function_analysis
-from synth.book.comparison.limit_cycle import (
+from synth.retarder.comparison.cycle_wave import cycle_wave
+from synth.retarder.comparison.describing_function import describing_function_analysis
+from synth.retarder.comparison.limit_cycle import (
     StagePair,
     first_harmonic,
     hunting_report,

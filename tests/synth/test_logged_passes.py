@@ -9,7 +9,7 @@ import pytest
 
 from plant_models import Approach, Plant, PlantError
 from plant_models.pressure_gauge import PressureGauge
-from synth.book.comparison.baselines import energy_rule
+from synth.retarder.comparison.baselines import energy_rule
 from synth.simulation.closed_loop import LineController, close_loop, simulate, trace
 from synth.simulation.logged_passes import GAP_S, LoggedClass, logged_passes, mixed_log
 from synth.simulation.random_passes import RandomPasses, random_passes

@@ -11,8 +11,8 @@ from plant_models.library.type_file import WEIGHT_CATEGORIES, TypeFile
 from plant_models.library.weight_category import WeightCategories, categories_from
 from synth.checker.verdict import verify
 from synth.cli import main
-from synth.configuration.config_file import parse_config
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from tests.plant_models.test_library import CATEGORIES
 from tests.system.conftest import CLASS, changed
 from tuning_tables import read_book

@@ -6,10 +6,10 @@ from functools import partial
 
 import pytest
 
-from synth.book.forms.table_file import file_stem, is_infeasible
-from synth.book.shown.pictures import exit_density, exits_chart, lines_chart
 from synth.frame.exhibits import Chart
 from synth.frame.picture.studio import Studio, draw_chart
+from synth.retarder.forms.table_file import file_stem, is_infeasible
+from synth.retarder.shown.pictures import exit_density, exits_chart, lines_chart
 from tests.synth.case_factory import make_case
 
 

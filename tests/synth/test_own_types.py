@@ -13,10 +13,10 @@ from plant_models import EntrySpeed, HistogramEntrySpeed, NormalEntrySpeed
 from plant_models.library import CARS, KINDS, POSITIONS, RETARDERS, Kind, TypeFile, load_car, load_position
 from plant_models.library.library import BUILT_IN, Library
 from plant_models.library.type_file import TypeFileError
-from synth.configuration.config_file import load_config, parse_config
-from synth.configuration.resolved_config import ResolvedConfig
-from synth.configuration.type_template import START_FROM, type_toml
+from synth.cli.type_template import START_FROM, type_toml
 from synth.frame.input_error import InputError
+from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 
 CUT = '[[cut]]\ncar = "gondola-4"\nmass_t = 22\n'
 

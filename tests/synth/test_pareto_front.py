@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from synth.book.pareto.pareto_front import PRICES_M2_S3, ParetoFront, ParetoPoint, nearly_free, told
-from synth.book.pictures.pareto_fronts import pareto_fronts
-from synth.book.shown.fronts import fronts
 from synth.frame.exhibits import Chart, Sentence, Table
+from synth.retarder.pareto.pareto_front import PRICES_M2_S3, ParetoFront, ParetoPoint, nearly_free, told
+from synth.retarder.pictures.pareto_fronts import pareto_fronts
+from synth.retarder.shown.fronts import fronts
 from synth.simulation.exit_statistics import exit_statistics
 from tests.synth.case_factory import make_sample
 

@@ -15,19 +15,19 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from synth.book.case_names import by_class, file_stem
-from synth.book.case_result import CaseResult
-from synth.book.command_panels import command_image
-from synth.book.pictures.exit_density import bin_edges_m_s, exit_density, predicted_density
-from synth.book.pictures.feasibility import feasibility
-from synth.book.pictures.policy_map import parts_in_stage, policy_map
-from synth.book.pictures.rms_by_controller import rms_by_controller
-from synth.book.pictures.sample_passes import outcome, sample_passes
-from synth.book.pictures.surfaces import surfaces
-from synth.book.shown.pictures import lines_chart
 from synth.frame.picture.figure_file import draw, figure_files
 from synth.frame.picture.house_style import MATHEMATICS, logarithmic_y, new_figure
 from synth.frame.picture.picture import picture_files
+from synth.retarder.case_names import by_class, file_stem
+from synth.retarder.case_result import CaseResult
+from synth.retarder.command_panels import command_image
+from synth.retarder.pictures.exit_density import bin_edges_m_s, exit_density, predicted_density
+from synth.retarder.pictures.feasibility import feasibility
+from synth.retarder.pictures.policy_map import parts_in_stage, policy_map
+from synth.retarder.pictures.rms_by_controller import rms_by_controller
+from synth.retarder.pictures.sample_passes import outcome, sample_passes
+from synth.retarder.pictures.surfaces import surfaces
+from synth.retarder.shown.pictures import lines_chart
 from tests.synth.all_pictures import all_pictures
 from tests.synth.case_factory import make_case
 

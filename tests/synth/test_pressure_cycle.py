@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, PlantError, Pneumatics
-from synth.book.comparison.pressure_cycle import pressure_hunting, pressure_limit_cycle
+from synth.retarder.comparison.pressure_cycle import pressure_hunting, pressure_limit_cycle
 from tests.synth.hunting import limit_cycle
 
 TOUCH_KPA = 50.0

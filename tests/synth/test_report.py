@@ -13,18 +13,6 @@ from pathlib import Path
 import pytest
 
 from plant_models.library import SourcedValue
-from synth.book.acceptance import judged
-from synth.book.case_result import CaseResult
-from synth.book.comparison.limit_cycle import hunting_report
-from synth.book.configured import head_of
-from synth.book.failed_case import FailedCase
-from synth.book.found_book import FoundBook
-from synth.book.off_nominal.condition import CONDITIONS
-from synth.book.shown.checks import checks
-from synth.book.tune import Book
-from synth.book.tune_command import COMMAND
-from synth.configuration.config_file import parse_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.command import Verdict
 from synth.frame.exhibits import Chart, Sentence, Table, exhibits_of
 from synth.frame.page.markup import VOID, Markup, element
@@ -32,6 +20,18 @@ from synth.frame.page.told_page import page_of
 from synth.frame.picture.picture import Drawing, Picture
 from synth.frame.printed_numbers import counted, percent, span
 from synth.frame.told import Told
+from synth.retarder.acceptance import judged
+from synth.retarder.case_result import CaseResult
+from synth.retarder.comparison.limit_cycle import hunting_report
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configured import head_of
+from synth.retarder.failed_case import FailedCase
+from synth.retarder.found_book import FoundBook
+from synth.retarder.off_nominal.condition import CONDITIONS
+from synth.retarder.shown.checks import checks
+from synth.retarder.tune import Book
+from synth.retarder.tune_command import COMMAND
 from tests.synth.case_factory import make_case
 from tuning_tables import Estimator
 

@@ -7,11 +7,11 @@ import pytest
 from numpy.typing import NDArray
 from SALib.analyze import rbd_fast
 
-from synth.book.sensitivity.hypercube import unit_hypercube
-from synth.book.sensitivity.outputs import OUTPUTS
-from synth.book.sensitivity.ranking import UNDECIDABLE, measure_first
-from synth.book.sensitivity.sensitivity import OutputShares, mean_of_cases, output_shares
-from synth.book.sensitivity.shares import FEWEST_POINTS, GROUPS, HARMONICS, first_order, noise_share
+from synth.retarder.sensitivity.hypercube import unit_hypercube
+from synth.retarder.sensitivity.outputs import OUTPUTS
+from synth.retarder.sensitivity.ranking import UNDECIDABLE, measure_first
+from synth.retarder.sensitivity.sensitivity import OutputShares, mean_of_cases, output_shares
+from synth.retarder.sensitivity.shares import FEWEST_POINTS, GROUPS, HARMONICS, first_order, noise_share
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import ExitSample
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from plant_models import EntrySpeed, Plant
-from synth.book.comparison.served_entry import ENTRY_PASSES, ENTRY_POINTS, entry_sweep, feasibility_of, served
+from synth.retarder.comparison.served_entry import ENTRY_PASSES, ENTRY_POINTS, entry_sweep, feasibility_of, served
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.simulation.unavoidable_error import unavoidable_error

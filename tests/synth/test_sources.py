@@ -11,7 +11,7 @@ import pytest
 from plant_models import PlantError
 from plant_models.library import load_car, load_position, position_names, sources, sources_cited_in
 from plant_models.library.source import CITATION, sources_from_toml
-from synth.configuration.config_template import default_config_toml
+from synth.retarder.configuration.config_template import default_config_toml
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "sources.md").read_text(encoding="utf-8")

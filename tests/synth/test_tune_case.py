@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.book.case_result import CaseResult
-from synth.book.tune import Book, tune
-from synth.book.watcher import Teller
-from synth.configuration.config_file import parse_config
+from synth.retarder.case_result import CaseResult
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.tune import Book, tune
+from synth.retarder.watcher import Teller
 from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable, read_json, write_json
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, Plant
-from synth.book.estimation.tuning_days import tuning_days, tuning_row
+from synth.retarder.estimation.tuning_days import tuning_days, tuning_row
 from synth.simulation.closed_loop import LineController, close_loop, simulate
 from synth.simulation.random_passes import PATH_CELLS, random_passes
 from synth.simulation.stratified_passes import stratified_passes

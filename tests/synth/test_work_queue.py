@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 
-from synth.book.work_queue import run_nested
+from synth.retarder.work_queue import run_nested
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])

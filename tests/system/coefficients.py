@@ -14,15 +14,15 @@ from pathlib import Path
 from llvmlite import binding
 
 from plant_models.library import position_names
-from synth.book.class_setup import class_setup, origin_of, validation_passes
-from synth.book.tuned_table import solutions, tuned_table
-from synth.configuration.config_file import parse_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.retarder.class_setup import class_setup, origin_of, validation_passes
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.sweep.plan import plan_of
+from synth.retarder.sweep.sweep_file import parse_sweep
+from synth.retarder.sweep.tune_unit import tune_unit
+from synth.retarder.tuned_table import solutions, tuned_table
 from synth.solver.one_blas_thread import one_blas_thread
-from synth.sweep.plan import plan_of
-from synth.sweep.sweep_file import parse_sweep
-from synth.sweep.tune_unit import tune_unit
 from tests.sweep.conftest import PLANT, SWEEP
 from tuning_tables import ControllerTable, to_json
 

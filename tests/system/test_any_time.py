@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from synth.cli import main
-from synth.configuration.config_file import load_config, parse_config
 from synth.frame.terminal.printed_table import PrintedTable
+from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.sweep.tune_unit import between_rms_m_s
 from synth.solver.chain.chain import check_chain
-from synth.sweep.tune_unit import between_rms_m_s
 from tests.printed_page import Page, cells_of
 from tuning_tables import ControllerTable, Decisions, read_book
 

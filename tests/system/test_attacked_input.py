@@ -92,7 +92,7 @@ def test_too_long_a_name_is_told_of_the_file_that_holds_it(command: Command, tmp
 
 @pytest.mark.parametrize("name", ["com10", "console", "dry.1", "sweep1", "a"])
 def test_names_that_conditions_may_have(tmp_path: Path, name: str) -> None:
-    from synth.sweep.sweep_file import parse_sweep
+    from synth.retarder.sweep.sweep_file import parse_sweep
 
     assert [each.name for each in parse_sweep(CONDITIONS.replace("NAME", name), "x").conditions] == ["dry", name]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.configuration.config_file import load_config
+from synth.retarder.configuration.config_file import load_config
 from tests.system.conftest import CLASS, Command, changed
 
 ID = "gondola-4-22t-to-1.5-m-s"

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.configuration.config_file import parse_config
 from synth.frame.results_directory import results_directory
+from synth.retarder.configuration.config_file import parse_config
 from tests.frame.results import results_in
 from tests.system.conftest import CLASS, Command, changed
 from tuning_tables import from_json, read_book, read_json, to_csv, to_json, write_book

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from synth.cli import main
-from synth.configuration.config_file import load_config
+from synth.retarder.configuration.config_file import load_config
 from tests.system.conftest import CLASS, EPOCH, Command
 from tuning_tables import TableBook, read_book, read_json, write_book
 

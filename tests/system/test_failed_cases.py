@@ -13,11 +13,11 @@ from typing import Any
 import pytest
 
 from plant_models import PlantError
-from synth.book.attempted_case import attempted
-from synth.book.failed_case import FailedCase, told_together
 from synth.checker.verdict import verify
 from synth.cli import main
-from synth.configuration.config_file import parse_config
+from synth.retarder.attempted_case import attempted
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.failed_case import FailedCase, told_together
 from synth.solver.coarse_grid import CoarseGridError
 from tests.frame.results import results_in
 from tests.system.conftest import CLASS, MEASURED, SECOND_CLASS, Command, changed
@@ -143,7 +143,7 @@ def no_surfaces(monkeypatch: pytest.MonkeyPatch) -> None:
     def too_coarse(*_: object) -> None:
         raise CoarseGridError("no surfaces on this grid")
 
-    monkeypatch.setattr("synth.book.permissions.case_permissions.at_any_time", too_coarse)
+    monkeypatch.setattr("synth.retarder.permissions.case_permissions.at_any_time", too_coarse)
 
 
 WITHOUT_SURFACES = ("commands at any time", "commands at any time, no pressure gauge")

@@ -129,7 +129,7 @@ def test_ctrl_c_at_a_terminal_is_told_in_one_line(tmp_path: Path) -> None:
 
 
 DRAW_FOR_EVER = """
-from synth.book.shown.pictures import exits_chart
+from synth.retarder.shown.pictures import exits_chart
 from synth.frame.picture.studio import Studio
 from tests.synth.case_factory import make_case
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.configuration.config_file import load_config
+from synth.retarder.configuration.config_file import load_config
 from tests.frame.results import results_in
 from tests.printed_page import Page, table_of
 from tests.synth.conftest import GONDOLA_OFFSETS_M
@@ -133,7 +133,7 @@ def test_json_is_the_file_and_the_same_table_gives_the_same_bytes(
 def test_responses_that_do_not_agree_give_1(
     command: Command, tuned: Path, two_classes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("synth.book.control_loop.TOLERANCE_M_S", 1e-9)
+    monkeypatch.setattr("synth.retarder.control_loop.TOLERANCE_M_S", 1e-9)
     ran = command("loop", tuned / "tables" / f"{TABLE}.json", "-o", tmp_path / "out", "--config", two_classes)
     assert ran.code == 1
     assert "DO NOT agree" in ran.err

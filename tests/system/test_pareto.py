@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from synth.book.pareto.pareto_front import PRICES_M2_S3
 from synth.cli import main
+from synth.retarder.pareto.pareto_front import PRICES_M2_S3
 from tests.printed_page import Page, page_about
 
 COARSE = """\

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from synth.book.permissions.refusal import tellable
-from synth.book.permissions.shown import AS_CONFIGURED
-from synth.book.shown.results import PERMISSIONS
 from synth.cli import main
-from synth.configuration.config_file import parse_config
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.permissions.refusal import tellable
+from synth.retarder.permissions.shown import AS_CONFIGURED
+from synth.retarder.shown.results import PERMISSIONS
 from tests.printed_page import Page, page_about, table_of, with_half
 from tests.system.conftest import MEASURED
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-import synth.book.sensitivity.command as command
+import synth.retarder.sensitivity.command as command
 from synth.cli import main
 from tests.frame.results import results_in
 

@@ -118,7 +118,9 @@ def test_faults_of_the_machine_are_74_wherever_they_come_from(
     def fail(path: object, *_: object, **__: object) -> None:
         raise OSError(number, os.strerror(number), str(path))
 
-    monkeypatch.setattr("synth.book.forms.table_file.read_book" if step == "read_book" else "pathlib.Path.mkdir", fail)
+    monkeypatch.setattr(
+        "synth.retarder.forms.table_file.read_book" if step == "read_book" else "pathlib.Path.mkdir", fail
+    )
     ran = command("export", tuned / "book.h5", "--format", "csv", "-o", tmp_path / "csv")
     assert (ran.code, ran.out) == (74, "")
     assert f"{os.strerror(number)}; " in ran.sentence

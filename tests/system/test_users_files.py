@@ -17,9 +17,9 @@ import pytest
 from plant_models.library import BUILT_IN
 from plant_models.library.type_file import CARS
 from synth.cli import main
-from synth.configuration.hump import hump_text
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import results_directory
+from synth.hump.hump_file import hump_text
 from tests.system.conftest import CLASS, SECOND_CLASS, Command, changed
 
 SENSORS = """\

@@ -10,10 +10,10 @@ from scipy.special import ndtri
 
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.rolling.random_numbers import Purpose
-from synth.yard.aim.knowledge import Requirement, likelihood, not_falling
-from synth.yard.aim.limit_speed import thresholds_of
-from synth.yard.aim.readings import Reading, TrueReadings
-from synth.yard.aim.scene import SceneCuts
+from synth.aim.knowledge import Requirement, likelihood, not_falling
+from synth.aim.limit_speed import thresholds_of
+from synth.aim.readings import Reading, TrueReadings
+from synth.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

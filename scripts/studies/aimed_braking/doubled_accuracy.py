@@ -9,9 +9,9 @@ import numpy as np
 from plant_models.library.weight_category import WeightCategory
 from scripts.studies.aiming.places import FromCrest
 from scripts.studies.aiming.trial import Cuts, Draws, Value, samples, value_of
-from synth.yard.aim.knowledge import ByCategory
-from synth.yard.aim.position_models import NormalPosition
-from synth.yard.aim.scene import AimScene
+from synth.aim.knowledge import ByCategory
+from synth.aim.position_models import NormalPosition
+from synth.aim.scene import AimScene
 
 BEFORE, AFTER = 0.115, 0.055
 """Middle of the shares of over-speeds that the dissertation reports: 10 to 13 %, and 5 to 6 %."""

@@ -15,10 +15,10 @@ from scripts.studies.aiming.recorded_cuts import NearestRecord
 from scripts.studies.aiming.regression import ByRegression
 from scripts.studies.aiming.trial import Cuts, Draws, Outcome, outcomes, samples
 from scripts.studies.side_by_side import side_by_side
-from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge
-from synth.yard.aim.position_models import NormalPosition
-from synth.yard.aim.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
-from synth.yard.aim.scene import AimScene
+from synth.aim.knowledge import ByCategory, ByReading, Knowledge
+from synth.aim.position_models import NormalPosition
+from synth.aim.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
+from synth.aim.scene import AimScene
 
 Floats = NDArray[np.float64]
 

@@ -11,10 +11,10 @@ from plant_models.track_profile import TrackProfile
 from scripts.studies.aiming.hump import weight_category, with_bends, with_mix, with_weather
 from scripts.studies.aiming.places import FreeDistance
 from scripts.studies.aiming.trial import Cuts, Draws, Outcome, tried
-from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge
-from synth.yard.aim.position_models import NormalPosition
-from synth.yard.aim.readings import ResistanceByTwoSpeeds
-from synth.yard.aim.scene import AimScene, MeasuredStretch
+from synth.aim.knowledge import ByCategory, ByReading, Knowledge
+from synth.aim.position_models import NormalPosition
+from synth.aim.readings import ResistanceByTwoSpeeds
+from synth.aim.scene import AimScene, MeasuredStretch
 
 EXIT_M = 340.0
 """Where the prototype's park position ends; it counts a cut as a point."""

@@ -10,9 +10,9 @@ from plant_models.library.weight_category import WeightCategory
 from scripts.studies.aiming.aimed_cuts import AimedCuts, rolled_cuts
 from scripts.studies.aiming.places import FromCrest
 from scripts.studies.aiming.trial import Cuts, Draws, Outcome, Value, tried, value_of
-from synth.yard.aim.knowledge import ByCategory, Knowledge
-from synth.yard.aim.position_models import NormalPosition
-from synth.yard.aim.scene import AimScene
+from synth.aim.knowledge import ByCategory, Knowledge
+from synth.aim.position_models import NormalPosition
+from synth.aim.scene import AimScene
 
 BETWEEN_STATIONS_M = 10.0
 

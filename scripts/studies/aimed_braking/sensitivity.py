@@ -15,10 +15,10 @@ from scripts.studies.aiming.norm_distance import norm_distance
 from scripts.studies.aiming.regression import ByRegression
 from scripts.studies.aiming.trial import Cuts, Draws, Value, value_of
 from scripts.studies.side_by_side import side_by_side
-from synth.yard.aim.knowledge import ByCategory, Knowledge
-from synth.yard.aim.position_models import NormalPosition
-from synth.yard.aim.readings import ResistanceByTwoSpeeds
-from synth.yard.aim.scene import AimScene
+from synth.aim.knowledge import ByCategory, Knowledge
+from synth.aim.position_models import NormalPosition
+from synth.aim.readings import ResistanceByTwoSpeeds
+from synth.aim.scene import AimScene
 
 Floats = NDArray[np.float64]
 

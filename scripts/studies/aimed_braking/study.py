@@ -21,10 +21,10 @@ from scripts.studies.aiming.regression import ByRegression
 from scripts.studies.aiming.trial import Cuts, Draws, value_of
 from scripts.studies.options import option
 from scripts.studies.study import Method, Tell
-from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge
-from synth.yard.aim.position_models import NormalPosition
-from synth.yard.aim.readings import LightnessByWeigher, ResistanceByTwoSpeeds
-from synth.yard.aim.scene import AimScene
+from synth.aim.knowledge import ByCategory, ByReading, Knowledge
+from synth.aim.position_models import NormalPosition
+from synth.aim.readings import LightnessByWeigher, ResistanceByTwoSpeeds
+from synth.aim.scene import AimScene
 
 EXACT_WEIGHT = 1e-4
 """Relative error of a weigher that stands for exact weight."""

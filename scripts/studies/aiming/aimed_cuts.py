@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from scripts.studies.aiming.places import Places
-from synth.yard.aim.outcome import Couplings, couplings
-from synth.yard.aim.position_models import ExitSpeeds, PositionModel
-from synth.yard.aim.scene import SceneCuts
+from synth.aim.outcome import Couplings, couplings
+from synth.aim.position_models import ExitSpeeds, PositionModel
+from synth.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from plant_models.rolling.roll_track import Bend
 from plant_models.rolling.weather import Weather
 from plant_models.track_profile import TrackProfile
 from scripts.studies.aiming.recorded_cuts import ControlPoints
-from synth.yard.aim.scene import AimScene, MeasuredStretch
+from synth.aim.scene import AimScene, MeasuredStretch
 
 POINTS = ControlPoints((200.0, 250.0, 305.0))
 """The three control points of Kozachenko, between bunch and park position."""

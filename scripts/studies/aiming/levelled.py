@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from scripts.studies.aiming.aimed_cuts import AimedCuts
 from scripts.studies.aiming.recorded_cuts import NearestRecord
-from synth.yard.aim.knowledge import Commands, Knowledge, Requirement
-from synth.yard.aim.scene import SceneCuts
+from synth.aim.knowledge import Commands, Knowledge, Requirement
+from synth.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

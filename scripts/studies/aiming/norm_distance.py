@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scripts.studies.aiming.aimed_cuts import rolled_cuts
 from scripts.studies.aiming.places import FromCrest
 from scripts.studies.aiming.trial import Cuts, Draws, judged
-from synth.yard.aim.knowledge import Knowledge
-from synth.yard.aim.position_models import PositionModel
-from synth.yard.aim.scene import SceneCuts
+from synth.aim.knowledge import Knowledge
+from synth.aim.position_models import PositionModel
+from synth.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.yard.aim.scene import SceneCuts
+from synth.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

@@ -12,9 +12,9 @@ from scipy.special import ndtri
 from plant_models.errors import require, require_between
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.rolling.random_numbers import Purpose
-from synth.yard.aim.knowledge import Requirement
-from synth.yard.aim.limit_speed import bounded
-from synth.yard.aim.scene import SceneCuts
+from synth.aim.knowledge import Requirement
+from synth.aim.limit_speed import bounded
+from synth.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

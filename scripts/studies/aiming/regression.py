@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
-from synth.yard.aim.knowledge import Requirement
-from synth.yard.aim.limit_speed import bounded
-from synth.yard.aim.readings import Reading
-from synth.yard.aim.scene import SceneCuts
+from synth.aim.knowledge import Requirement
+from synth.aim.limit_speed import bounded
+from synth.aim.readings import Reading
+from synth.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

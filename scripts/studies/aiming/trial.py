@@ -12,11 +12,11 @@ from plant_models.library.weight_category import WeightCategory
 from scripts.studies.aiming.aimed_cuts import AimedCuts, RolledCuts, rolled_cuts
 from scripts.studies.aiming.levelled import levelled
 from scripts.studies.aiming.places import Places
+from synth.aim.knowledge import Knowledge
+from synth.aim.outcome import Couplings
+from synth.aim.position_models import PositionModel
+from synth.aim.scene import AimScene, SceneCuts
 from synth.simulation.replicates import Interval, student_quantile
-from synth.yard.aim.knowledge import Knowledge
-from synth.yard.aim.outcome import Couplings
-from synth.yard.aim.position_models import PositionModel
-from synth.yard.aim.scene import AimScene, SceneCuts
 
 Floats = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from enum import Enum
 from scripts.studies.markdown_table import MarkdownTable, around, table
 from scripts.studies.near_target import NEAR_M_S
 from scripts.studies.study import Findings
-from synth.book.permissions.permission import Permission
+from synth.retarder.permissions.permission import Permission
 from synth.simulation.replicates import Interval
 
 CUBIC, POLISHED, PLAIN = "at rest, cubic", "any time, cubic and pressure", "any time, cubic"

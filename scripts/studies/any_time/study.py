@@ -35,14 +35,14 @@ from scripts.studies.near_target import near_ratio
 from scripts.studies.options import option
 from scripts.studies.study import Method, Tell
 from scripts.studies.tuned_table import lines_of_solution, rounded
-from synth.book.comparison.baselines import FAMILIES, tune
-from synth.book.permissions.case_permissions import permissions_of
-from synth.book.permissions.permission import Permission
-from synth.book.watcher import Teller
-from synth.configuration.config_file import load_config, parse_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import design_resolution
+from synth.retarder.comparison.baselines import FAMILIES, tune
+from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.permissions.case_permissions import permissions_of
+from synth.retarder.permissions.permission import Permission
+from synth.retarder.watcher import Teller
 from synth.simulation.closed_loop import LineController, TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.controllers import Regulator

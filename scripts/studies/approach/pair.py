@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 from plant_models import Approach, Plant
 from scripts.studies.tuned_table import tuned_table
-from synth.book.comparison.baselines import tune_baselines
-from synth.book.comparison.served_entry import entry_sweep, served
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.retarder.comparison.baselines import tune_baselines
+from synth.retarder.comparison.served_entry import entry_sweep, served
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio

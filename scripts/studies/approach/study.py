@@ -26,8 +26,8 @@ from scripts.studies.cases import OTHER_PLANTS, Case, class_cases, named_cases
 from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
-from synth.configuration.config_file import load_config, parse_config
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes

@@ -23,9 +23,9 @@ from scripts.studies.options import option
 from scripts.studies.study import Method, Tell
 from scripts.studies.timing.machine import this_machine
 from scripts.studies.timing.turns import Call, in_turns
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain, persistent_chain
 

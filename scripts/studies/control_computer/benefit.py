@@ -18,9 +18,9 @@ from scripts.studies.study import Tell
 from synth.computer.economics.hump_day_change import HumpDayChange, change_of_trains, figures_of_trains
 from synth.computer.economics.hump_day_figures import NAMES
 from synth.frame.interval import Interval
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.train_figures import share
-from synth.yard.humping.trial import HumpTrial
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.train_figures import share
+from synth.hump.trains.trial import HumpTrial
 
 LEAST_S = {"today": 2.6, "asked": 0.3, "new": 0.3, "tables": 0.3}
 """Least interval of the programs: where the study `hump-day` has about 0.1 % catch-ups, on other trains than here."""

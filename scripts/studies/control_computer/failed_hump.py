@@ -8,9 +8,9 @@ from typing import Protocol
 
 from plant_models.errors import require, require_between
 from scripts.studies.control_computer.stuck_position import StuckPosition, StuckStage, released
-from synth.yard.humping.hump_position import HumpPosition
-from synth.yard.humping.normal_hump_position import LibraryBrake, NormalHumpPosition
-from synth.yard.humping.trial import HumpTrial
+from synth.hump.trains.hump_position import HumpPosition
+from synth.hump.trains.normal_hump_position import LibraryBrake, NormalHumpPosition
+from synth.hump.trains.trial import HumpTrial
 
 BY_HAND_STD_M_S = 0.5
 """Error of exit speeds that an operator keeps by hand: engineering judgement, no figure was found in the sources."""

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.train_cuts import TrainCuts
-from synth.yard.humping.train_figures import FEWEST_TRAINS, ratio, share
-from synth.yard.humping.train_memory import TrainMemory
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.train_cuts import TrainCuts
+from synth.hump.trains.train_figures import FEWEST_TRAINS, ratio, share
+from synth.hump.trains.train_memory import TrainMemory
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

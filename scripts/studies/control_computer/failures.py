@@ -25,12 +25,12 @@ from scripts.studies.control_computer.hump_runs import Humped
 from scripts.studies.humping.runs import Group
 from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
 from synth.computer.reliability.failure_losses import ASSUMED_RISKS
-from synth.configuration.humping.trial_file import parse_trial_file
-from synth.yard.humping.made_trial import brake_of, made_trial
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.resolved_trial import resolve_trial
-from synth.yard.humping.train_figures import ratio
-from synth.yard.humping.trial import HumpTrial
+from synth.hump.configuration.trial_file import parse_trial_file
+from synth.hump.trains.made_trial import brake_of, made_trial
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.resolved_trial import resolve_trial
+from synth.hump.trains.train_figures import ratio
+from synth.hump.trains.trial import HumpTrial
 
 Interval = tuple[float, float, float]
 

@@ -12,10 +12,10 @@ from plant_models.frozen_arrays import frozen_arrays
 from scripts.studies.control_computer.failure_costs_of_hump import cuts_before_stop
 from scripts.studies.humping.runs import Group, Kept, measured_each
 from scripts.studies.study import Tell
-from synth.yard.humping.outcomes import TrainOutcomes, joined, outcomes
-from synth.yard.humping.train_cuts import TrainCuts
-from synth.yard.humping.train_memory import TrainMemory
-from synth.yard.humping.trial import HumpTrial
+from synth.hump.trains.outcomes import TrainOutcomes, joined, outcomes
+from synth.hump.trains.train_cuts import TrainCuts
+from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.trains.trial import HumpTrial
 
 BATCH = 50
 """Trains of an order; few, so that all workers end at nearly the same time."""

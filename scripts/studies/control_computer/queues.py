@@ -16,8 +16,8 @@ from synth.computer.sizing.service_law import Constant, Erlang, Exponential, Hyp
 from synth.computer.sizing.task import Stream, total_load
 from synth.computer.sizing.waiting_tail import sojourn_tail, start_tail
 from synth.frame.interval import Interval
-from synth.sweep.local_workers import LocalWorkers
-from synth.sweep.work import Answer, answered
+from synth.frame.workers.engine import Answer, answered
+from synth.frame.workers.local_workers import LocalWorkers
 
 LAWS: dict[str, ServiceLaw] = {
     "constant": Constant(1.0),

@@ -16,7 +16,7 @@ from synth.computer.economics.prices import Prices
 from synth.computer.economics.savings import operating_savings, released_capital, total
 from synth.computer.economics.traffic import Handling, Traffic
 from synth.frame.interval import Interval
-from synth.yard.humping.outcomes import TrainOutcomes
+from synth.hump.trains.outcomes import TrainOutcomes
 
 Floats = NDArray[np.float64]
 

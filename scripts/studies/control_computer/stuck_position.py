@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant_models.errors import require
-from synth.yard.humping.hump_position import Arrivals, Floats, Passed, evenly_braked_s
-from synth.yard.humping.normal_hump_position import LibraryBrake
+from synth.hump.trains.hump_position import Arrivals, Floats, Passed, evenly_braked_s
+from synth.hump.trains.normal_hump_position import LibraryBrake
 
 
 @dataclass(frozen=True)

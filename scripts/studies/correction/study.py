@@ -27,8 +27,8 @@ from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
 from scripts.studies.tuned_table import tuned_table
-from synth.configuration.config_file import load_config
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import random_passes
 from synth.simulation.replicates import Interval, student_quantile

@@ -20,13 +20,13 @@ from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
 from scripts.studies.tuned_table import rounded
-from synth.book.rounded_table import predict
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange, OverspeedLimit
 from synth.problem.resolution import finer_for_check
 from synth.problem.terminal_cost import AsymmetricSquare
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.rounded_table import predict
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
 from synth.simulation.exit_statistics import exit_statistics, overspeed_of, rms_ratio
 from synth.simulation.passes import ExitSample

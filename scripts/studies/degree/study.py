@@ -22,10 +22,10 @@ from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Findings, Method, Tell
 from scripts.studies.tuned_table import CREATED
-from synth.book.class_setup import Origin
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.resolution import finer_for_check
+from synth.retarder.class_setup import Origin
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import Controller, LineController, TableController, simulate_many
 from synth.simulation.replicates import Interval, rms_of, rms_quotient, share_of
 from synth.solver.backward_induction import Solution, solve_all

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from plant_models import Plant
-from synth.book.class_setup import Origin
-from synth.book.rounded_table import predict
+from synth.retarder.class_setup import Origin
+from synth.retarder.rounded_table import predict
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
 from synth.solver.policy_density import density_and_occupancy

@@ -8,14 +8,14 @@ import numpy as np
 
 from plant_models import Plant
 from scripts.studies.tuned_table import rounded
-from synth.book.class_setup import TRIM_PASSES, trim_passes
-from synth.book.estimation.estimate_chain import estimate_chain
-from synth.book.estimation.estimated_lines import estimated_lines
-from synth.book.estimation.estimated_table import controller_of
-from synth.book.estimation.estimator_design import speed_error_m_s
-from synth.book.estimation.tuning_days import tuning_days, tuning_row
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.problem import Problem
+from synth.retarder.class_setup import TRIM_PASSES, trim_passes
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.estimation.estimate_chain import estimate_chain
+from synth.retarder.estimation.estimated_lines import estimated_lines
+from synth.retarder.estimation.estimated_table import controller_of
+from synth.retarder.estimation.estimator_design import speed_error_m_s
+from synth.retarder.estimation.tuning_days import tuning_days, tuning_row
 from synth.simulation.closed_loop import Controller, TableController, close_loop, simulate
 from synth.simulation.exit_statistics import OVERSPEED_M_S, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample

@@ -20,10 +20,10 @@ from scripts.studies.estimator.wrong import braking_otherwise
 from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
-from synth.configuration.config_file import load_config, parse_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
+from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import simulate
 from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.simulation.passes import ExitSample

@@ -19,10 +19,10 @@ from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Findings, Method, Tell
 from scripts.studies.told_friction import THOROUGH, simulate_told, thorough, told_friction
-from synth.configuration.config_file import load_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes

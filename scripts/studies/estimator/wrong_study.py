@@ -16,9 +16,9 @@ from scripts.studies.markdown_table import MarkdownTable, span, table
 from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Findings, Method, Tell
-from synth.configuration.config_file import load_config
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
+from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import simulate
 from synth.simulation.stratified_passes import stratified_passes
 

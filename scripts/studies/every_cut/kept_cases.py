@@ -18,8 +18,8 @@ from pydantic import TypeAdapter
 
 from scripts.studies.every_cut.cut_figures import Outcome
 from scripts.studies.result import plain
-from synth.sweep.ledger import DONE, LedgerWriter, read_ledger
-from synth.sweep.software import software_sha256
+from synth.frame.workers.software import software_sha256
+from synth.retarder.sweep.ledger import DONE, LedgerWriter, read_ledger
 
 FILE = "every-cut.jsonl"
 

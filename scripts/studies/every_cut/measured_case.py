@@ -10,13 +10,13 @@ from scripts.studies.every_cut.cut_figures import Beside, BesideWithout, CutFigu
 from scripts.studies.every_cut.random_case import RandomCase
 from scripts.studies.plant_changes import friction
 from scripts.studies.tuned_table import CREATED
-from synth.book.attempted_case import attempted
-from synth.book.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
-from synth.book.comparison.baselines import TunedBaseline, tune_baselines
-from synth.book.failed_case import FailedCase
-from synth.book.tuned_table import ValidatedTable, read_back, solutions, tuned_table, validated_table
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.retarder.attempted_case import attempted
+from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
+from synth.retarder.comparison.baselines import TunedBaseline, tune_baselines
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.failed_case import FailedCase
+from synth.retarder.tuned_table import ValidatedTable, read_back, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio

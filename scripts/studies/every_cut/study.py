@@ -19,8 +19,8 @@ from scripts.studies.every_cut.random_case import RandomCase, random_case
 from scripts.studies.options import option
 from scripts.studies.side_by_side import THREADS, side_by_side
 from scripts.studies.study import Method, Tell
-from synth.configuration.config_file import parse_config
 from synth.kernels.cache import use_kernel_cache
+from synth.retarder.configuration.config_file import parse_config
 
 SEEDS_APART = 10
 """Between the seeds of the passes of two cases: a tune takes the next ones for the passes that it tunes on."""

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from synth.configuration.humping.trial_file import parse_trial_file
-from synth.yard.humping.forecast import Given
-from synth.yard.humping.free_tracks import FreeTracks
-from synth.yard.humping.hump_speed import HumpSpeedLimits, SpeedMethod
-from synth.yard.humping.known_cuts import KnownCuts
-from synth.yard.humping.made_trial import made_trial
-from synth.yard.humping.normal_hump_position import LibraryBrake, NormalHumpPosition
-from synth.yard.humping.resolved_trial import resolve_trial
-from synth.yard.humping.route_rolling import rolling_on
-from synth.yard.humping.train_cuts import TrainCuts
-from synth.yard.humping.trial import Control, Floats, HumpTrial, Sensing, TrainSource
+from synth.hump.configuration.trial_file import parse_trial_file
+from synth.hump.trains.forecast import Given
+from synth.hump.trains.free_tracks import FreeTracks
+from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod
+from synth.hump.trains.known_cuts import KnownCuts
+from synth.hump.trains.made_trial import made_trial
+from synth.hump.trains.normal_hump_position import LibraryBrake, NormalHumpPosition
+from synth.hump.trains.resolved_trial import resolve_trial
+from synth.hump.trains.route_rolling import rolling_on
+from synth.hump.trains.train_cuts import TrainCuts
+from synth.hump.trains.trial import Control, Floats, HumpTrial, Sensing, TrainSource
 
 NAME = "hump-day"
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.tuned_table import CREATED
 from scripts.studies.yard_chain.park_book import energy_class, tables_of
-from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
-from synth.configuration.config_file import parse_config
-from synth.configuration.resolved_config import ResolvedConfig
-from synth.yard.table_class import TableClass, table_classes
+from synth.retarder.class_setup import ClassSetup, class_setup, origin_of, validation_passes
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.table_class import TableClass, table_classes
 
 MASSES_T = {"L": 23.0, "LS": 36.0, "S": 52.0, "ST": 66.0, "T": 86.0}
 """Of a car of the class of each category."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.yard.humping.outcomes import CLASSES_M_S
-from synth.yard.humping.trial import HumpTrial
+from synth.hump.trains.outcomes import CLASSES_M_S
+from synth.hump.trains.trial import HumpTrial
 
 FAST_M_S = CLASSES_M_S[-1]
 NOT_HELD_STDS = 3.0

@@ -12,9 +12,9 @@ from scripts.studies.humping.disturbances import OILED, WEAKER
 from scripts.studies.humping.frontier import OPEN_LOOP, WITH_FEEDBACK, WITH_SLOWING, Families, Family, sigma
 from scripts.studies.humping.table_positions import FRICTION, SUPPLY, TablePositions, table_positions
 from scripts.studies.study import Tell
-from synth.yard.humping.free_tracks import DrawnFree
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.trial import HumpTrial
+from synth.hump.trains.free_tracks import DrawnFree
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.trial import HumpTrial
 
 ENERGY_RULE, TABLES, TABLES_ESTIMATED = "energy rule", "our tables", "our tables, estimator"
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from scripts.studies.humping.base_trial import READING, Day, with_free
 from scripts.studies.humping.day_figures import Pair, PairFigures
 from scripts.studies.study import Tell
-from synth.yard.humping.free_tracks import DrawnFree
+from synth.hump.trains.free_tracks import DrawnFree
 
 SHARES = (1.0, 0.5, 0.25)
 """Of the error of the positions: as it was, halved, quartered."""

@@ -8,8 +8,8 @@ import numpy as np
 
 from plant_models.frozen_arrays import frozen_arrays
 from scripts.studies.aiming.trial import Value
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.trial import Floats
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.trial import Floats
 
 REPLICATES = 2000
 

@@ -10,10 +10,10 @@ from scripts.studies.aiming.trial import Value
 from scripts.studies.humping.base_trial import FEEDBACK, OPEN
 from scripts.studies.humping.runs import Group
 from scripts.studies.markdown_table import ABSENT, plus_minus, span
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.train_figures import TrainFigure, train_figures
+from synth.hump.trains.trial import Floats, HumpTrial, Sensing
 from synth.simulation.replicates import student_quantile
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.train_figures import TrainFigure, train_figures
-from synth.yard.humping.trial import Floats, HumpTrial, Sensing
 
 PERCENT = 100.0
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from scripts.studies.humping.base_trial import Day, UnknownWind, braked_by
 from scripts.studies.humping.day_figures import Pair
 from scripts.studies.study import Tell
-from synth.yard.humping.trial import HumpTrial
+from synth.hump.trains.trial import HumpTrial
 
 WEAKER, OILED = 0.6, 0.7
 """Shares of the full brake: low supply, and friction that is 30 % less."""

@@ -13,9 +13,9 @@ from scripts.studies.aiming.trial import Value
 from scripts.studies.humping.base_trial import FEEDBACK
 from scripts.studies.humping.day_figures import PERCENT
 from scripts.studies.markdown_table import MarkdownTable, plus_minus, table
-from synth.yard.humping.hump_position import Arrivals, Floats, HumpPosition, Ints, Passed, evenly_braked_s
-from synth.yard.humping.train_figures import ratio
-from synth.yard.humping.trial import HumpTrial
+from synth.hump.trains.hump_position import Arrivals, Floats, HumpPosition, Ints, Passed, evenly_braked_s
+from synth.hump.trains.train_figures import ratio
+from synth.hump.trains.trial import HumpTrial
 
 Bools = NDArray[np.bool_]
 

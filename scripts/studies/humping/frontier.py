@@ -12,8 +12,8 @@ from scripts.studies.humping.base_trial import FEEDBACK, MEASURED, OPEN, SLOWING
 from scripts.studies.humping.crossings import Sums, decided, drawn_weights, sums_of
 from scripts.studies.humping.day_figures import DayFigures, day_figures, fewer_catch_ups
 from scripts.studies.humping.runs import Group
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.trial import HumpTrial
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.trial import HumpTrial
 
 CONTROLS = {
     "open loop": OPEN,

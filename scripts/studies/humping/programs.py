@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from scripts.studies.humping.base_trial import Locomotive, with_known_resistance, with_planner
 from scripts.studies.humping.day_figures import Pair
-from synth.yard.humping.hump_speed import PairByPair
-from synth.yard.humping.trial import ConstantSpeed, HumpTrial
+from synth.hump.trains.hump_speed import PairByPair
+from synth.hump.trains.trial import ConstantSpeed, HumpTrial
 
 CONSTANT_M_S = (1.7, 2.2, 2.7)
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 from scripts.studies.study import Tell
-from synth.sweep.local_workers import LocalWorkers
-from synth.sweep.work import Answer, answered
-from synth.yard.humping.known_cuts import KnownCuts
-from synth.yard.humping.outcomes import TrainOutcomes, joined, outcomes
-from synth.yard.humping.train_cuts import TrainCuts
-from synth.yard.humping.train_memory import TrainMemory
-from synth.yard.humping.train_plan import Planner, TrainPlan
-from synth.yard.humping.trial import BATCH, HumpTrial
+from synth.frame.workers.engine import Answer, answered
+from synth.frame.workers.local_workers import LocalWorkers
+from synth.hump.trains.known_cuts import KnownCuts
+from synth.hump.trains.outcomes import TrainOutcomes, joined, outcomes
+from synth.hump.trains.train_cuts import TrainCuts
+from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.trains.train_plan import Planner, TrainPlan
+from synth.hump.trains.trial import BATCH, HumpTrial
 
 T = TypeVar("T")
 

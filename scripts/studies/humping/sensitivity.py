@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from plant_models.hump import HumpGraph, Signal, Switch
 from scripts.studies.humping.day_figures import Pair
-from synth.yard.humping.hump_routes import hump_routes
-from synth.yard.humping.route_ways import route_ways
-from synth.yard.humping.train_source import DrawnSource
-from synth.yard.humping.trial import HumpTrial
+from synth.hump.trains.hump_routes import hump_routes
+from synth.hump.trains.route_ways import route_ways
+from synth.hump.trains.train_source import DrawnSource
+from synth.hump.trains.trial import HumpTrial
 
 THROWS_S = (0.8, 1.0)
 SECTIONS_M = (9.0, 15.0)

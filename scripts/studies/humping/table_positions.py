@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from plant_models import Plant, PressingForce, WeightForce
 from plant_models.library.weight_category import WeightCategories
 from scripts.studies.humping.books import BOOKS, Regulator
-from synth.configuration.plant_values import SLOPES, STAGE_PRESSURES, with_values
-from synth.yard.humping.class_choice import ClassChoice
-from synth.yard.humping.table_hump_position import TableHumpPosition
-from synth.yard.humping.train_source import DrawnSource
-from synth.yard.humping.trial import HumpTrial
-from synth.yard.table_class import TableClass
+from synth.hump.trains.class_choice import ClassChoice
+from synth.hump.trains.table_hump_position import TableHumpPosition
+from synth.hump.trains.train_source import DrawnSource
+from synth.hump.trains.trial import HumpTrial
+from synth.retarder.configuration.plant_values import SLOPES, STAGE_PRESSURES, with_values
+from synth.retarder.table_class import TableClass
 
 
 @dataclass(frozen=True)

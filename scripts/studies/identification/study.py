@@ -17,10 +17,10 @@ from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Findings, Method, Tell
 from synth.frame.input_error import InputError
+from synth.logs.estimate import Estimate, estimate
+from synth.logs.identifiability import Finding, findings_of
+from synth.logs.unknowns import unknowns_of
 from synth.simulation.exit_statistics import clopper_pearson
-from synth.yard.measured_passes.estimate import Estimate, estimate
-from synth.yard.measured_passes.identifiability import Finding, findings_of
-from synth.yard.measured_passes.unknowns import unknowns_of
 
 SEED = 20_261_122
 NAMES = tuple(truth.name for truth in TRUTHS)

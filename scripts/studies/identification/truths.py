@@ -9,12 +9,12 @@ from functools import cached_property
 from plant_models.pressure_gauge import PressureGauge
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.tuned_table import tuned_table
-from synth.configuration.config_file import parse_config
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.logs import unknowns as asked
+from synth.logs.fitting_passes import FittingPasses, fitting_passes
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.controllers import TableController
 from synth.simulation.logged_passes import LoggedClass, mixed_log
-from synth.yard.measured_passes import unknowns as asked
-from synth.yard.measured_passes.fitting_passes import FittingPasses, fitting_passes
 
 CLASSES = (("light", 22.0, 1, 3.0), ("middle", 52.0, 1, 3.0), ("heavy", 85.0, 1, 4.0), ("three", 156.0, 3, 4.0))
 """Label, mass in t, cars and exit speed of the cuts that come, as many of each."""

@@ -8,10 +8,10 @@ from pathlib import Path
 from plant_models import Plant
 from scripts.studies.cases import of_masses
 from scripts.studies.study import Tell
-from synth.book.tune import tune
-from synth.book.tuned_table import read_back
-from synth.book.watcher import Teller
-from synth.configuration.config_file import load_config
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.tune import tune
+from synth.retarder.tuned_table import read_back
+from synth.retarder.watcher import Teller
 from tuning_tables.table_book import TableBook
 
 

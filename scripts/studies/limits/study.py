@@ -19,15 +19,15 @@ from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Findings, Method, Tell
 from scripts.studies.told_friction import THOROUGH, simulate_told, thorough, told_friction
-from synth.book.checked_design import finer
-from synth.book.estimation.estimate_chain import estimate_chain
-from synth.book.estimation.estimated_lines import estimated_lines
-from synth.book.estimation.estimated_table import controller_of
-from synth.book.estimation.tuning_days import tuning_days
-from synth.configuration.config_file import load_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.retarder.checked_design import finer
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.estimation.estimate_chain import estimate_chain
+from synth.retarder.estimation.estimated_lines import estimated_lines
+from synth.retarder.estimation.estimated_table import controller_of
+from synth.retarder.estimation.tuning_days import tuning_days
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes

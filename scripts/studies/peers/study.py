@@ -33,9 +33,9 @@ from scripts.studies.peers.regulators import PeerRegulator
 from scripts.studies.peers.tables import TablePair, tables_of
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
-from synth.book.estimation.estimator_design import estimator_of
-from synth.configuration.config_file import load_config, parse_config
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.controllers import fixed

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 from scripts.studies.cases import Case
 from scripts.studies.tuned_table import CREATED, rounded
-from synth.book.class_setup import Origin, class_setup
-from synth.book.tuned_table import TunedTable, read_back, solutions, tuned_table
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.retarder.class_setup import Origin, class_setup
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.tuned_table import TunedTable, read_back, solutions, tuned_table
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.polynomial_lines import PolynomialLines

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from synth.book.sensors.layout import equal_layout, rule_layout
-from synth.book.sensors.layout_plan import LayoutProblem
+from synth.retarder.sensors.layout import equal_layout, rule_layout
+from synth.retarder.sensors.layout_plan import LayoutProblem
 
 Places = tuple[float, ...]
 """Of the deciding sensors, m from the entrance, rising."""

@@ -16,8 +16,8 @@ from scripts.studies.point_sensors.rows import ManyRow
 from scripts.studies.point_sensors.sensor_table import sensor_table
 from scripts.studies.point_sensors.sites import Site, single_stage, site_of
 from scripts.studies.tuned_table import rounded
-from synth.book.sensors.layout import with_layout
 from synth.problem.resolution import Resolution
+from synth.retarder.sensors.layout import with_layout
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio

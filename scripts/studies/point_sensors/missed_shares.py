@@ -9,9 +9,9 @@ from scripts.studies.point_sensors.rows import MissedRow
 from scripts.studies.point_sensors.sensor_table import AXLES, tabulated
 from scripts.studies.point_sensors.sites import Site
 from scripts.studies.point_sensors.worth import tuned_at
-from synth.book.sensors.candidate_places import LayoutCase
-from synth.book.sensors.layout_plan import LayoutProblem, best_places
 from synth.problem.resolution import Resolution
+from synth.retarder.sensors.candidate_places import LayoutCase
+from synth.retarder.sensors.layout_plan import LayoutProblem, best_places
 from synth.simulation.exit_statistics import ExitStatistics, exit_statistics
 from synth.simulation.passage_controller import of_table
 from synth.simulation.random_passes import RandomPasses

@@ -10,9 +10,9 @@ import numpy as np
 from plant_models import Cut, Plant, PointSensors, every_axle, first_axle
 from scripts.studies.point_sensors.sites import Site
 from scripts.studies.tuned_table import CREATED
-from synth.book.sensors.passage_table import passage_table
-from synth.book.sensors.tuned_passages import TunedPassages, passage_chains, tuned_passages
 from synth.problem.resolution import Resolution
+from synth.retarder.sensors.passage_table import passage_table
+from synth.retarder.sensors.tuned_passages import TunedPassages, passage_chains, tuned_passages
 from synth.simulation.passage_controller import of_table
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.passage_sample import DECIDED, UNFINISHED, PassageSample

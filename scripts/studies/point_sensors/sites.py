@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 from plant_models import Plant
 from plant_models.library.near_miss import near_miss
-from synth.configuration.config_file import parse_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.input_error import InputError
 from synth.problem.aim import Aim
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 
 TEXTS = {
     "bunch-22": ("", '[[cut]]\ncar = "gondola-4"\nmass_t = 22\ntargets_m_s = [2.0]\n'),

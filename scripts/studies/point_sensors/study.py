@@ -22,8 +22,8 @@ from scripts.studies.point_sensors.sites import TEXTS, Site, sites
 from scripts.studies.point_sensors.worth import Compared, MadeLayout, radar_row, sensor_rows
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
-from synth.book.sensors.layout import equal_layout, first_sensor_m, with_layout
 from synth.problem.resolution import Resolution
+from synth.retarder.sensors.layout import equal_layout, first_sensor_m, with_layout
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.book.sensors.tuned_passages import PassageChains, rounded
 from synth.problem.aim import Aim
+from synth.retarder.sensors.tuned_passages import PassageChains, rounded
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, with_known_friction
 from synth.solver.chain.scenarios import Scenarios, resistance_scenarios

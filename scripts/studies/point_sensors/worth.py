@@ -12,11 +12,11 @@ from scripts.studies.point_sensors.sensor_table import AXLES, tabulated, unfinis
 from scripts.studies.point_sensors.sites import Site
 from scripts.studies.point_sensors.told import told_bound
 from scripts.studies.tuned_table import tuned_table
-from synth.book.rounded_table import predict
-from synth.book.sensors.candidate_places import LayoutCase
-from synth.book.sensors.layout_plan import LayoutProblem, best_places
-from synth.book.sensors.tuned_passages import TunedPassages, passage_chains
 from synth.problem.resolution import Resolution, finer_for_check
+from synth.retarder.rounded_table import predict
+from synth.retarder.sensors.candidate_places import LayoutCase
+from synth.retarder.sensors.layout_plan import LayoutProblem, best_places
+from synth.retarder.sensors.tuned_passages import TunedPassages, passage_chains
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio

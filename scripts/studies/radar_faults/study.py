@@ -26,8 +26,8 @@ from scripts.studies.radar_faults.watched_passes import WatchedPasses, watched_p
 from scripts.studies.sensor_fault import FAULT_STREAM
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
-from synth.configuration.config_file import load_config
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import TableController, close_loop, simulate
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from plant_models import Plant
 from scripts.studies.cases import OTHER_PLANTS, Case, named_cases
 from scripts.studies.tuned_table import CREATED
-from synth.book.class_setup import class_setup, origin_of, validation_passes
-from synth.book.tuned_table import solutions, tuned_table
-from synth.configuration.config_file import parse_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.retarder.class_setup import class_setup, origin_of, validation_passes
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.tuned_table import solutions, tuned_table
 from synth.simulation.closed_loop import TableController
 
 

@@ -16,8 +16,13 @@ from scripts.studies.markdown_table import MarkdownTable, span, table
 from scripts.studies.options import option
 from scripts.studies.study import Findings, Method, Tell
 from scripts.studies.tuned_table import CREATED
-from synth.book.watcher import Teller
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.logs.config_source import ConfigSource, source_of_text
+from synth.logs.fitting_passes import fitting_passes
+from synth.logs.identified_config import with_numbers
+from synth.logs.retune.retune import RetuneOrder, retune
+from synth.logs.retune.tuned_books import Case, class_setups, tuned_tables
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.watcher import Teller
 from synth.simulation.closed_loop import simulate
 from synth.simulation.controllers import TableController
 from synth.simulation.logged_passes import LoggedClass, mixed_log
@@ -25,11 +30,6 @@ from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import Interval, rms_of
 from synth.simulation.stratified_passes import stratified_passes
-from synth.yard.measured_passes.config_source import ConfigSource, source_of_text
-from synth.yard.measured_passes.fitting_passes import fitting_passes
-from synth.yard.measured_passes.identified_config import with_numbers
-from synth.yard.measured_passes.retune.retune import RetuneOrder, retune
-from synth.yard.measured_passes.retune.tuned_books import Case, class_setups, tuned_tables
 from tuning_tables import ControllerTable
 
 SLOPE, EXHAUST = "retarder.force.slope_kn_per_kpa", "retarder.pneumatics.exhaust_time_constant_s"

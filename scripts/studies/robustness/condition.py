@@ -9,8 +9,8 @@ from typing import Final
 from plant_models import Plant
 from scripts.studies.plant_changes import AIR, aged_valves, friction, known, times
 from scripts.studies.robustness.perturbation import Perturbation, reach_note
-from synth.configuration.plant_parameter import Parameter
-from synth.configuration.plant_values import with_values
+from synth.retarder.configuration.plant_parameter import Parameter
+from synth.retarder.configuration.plant_values import with_values
 
 SLIVER_M: Final = 1e-6
 """Length of what is left of a zone out of service: it keeps entrance and exit in their places and does no work."""

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from plant_models import Plant
-from synth.configuration.plant_parameter import Parameter
-from synth.configuration.plant_values import stages_out_of_reach, with_values
+from synth.retarder.configuration.plant_parameter import Parameter
+from synth.retarder.configuration.plant_values import stages_out_of_reach, with_values
 
 
 def same_plant(plant: Plant) -> Plant:

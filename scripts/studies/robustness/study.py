@@ -21,8 +21,8 @@ from scripts.studies.robustness.trial import Trial, trial_of
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
 from scripts.studies.tuned_table import tuned_table
-from synth.configuration.plant_parameter import Parameter, parameters
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.plant_parameter import Parameter, parameters
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.stratified_passes import stratified_passes
 
 FRESH = 15485863

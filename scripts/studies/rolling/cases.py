@@ -13,7 +13,7 @@ from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.roll_track import Bend, RollTrack
 from plant_models.rolling.weather import Weather
-from synth.yard.free_roll import Floats, RollingCuts, rolling_cuts
+from synth.simulation.free_roll import Floats, RollingCuts, rolling_cuts
 
 SHARES_AND_DRAG: dict[str, tuple[float, float]] = {
     "gondola-4": (0.45, 11.6),

@@ -16,7 +16,7 @@ from scripts.studies.rolling.findings import SLOW_M_S, RollingFindings, StepErro
 from scripts.studies.study import Method, Tell
 from scripts.studies.timing.machine import this_machine
 from scripts.studies.timing.turns import Call, in_turns
-from synth.yard.free_roll import STEP_M, Floats, RollingCuts, arrays_of, way_of
+from synth.simulation.free_roll import STEP_M, Floats, RollingCuts, arrays_of, way_of
 
 REFERENCE_STEP_M, REFERENCE_NODE_M = 0.1, 0.02
 AS_EXACT_M = 2.0

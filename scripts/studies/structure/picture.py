@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from synth.book.pictures.block_diagram import block_diagram
-from synth.book.pictures.block_layout import POINT_SENSOR_ROUTES, RADAR_ROUTES
+from synth.retarder.pictures.block_diagram import block_diagram
+from synth.retarder.pictures.block_layout import POINT_SENSOR_ROUTES, RADAR_ROUTES
 
 if TYPE_CHECKING:
     from scripts.studies.structure.study import Structure

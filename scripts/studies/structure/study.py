@@ -20,8 +20,8 @@ from scripts.studies.structure.wired_passages import wired_passage_pass
 from scripts.studies.structure.wired_radar import wired_radar_pass
 from scripts.studies.study import Findings, Method, Tell
 from scripts.studies.tuned_table import tuned_table
-from synth.book.sensors.passage_table import plausible_motion
-from synth.configuration.config_file import load_config
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.sensors.passage_table import plausible_motion
 from synth.simulation.controllers import TableController
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant, one_pass
 from synth.simulation.nominal_response import NominalResponse, nominal_response

@@ -15,11 +15,11 @@ from scripts.studies.markdown_table import MarkdownTable, table
 from scripts.studies.options import option
 from scripts.studies.study import Findings, Method, Tell
 from scripts.studies.tuned_table import CREATED
-from synth.book.class_setup import ClassSetup, Origin, class_setup
-from synth.book.tuned_table import solutions, tuned_table
-from synth.configuration.config_file import load_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.retarder.class_setup import ClassSetup, Origin, class_setup
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.tuned_table import solutions, tuned_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.replicates import Interval

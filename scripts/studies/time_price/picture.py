@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from synth.book.pictures.pareto_fronts import pareto_fronts
+from synth.retarder.pictures.pareto_fronts import pareto_fronts
 
 if TYPE_CHECKING:
     from scripts.studies.time_price.study import TimePrice

@@ -16,12 +16,12 @@ from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Findings, Method, Tell
 from scripts.studies.time_price.humped import Humped, humped
 from scripts.studies.tuned_table import CREATED
-from synth.book.class_setup import ClassSetup, Origin, class_setup
-from synth.book.pareto.case_front import pareto_front
-from synth.book.pareto.pareto_front import ParetoFront, told
-from synth.configuration.config_file import parse_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.retarder.class_setup import ClassSetup, Origin, class_setup
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.pareto.case_front import pareto_front
+from synth.retarder.pareto.pareto_front import ParetoFront, told
 from synth.simulation.stratified_passes import stratified_passes
 from tuning_tables import Generator
 

@@ -9,11 +9,11 @@ import numpy as np
 
 from plant_models import Plant
 from plant_models.pressure_gauge import PressureGauge
+from synth.logs.drift.causes import Cause
+from synth.logs.drift.evidence import Evidence, evidence_of
+from synth.logs.fitting_passes import fitting_passes
 from synth.simulation.controllers import TableController
 from synth.simulation.logged_passes import LoggedClass, mixed_log
-from synth.yard.measured_passes.drift.causes import Cause
-from synth.yard.measured_passes.drift.evidence import Evidence, evidence_of
-from synth.yard.measured_passes.fitting_passes import fitting_passes
 from tuning_tables import ControllerTable
 from tuning_tables.active_table import active
 from tuning_tables.pass_log.pass_log import PassLog

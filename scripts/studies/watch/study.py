@@ -16,13 +16,13 @@ from scripts.studies.study import Method, Tell
 from scripts.studies.tuned_table import tuned_table
 from scripts.studies.watch.findings import FalseAlarms, Found, Watched
 from scripts.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, Change, Judge, joined, simulated
-from synth.configuration.config_file import load_config
-from synth.yard.measured_passes.drift.baseline import configured
-from synth.yard.measured_passes.drift.causes import causes_of
-from synth.yard.measured_passes.drift.charts import charts_of, kinds_of, limit_of, steps_of
-from synth.yard.measured_passes.drift.diagnosis import diagnosed
-from synth.yard.measured_passes.drift.evidence import Evidence
-from synth.yard.measured_passes.fitting_passes import fitting_passes
+from synth.logs.drift.baseline import configured
+from synth.logs.drift.causes import causes_of
+from synth.logs.drift.charts import charts_of, kinds_of, limit_of, steps_of
+from synth.logs.drift.diagnosis import diagnosed
+from synth.logs.drift.evidence import Evidence
+from synth.logs.fitting_passes import fitting_passes
+from synth.retarder.configuration.config_file import load_config
 
 BESIDE = 200
 """Sequences that false alarms are counted on, side by side."""

@@ -16,10 +16,10 @@ from scripts.studies.aiming.regression import ByRegression
 from scripts.studies.aiming.trial import Cuts, Draws, judged
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.yard_chain.park_book import ParkBook, park_book
-from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge
-from synth.yard.aim.position_models import NormalPosition, PositionModel
-from synth.yard.aim.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
-from synth.yard.aim.scene import AimScene, SceneCuts
+from synth.aim.knowledge import ByCategory, ByReading, Knowledge
+from synth.aim.position_models import NormalPosition, PositionModel
+from synth.aim.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
+from synth.aim.scene import AimScene, SceneCuts
 
 Floats = NDArray[np.float64]
 

@@ -13,10 +13,10 @@ from scripts.studies.aiming.recorded_cuts import NearestRecord
 from scripts.studies.aiming.trial import Cuts, Draws, Outcome, judged, outcomes, tried
 from scripts.studies.yard_chain.chain import Kind
 from scripts.studies.yard_chain.faults import HandBraked, WithMissing
-from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge
-from synth.yard.aim.position_models import NormalPosition, PositionModel
-from synth.yard.aim.readings import ResistanceByRadar, ResistanceByTwoSpeeds
-from synth.yard.aim.scene import AimScene
+from synth.aim.knowledge import ByCategory, ByReading, Knowledge
+from synth.aim.position_models import NormalPosition, PositionModel
+from synth.aim.readings import ResistanceByRadar, ResistanceByTwoSpeeds
+from synth.aim.scene import AimScene
 
 EXIT_STD_M_S = 0.03
 """Of the exit speed where lengths and errors of sensors are compared: what our tables leave, nearly."""

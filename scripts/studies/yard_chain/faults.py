@@ -10,9 +10,9 @@ from scipy.special import ndtri
 
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.rolling.random_numbers import Purpose
-from synth.yard.aim.knowledge import ByCategory, Commands, Knowledge, Requirement
-from synth.yard.aim.position_models import ExitSpeeds, PositionModel
-from synth.yard.aim.scene import SceneCuts
+from synth.aim.knowledge import ByCategory, Commands, Knowledge, Requirement
+from synth.aim.position_models import ExitSpeeds, PositionModel
+from synth.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

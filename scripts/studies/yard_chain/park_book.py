@@ -11,15 +11,15 @@ from plant_models.rolling.car_mix import mass_limits_t
 from scripts.studies.aiming.trial import Cuts
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.tuned_table import CREATED
-from synth.book.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
-from synth.book.comparison.baselines import FAMILIES, tune
-from synth.book.tuned_table import solutions, tuned_table
-from synth.configuration.config_file import parse_config
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.aim.table_position import TablePosition, entry_speeds_m_s, table_position
 from synth.problem.aim import Aim
+from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
+from synth.retarder.comparison.baselines import FAMILIES, tune
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.table_class import TableClass
+from synth.retarder.tuned_table import solutions, tuned_table
 from synth.simulation.random_passes import random_passes
-from synth.yard.aim.table_position import TablePosition, entry_speeds_m_s, table_position
-from synth.yard.table_class import TableClass
 from tuning_tables import ControllerTable, from_json, to_json
 
 POSITION = "rnz-2m-park"

@@ -31,8 +31,8 @@ from scripts.studies.yard_chain.chain import (
 from scripts.studies.yard_chain.details import approach_row, fault_rows, record_rows, stretch_rows
 from scripts.studies.yard_chain.findings import Chain, YardChain
 from scripts.studies.yard_chain.practices import HEAVY, LIGHT, Samples, practices, saved
-from synth.yard.aim.knowledge import Knowledge
-from synth.yard.aim.position_models import PositionModel
+from synth.aim.knowledge import Knowledge
+from synth.aim.position_models import PositionModel
 
 
 @dataclass(frozen=True)

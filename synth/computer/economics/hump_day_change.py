@@ -14,8 +14,8 @@ from synth.computer.economics.hump_day_figures import NAMES, HumpDayFigures
 from synth.computer.economics.hump_rates import RATES, HumpChange, HumpRates
 from synth.computer.economics.uncertainty.ranges import Range, range_of
 from synth.frame.interval import Interval
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.train_figures import FEWEST_TRAINS, train_figures
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.train_figures import FEWEST_TRAINS, train_figures
 
 Floats = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from plant_models.rolling.random_cuts import DrawnCuts
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw
 from plant_models.rolling.roll_track import Bend, RollTrack
 from plant_models.rolling.weather import Weather
-from synth.yard.free_roll import RollingCuts, rolling_cuts
+from synth.simulation.free_roll import RollingCuts, rolling_cuts
 from tests.plant_models.rolling.populations import FLAT, GONDOLA, LONG_TANK, TANK, population
 
 Floats = NDArray[np.float64]

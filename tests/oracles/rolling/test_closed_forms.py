@@ -11,7 +11,7 @@ from plant_models import TrackProfile
 from plant_models.rolling.resistance_law import Tb10062Law
 from plant_models.rolling.roll_track import Bend, RollTrack
 from plant_models.rolling.weather import Weather
-from synth.yard.free_roll import RollingCuts
+from synth.simulation.free_roll import RollingCuts
 from tests.oracles.rolling.made_cuts import EVEN, MIX, START_M, Floats, cuts, random_cuts, random_track, rolling
 
 STATIONS_M = START_M + np.array([10.0, 55.5, 140.0, 333.0, 700.0])

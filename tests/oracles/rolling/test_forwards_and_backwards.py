@@ -13,7 +13,7 @@ from plant_models import TrackProfile
 from plant_models.rolling.roll_track import Bend, RollTrack
 from scripts.studies.rolling.by_numpy import NumpyRoll
 from scripts.studies.rolling.cases import CASES, COUPLING_M_S, PARK_EXIT_M, RollCase
-from synth.yard.free_roll import rolling_cuts
+from synth.simulation.free_roll import rolling_cuts
 from tests.oracles.rolling.made_cuts import START_M, cuts, random_cuts, random_track, rolling
 
 SEEDS = st.integers(0, 2**32 - 1)

@@ -27,10 +27,10 @@ from scripts.studies.control_computer.failure_costs_of_hump import (
     paired_difference,
 )
 from scripts.studies.control_computer.stuck_position import StuckPosition
-from synth.yard.humping.normal_hump_position import LibraryBrake, NormalHumpPosition
-from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.trial import HumpTrial
-from tests.synth.yard.humping.made_trials import Day
+from synth.hump.trains.normal_hump_position import LibraryBrake, NormalHumpPosition
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.trial import HumpTrial
+from tests.synth.hump.trains.made_trials import Day
 
 TRAINS = 25
 CATEGORIES, CAR = load_weight_categories(), load_car("gondola-4").car

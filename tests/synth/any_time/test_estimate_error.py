@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance
-from synth.book.estimation.estimator_design import decisions, error_of_estimate, estimator_of
 from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import design_resolution
 from synth.problem.criterion import Criterion
+from synth.retarder.estimation.estimator_design import decisions, error_of_estimate, estimator_of
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.any_time.estimate_error import EstimateError, error_along_path

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance, TrackProfile
-from synth.book.comparison.baselines import energy_rule, relay
-from synth.configuration.config_file import load_config
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, run_any_time_passes
 from synth.kernels.any_time.closed_loop_lanes import run_any_time_lanes
 from synth.kernels.any_time.played_periods import PlayedPeriods
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop.lane_places import LANES
+from synth.retarder.comparison.baselines import energy_rule, relay
+from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import (
     ClosedLoop,
     LineController,

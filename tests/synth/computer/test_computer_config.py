@@ -11,10 +11,10 @@ from synth.computer.computer_results import computer_results
 from synth.computer.economics.hump_rates import RATES
 from synth.computer.resolved_computer import ResolvedComputer, resolve_computer
 from synth.computer.settings import ComputerSettings
-from synth.configuration.plant_fault import in_file
 from synth.frame.input_error import InputError
 from synth.frame.settings.settings_file import parse_settings
 from synth.frame.settings.template import template
+from synth.retarder.configuration.plant_fault import in_file
 
 ROOT = Path(__file__).parents[3]
 

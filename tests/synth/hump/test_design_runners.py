@@ -10,9 +10,9 @@ from plant_models.hump import Route
 from plant_models.library import load_car
 from plant_models.library.hump_entry import load_hump
 from synth.frame.picture.figure_file import draw
-from synth.yard.design_runners import DESIGN_RUNNERS, DesignRunner, roll_runners
-from synth.yard.hump.pictures.hump_picture import hump_picture
-from synth.yard.hump.pictures.plan_layout import plan_layout
+from synth.hump.control.pictures.hump_picture import hump_picture
+from synth.hump.control.pictures.plan_layout import plan_layout
+from synth.hump.design_runners import DESIGN_RUNNERS, DesignRunner, roll_runners
 
 
 def in_time(route: Route, runner: DesignRunner, until_m: float) -> float:

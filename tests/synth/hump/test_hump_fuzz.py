@@ -11,8 +11,8 @@ from typing import Any
 from plant_models.library.library import BUILT_IN
 from plant_models.library.toml_lines import places_of
 from plant_models.library.type_file import HUMPS
-from synth.configuration.hump import parse_hump
 from synth.frame.input_error import InputError
+from synth.hump.hump_file import parse_hump
 from tests.plant_models.hump.test_hump_file import LINES, SMALL
 
 FILES = int(os.environ.get("RETARDER_SYNTH_FUZZED_HUMPS", "4000"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from synth.configuration.hump import parse_hump
+from synth.hump.hump_file import parse_hump
 
 PAGE = (Path(__file__).parents[3] / "docs" / "hump-file.md").read_text(encoding="utf-8")
 

@@ -12,10 +12,10 @@ import pytest
 
 from plant_models.hump import HumpGraph, Retarder
 from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
-from synth.configuration.railml.read import from_railml
-from synth.configuration.railml.tree import local
-from synth.configuration.railml.write import to_railml
 from synth.frame.input_error import InputError
+from synth.hump.railml.read import from_railml
+from synth.hump.railml.tree import local
+from synth.hump.railml.write import to_railml
 from tests.plant_models.hump.random_humps import random_hump, small_hump, small_vertices
 
 

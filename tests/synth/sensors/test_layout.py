@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, PointSensors
-from synth.book.sensors.anywhere import policy_anywhere
-from synth.book.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places
-from synth.book.sensors.layout import equal_layout, fastest_m_s, first_sensor_m, longest_change_s, rule_layout
-from synth.book.sensors.layout_plan import LayoutProblem, fewest_for, plan_layouts
-from synth.book.sensors.layout_results import layout_results
-from synth.book.sensors.layout_search import LayoutSearch
-from synth.book.sensors.plan_command import COMMAND
-from synth.book.sensors.plan_map import plan_map
-from synth.book.sensors.tuned_passages import passage_chains
 from synth.frame.exhibits import File, Table
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
+from synth.retarder.sensors.anywhere import policy_anywhere
+from synth.retarder.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places
+from synth.retarder.sensors.layout import equal_layout, fastest_m_s, first_sensor_m, longest_change_s, rule_layout
+from synth.retarder.sensors.layout_plan import LayoutProblem, fewest_for, plan_layouts
+from synth.retarder.sensors.layout_results import layout_results
+from synth.retarder.sensors.layout_search import LayoutSearch
+from synth.retarder.sensors.plan_command import COMMAND
+from synth.retarder.sensors.plan_map import plan_map
+from synth.retarder.sensors.tuned_passages import passage_chains
 from synth.solver.backward_induction import solve
 from synth.solver.chain.sensor_passages import with_point_sensors
 from synth.solver.evaluation import Evaluation
@@ -111,8 +111,8 @@ def test_a_plan_does_not_depend_on_threads(places: CandidatePlaces, threads: int
 
 def test_prediction_and_simulation_of_a_table_agree(plant_of: Callable[[float], Plant]) -> None:
     """The exported table in the closed loop, 20 000 passes: predicted rms within 5 %, bias within 0.01 m/s."""
-    from synth.book.sensors.passage_table import passage_table
-    from synth.book.sensors.tuned_passages import tuned_passages
+    from synth.retarder.sensors.passage_table import passage_table
+    from synth.retarder.sensors.tuned_passages import tuned_passages
     from synth.simulation.exit_statistics import exit_statistics
     from synth.simulation.passage_controller import of_table
     from synth.simulation.passage_loop import simulate_passages

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from plant_models import Passage, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles, deciding_passages
-from synth.configuration.config_file import parse_config
-from synth.configuration.point_sensors.template import default_sensors_toml
 from synth.problem.resolution import Resolution
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.point_sensors.template import default_sensors_toml
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.chain.sensor_passages import SensorPassages, nodes_of, with_point_sensors
 from synth.solver.passage_speeds import SMALLEST_GAP_M_S, PassageSpeeds, ordered

@@ -10,12 +10,12 @@ import pytest
 
 from plant_models import every_axle
 from plant_models.point_sensors import Axles
-from synth.book.acceptance import CaseVerdict
-from synth.book.sensors.sensor_acceptance import judge_sensor_case
-from synth.book.sensors.sensor_case import HeardShares, SensorCase
-from synth.book.sensors.sensor_class import SensorPasses, full_brake, sensor_passes
-from synth.book.sensors.sensor_tune import heard_shares, unavoidable
-from synth.configuration.settings import AcceptanceSettings
+from synth.retarder.acceptance import CaseVerdict
+from synth.retarder.configuration.settings import AcceptanceSettings
+from synth.retarder.sensors.sensor_acceptance import judge_sensor_case
+from synth.retarder.sensors.sensor_case import HeardShares, SensorCase
+from synth.retarder.sensors.sensor_class import SensorPasses, full_brake, sensor_passes
+from synth.retarder.sensors.sensor_tune import heard_shares, unavoidable
 from synth.simulation.exit_statistics import BrakePower, exit_statistics
 from synth.simulation.passage_sample import DECIDED, NO_DECISION, NOT_BELIEVED, NOT_HEARD, UNFINISHED, PassageSample
 from synth.simulation.passes import ExitSample

@@ -7,10 +7,10 @@ import json
 import pytest
 
 from plant_models import every_axle
-from synth.configuration.config_file import parse_config
-from synth.configuration.point_sensors.template import DUMPER_POSITION, default_sensors_toml
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.input_error import InputError
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.point_sensors.template import DUMPER_POSITION, default_sensors_toml
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 
 PLACES = "[sensors]\npath_m = [-5.0, 2.0, 9.0]\n"
 

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from synth.book.highest_stage import highest_stage
-from synth.book.sensors.pictures.passes_with_readings import passes_figure
-from synth.book.sensors.pictures.switching_speeds import colour_of, columns_m, switching_speeds, wanted_edges_m_s
 from synth.frame.picture.figure_file import draw
+from synth.retarder.highest_stage import highest_stage
+from synth.retarder.sensors.pictures.passes_with_readings import passes_figure
+from synth.retarder.sensors.pictures.switching_speeds import colour_of, columns_m, switching_speeds, wanted_edges_m_s
 from synth.simulation.passage_sample import DECIDED, UNFINISHED, PassageTrace, PassReadings
 from tests.controller_code.passage_tables import passage_table
 from tuning_tables.passages.passage_table import PassageTable

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from plant_models import Approach, Plant, PointSensors, deciding_passages
-from synth.book.sensors.passage_table import plausible_motion
+from synth.retarder.sensors.passage_table import plausible_motion
 from synth.simulation.passage_controller import PassageController, of_speeds
 from synth.simulation.passage_loop import PassageLoop
 from synth.simulation.passage_sample import PassageTrace

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from plant_models import Approach, EntrySpeed, Plant
-from synth.book.comparison.baselines import FAMILIES
-from synth.configuration.config_file import parse_config
+from synth.retarder.comparison.baselines import FAMILIES
+from synth.retarder.configuration.config_file import parse_config
 from synth.simulation.closed_loop import LineController, TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.controllers import Regulator

@@ -7,12 +7,12 @@ import pytest
 
 from plant_models import PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
-from synth.book.sensors.passage_table import passage_table
-from synth.book.sensors.tuned_passages import passage_chains, tuned_passages
 from synth.kernels.loop.passage_regulator import STATE_FIELDS, TAKEN_FOR, at_pulse, begin_cut
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
+from synth.retarder.sensors.passage_table import passage_table
+from synth.retarder.sensors.tuned_passages import passage_chains, tuned_passages
 from synth.simulation.passage_controller import of_table
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.passage_sample import UNFINISHED

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from synth.book.estimation.estimator_design import estimator_of
+from synth.retarder.estimation.estimator_design import estimator_of
 from tests.studies.identification.foreign.foreign_draws import LONGEST_PASS_S, foreign_draw
 from tests.studies.identification.foreign.foreign_log import foreign_exits, foreign_log
 from tests.studies.identification.foreign.foreign_pass import STEP_S, foreign_pass

@@ -13,7 +13,7 @@ from synth.computer.economics.terms import Terms
 from synth.computer.economics.traffic import Handling, Traffic
 from synth.frame.interval import Interval
 from synth.frame.settings.changed import with_inputs
-from synth.yard.humping.outcomes import TrainOutcomes
+from synth.hump.trains.outcomes import TrainOutcomes
 
 PRICES = Prices(
     currency="EUR",

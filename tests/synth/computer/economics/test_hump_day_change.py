@@ -21,7 +21,7 @@ from synth.computer.economics.hump_rates import RATES, rates_after
 from synth.computer.economics.uncertainty.ranges import Constant
 from synth.frame.interval import Interval
 from synth.frame.settings.changed import changed, with_inputs
-from synth.yard.humping.train_figures import train_figures
+from synth.hump.trains.train_figures import train_figures
 from tests.synth.computer.economics.made_cases import CASE, CHANGE, TODAY, half95, made_outcomes
 
 NAMES = RATES

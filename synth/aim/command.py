@@ -1,0 +1,105 @@
+"""The command `aim`: the exit speeds at which a park position lets cuts go, as tables of controllers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from synth.aim.configuration.aim_file import AimFile, parse_aim_file
+from synth.aim.options import AimOptions
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.exhibits import Chapter
+
+if TYPE_CHECKING:
+    from synth.aim.aim_acceptance import AimBookVerdict
+    from synth.aim.aim_book import AimBook
+    from synth.aim.resolved_aim import ResolvedAim
+
+LIMITS_OF_USE = (
+    "All figures are those of a model with the parameters listed here, not of a yard. Assumed parameters are guesses; "
+    "replace them by those of your yard, then aim again.",
+    "Intervals (95 %) cover the chance of the simulated cuts only, neither the parameters nor the model.",
+    "Resistance, wind and bends are drawn once for each cut and stay for its whole way; the wind is one along the "
+    "track, and a gust or a lee is not modelled.",
+    "Standing cars are taken not to move, and the free distance to be known. A cut that stops short shortens the free "
+    "distance of all that follow it: gaps are told, their consequences are not.",
+    "The tool is not certified and claims no safety integrity. Before a table commands a position, check it with an "
+    "independent program against the hashes below, and on the track.",
+)
+
+
+@dataclass(frozen=True)
+class FoundAim:
+    """The tables, and whether they keep what is asked of them."""
+
+    book: AimBook
+    verdict: AimBookVerdict
+
+
+def resolve(asked: Asked[AimFile, AimOptions]) -> ResolvedAim:
+    """The file with what is given on the command line; a book that does not fit is refused."""
+    from synth.aim.aimed_position import position_of
+    from synth.aim.resolved_aim import resolve_aim
+
+    config = resolve_aim(asked.settings.with_simulation(asked.options.passes, asked.options.seed))
+    position_of(config)
+    return config
+
+
+def head(config: ResolvedAim) -> Head:
+    """What is said of the configuration."""
+    reads = () if config.book is None else tuple(path for path in config.book if path is not None)
+    return Head(
+        title=config.title,
+        canonical_json=config.canonical_json,
+        parameters=config.parameters,
+        output=config.output,
+        warnings=config.warnings,
+        reads=reads,
+    )
+
+
+def steps(config: ResolvedAim) -> Steps:
+    """A step for each weight category."""
+    return Steps(len(config.members), "aiming", "categories")
+
+
+def compute(config: ResolvedAim, work: Work) -> FoundAim:
+    """All tables, and the verdict on them."""
+    from synth.aim.aim_acceptance import judge_aims
+    from synth.aim.aim_book import aim_book
+    from synth.frame.creation_time import creation_time
+    from synth.kernels.cache import guarded
+
+    book = guarded(aim_book, config, creation_time(), work.progress.done)
+    work.progress.note(f"{len(book.tables)} tables computed")
+    return FoundAim(book, judge_aims(book.tables, config.acceptance.p_excess))
+
+
+def limits(found: FoundAim) -> Iterator[Limit]:
+    """The probability that is asked for."""
+    yield Limit(found.verdict.sentence, found.verdict.accepted)
+
+
+def show(found: FoundAim) -> Iterator[Chapter]:
+    """What is shown of it."""
+    from synth.aim.shown import asked, cells, charts, files, gaps
+
+    yield Chapter("Results", (*asked(found.book, found.verdict), *gaps(found.book, found.verdict)))
+    yield Chapter("Pictures", tuple(charts(found.book)))
+    yield Chapter("Cell by cell", (*cells(found.book), *files(found.book)))
+
+
+COMMAND = Command(
+    name="aim",
+    read=parse_aim_file,
+    options=AimOptions,
+    resolve=resolve,
+    head=head,
+    steps=steps,
+    compute=compute,
+    show=show,
+    limits=limits,
+    limits_of_use=LIMITS_OF_USE,
+)

@@ -1,0 +1,1 @@
+"""Long work in parts: processes on this machine, or a cluster, that answer one order after another."""

@@ -1,0 +1,82 @@
+"""A hump from the user's file or from the library: TOML or railML → `ReadHump`, every fault as one sentence."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from plant_models.library import BUILT_IN
+from plant_models.library.hump_entry import HumpEntry, hump_from, hump_names
+from plant_models.library.hump_entry import load_hump as load_of_library
+from plant_models.library.near_miss import near_miss
+from plant_models.library.type_file import HUMPS
+from synth.frame.input_error import InputError
+from synth.frame.settings.toml_file import read_text, toml_tree
+from synth.hump.railml.read import from_railml
+from synth.retarder.configuration.plant_fault import in_file
+
+RAILML_SUFFIXES: Final = (".railml", ".xml")
+
+
+@dataclass(frozen=True)
+class ReadHump:
+    """The hump of a file; `ignored`: what a railML file holds besides, which was read over."""
+
+    entry: HumpEntry
+    ignored: tuple[str, ...] = ()
+
+
+def load_hump(source: Path | str) -> HumpEntry:
+    """The hump in the file `source`, or the one of that name in the library; `InputError` on any fault."""
+    return read_hump(Path(source)).entry
+
+
+def read_hump(source: Path) -> ReadHump:
+    """The same with what was read over; the files that its retarders name must be there."""
+    read = read_graph(source)
+    if source.exists():
+        require_files(read.entry, source)
+    return read
+
+
+def read_graph(source: Path) -> ReadHump:
+    """The hump in the file `source`, or the one of that name in the library, whatever files it names."""
+    name = str(source)
+    there = os.path.exists(source)  # pathlib would raise for a name that is too long to ask for
+    if name in hump_names() and not there:
+        with in_file(name):
+            return ReadHump(load_of_library(name))
+    if not there:
+        hint = near_miss(name, hump_names())
+        raise InputError(f"{name}: there is no such file, and no such hump in the library; {hint}")
+    text = read_text(source)
+    railml = source.suffix in RAILML_SUFFIXES
+    hump, ignored = from_railml(text, source.stem, name) if railml else (parse_hump(text, source.stem, name), ())
+    return ReadHump(hump, ignored)
+
+
+def hump_text(source: Path) -> str:
+    """The text of the file `source`, or of the hump of that name in the library."""
+    if str(source) in hump_names() and not source.exists():
+        return BUILT_IN.file(HUMPS, str(source)).text
+    return read_text(source)
+
+
+def parse_hump(text: str, name: str, file: str) -> HumpEntry:
+    """The hump `name` written as TOML in `text`; `file`: what messages call it."""
+    with in_file(file):
+        return hump_from(toml_tree(text, file), text, name, file)
+
+
+def require_files(hump: HumpEntry, source: Path) -> None:
+    """`InputError` for a file that a retarder names and that is not there; paths begin at the folder of `source`."""
+    for retarder in hump.graph.retarders:
+        books = [("book", retarder.book)] if retarder.book is not None else []
+        for key, file in (*books, *(("aim_tables", file) for file in retarder.aim_tables)):
+            if not (source.parent / file).is_file():
+                raise InputError(
+                    f"{source}: retarder {retarder.number}: {key} names {file}, and there is no such file; make it, or "
+                    "take it out"
+                )

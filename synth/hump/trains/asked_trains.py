@@ -1,0 +1,119 @@
+"""Which trains a configuration asks for: a population of cuts, or a sorting list."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from plant_models.errors import PlantError, require, require_between
+from plant_models.library import WeightCategories
+from plant_models.library.car_mix_entry import CarMixEntry
+from plant_models.library.weight_category import WeightCategory
+from plant_models.rolling.random_cuts import CutPopulation
+from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
+from plant_models.rolling.weather import Weather
+from synth.frame.input_error import InputError
+from synth.hump.configuration.settings import CATEGORY_SHARES, HumpTrialSettings
+from synth.hump.control.sorting_list import SortingList
+from synth.hump.control.sorting_list_file import load_sorting_list
+from synth.hump.control.train_population import TrainPopulation
+from synth.hump.trains.fitting_list import fitting_list, too_long
+from synth.hump.trains.hump_routes import HumpRoutes
+
+
+def with_room(settings: HumpTrialSettings, mix: CarMixEntry, routes: HumpRoutes) -> HumpTrialSettings:
+    """`settings` with no longer cuts than the first position leaves room for, unless the file tells how long."""
+    longest = max(each.car.length_m for each in mix.mix.cars)
+    room = max(int(2.0 * float(routes.entrance_m.min()) / longest), 1)
+    if "most_cars" in settings.trains.model_fields_set or settings.trains.most_cars <= room:
+        return settings
+    return settings.model_copy(update={"trains": settings.trains.model_copy(update={"most_cars": room})})
+
+
+def cars_of_cuts(trains: TrainPopulation | SortingList, categories: WeightCategories) -> dict[WeightCategory, set[int]]:
+    """How many cars the cuts of each weight category can have; categories of which there are none are left out."""
+    if isinstance(trains, SortingList):
+        own = (
+            (member, {cut.cars for cut in trains.cuts if cut.category == member.number})
+            for member in categories.members
+        )
+        return {member: cars for member, cars in own if cars}
+    used = (member for member in categories.members if trains.category_shares.get(member.number, 0.0) > 0.0)
+    return {member: set(range(1, trains.most_cars + 1)) for member in used}
+
+
+def mix_of(entry: CarMixEntry, settings: HumpTrialSettings) -> CarMixEntry:
+    """The mix with the values that the file sets."""
+    given = {key: getattr(settings.cars, key) for key in ("following_share", "underload_mean_t")}
+    return entry.with_values({key: float(value) for key, value in given.items() if value is not None})
+
+
+def population_of(mix: CarMixEntry, categories: WeightCategories, settings: HumpTrialSettings) -> CutPopulation:
+    """Law and weather of the cuts."""
+    law: ResistanceLaw = Tb10062Law()
+    if settings.resistance.law == "hump-norm":
+        law = HumpNormLaw(settings.resistance.erlang_order)
+    return CutPopulation(mix.mix, categories, law, Weather(**settings.weather.model_dump()))
+
+
+def category_shares(settings: HumpTrialSettings, categories: WeightCategories) -> dict[str, float]:
+    """Shares by second name of the category."""
+    given = settings.trains.category_shares
+    if given is None:
+        known = {member.latin for member in categories.members}
+        return {k: v for k, v in CATEGORY_SHARES.items() if k in known} or dict.fromkeys(sorted(known), 1.0)
+    shares: dict[str, float] = {}
+    for name, share in given.items():
+        try:
+            latin = categories.named(name).latin
+        except PlantError as fault:
+            raise PlantError(f"trains.category_shares: {fault}") from None
+        require(latin not in shares, f"trains.category_shares: {name} is there twice; leave one out")
+        require_between(f"trains.category_shares.{name}", share, 0.0, 1e6)
+        shares[latin] = share
+    return shares
+
+
+def trains_of(
+    settings: HumpTrialSettings, folder: Path, people: CutPopulation, shares: dict[str, float], routes: HumpRoutes
+) -> TrainPopulation | SortingList:
+    """The trains that the settings ask for; the path of a list begins at `folder`."""
+    trains, categories = settings.trains, people.categories
+    if trains.list is not None:
+        path = folder / trains.list
+        try:
+            return fitting_list(load_sorting_list(path, categories), str(path), people, routes)
+        except PlantError as fault:
+            raise InputError(str(fault)) from None
+    longest = trains.most_cars * max(each.car.length_m for each in people.mix.cars)
+    entrance = float(routes.entrance_m.min())
+    require(
+        0.5 * longest <= entrance,
+        f"trains.most_cars is {trains.most_cars}: such a cut {too_long(longest, entrance)}: set it to "
+        f"{int(2.0 * entrance / longest * trains.most_cars)} or less",
+    )
+    return TrainPopulation(
+        mix=people.mix,
+        categories=categories,
+        category_shares={categories.named(name).number: share for name, share in shares.items()},
+        track_shares=track_shares(trains.track_shares, routes),
+        cars_mean=trains.cars_mean,
+        most_cars=trains.most_cars,
+    )
+
+
+def track_shares(given: dict[str, float] | None, routes: HumpRoutes) -> dict[int, float]:
+    """Shares by number of the track; without any, all tracks of the lead alike."""
+    known = [int(track) for track in routes.tracks]
+    if given is None:
+        return dict.fromkeys(known, 1.0)
+    shares: dict[int, float] = {}
+    for name, share in given.items():
+        number = int(name) if name.isascii() and name.isdigit() and len(name) < 4 else -1
+        require(
+            number in known,
+            f"trains.track_shares names {name!r}; signal {routes.lead} leads to tracks {min(known)} to {max(known)}: "
+            "give the number of one of them",
+        )
+        require_between(f"trains.track_shares.{name}", share, 0.0, 1e6)
+        shares[number] = share
+    return shares

@@ -1,0 +1,75 @@
+"""Cuts that come up with the one ahead while it still rolls on its track: where, and how much faster they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.hump.trains.motion import Cars, Moving
+
+Floats = NDArray[np.float64]
+
+PLACES = 48
+"""Places on the track where both are compared, and once more about the one where they first touch, or come closest."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class OnTrack:
+    """n cuts on their last free rolls, (n,) each: `cars` from `start` to the places `end_m` of their heads, where they
+    stand from `still_s` on."""
+
+    cars: Cars
+    start: Moving
+    end_m: Floats
+    still_s: Floats
+
+
+def closing_speed_m_s(ahead: OnTrack, behind: OnTrack, length_m: Floats) -> Floats:
+    """How much faster the cuts `behind` are than those `ahead`, whose `length_m` (n,) is given, when they touch them:
+    (n,), NaN where they do not while these roll.
+
+    Both roll as if alone up to there; a cut that is pushed by one behind it is not followed further.
+    """
+    from_m = np.maximum(behind.start.head_m, ahead.start.head_m - length_m)
+    to_m = np.maximum(ahead.end_m - length_m, from_m)
+    rows = np.arange(len(from_m))
+    steps = np.linspace(0.0, 1.0, PLACES)
+    places = from_m[:, None] + (to_m - from_m)[:, None] * steps
+    later_s, _ = compared(ahead, behind, places, length_m)
+    touches = (later_s < 0.0).any(axis=1)
+    at = np.where(touches, (later_s < 0.0).argmax(axis=1), later_s.argmin(axis=1))
+    begins, ends = places[rows, np.maximum(at - 1, 0)], places[rows, np.minimum(at + 1, PLACES - 1)]
+    fine = begins[:, None] + (ends - begins)[:, None] * steps
+    later_s, faster_m_s = compared(ahead, behind, fine, length_m)
+    late = later_s < 0.0
+    faster = np.maximum(faster_m_s[rows, late.argmax(axis=1)], 0.0)
+    return np.where(late.any(axis=1), faster, np.nan)
+
+
+def compared(ahead: OnTrack, behind: OnTrack, places_m: Floats, length_m: Floats) -> tuple[Floats, Floats]:
+    """How much later, and faster, the heads of the cuts `behind` are at `places_m` (n, k) than the tails `ahead`;
+    infinitely where these stand already."""
+    first, second = rolled(ahead, places_m + length_m[:, None]), rolled(behind, places_m)
+    with np.errstate(invalid="ignore"):  # neither comes: ∞ − ∞
+        later = np.where(second[0] < ahead.still_s[:, None], second[0] - first[0], np.inf)
+    return later, second[1] - first[1]
+
+
+def rolled(cuts: OnTrack, heads_m: Floats) -> tuple[Floats, Floats]:
+    """(times, speeds) of `cuts` when their heads pass `heads_m` (n, k); infinite and 0 behind a stop."""
+    found = cuts.cars.rolls.roll_on(
+        cuts.cars.rows,
+        cuts.cars.routes,
+        cuts.start.head_m,
+        cuts.start.speed_m_s,
+        np.maximum.accumulate(heads_m, axis=1),
+    )
+    here = heads_m <= cuts.start.head_m[:, None] + 1e-9
+    return (
+        np.where(here, cuts.start.time_s[:, None], cuts.start.time_s[:, None] + found.time_s),
+        np.where(here, cuts.start.speed_m_s[:, None], found.speed_m_s),
+    )

@@ -1,0 +1,115 @@
+"""The free stretch ahead of a position: from the exit of the position before it, or from the crest, to its entrance.
+
+The speeds at both ends tell the resistance of a cut on the way: w = w' + (v'² − v²)/(2 g' L), where the cut would come
+with v' if it rolled with w', mean bends and mean wind. So what grades, bends and air take by expectation is taken out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import require_between
+from plant_models.frozen_arrays import frozen_arrays
+from synth.aim.readings import MOST_N_PER_KN, TrueReadings
+from synth.aim.scene import SceneCuts
+from synth.simulation.free_roll import RollingCuts
+
+Floats = NDArray[np.float64]
+
+SHORTEST_M = 10.0
+"""Between the places of a head; on less the errors of the speeds hide the resistance."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class StretchSpeeds:
+    """Speeds of n cuts at both ends of a free stretch, (n,) each, and where their heads are then.
+
+    `from_std_m_s`, `to_std_m_s`: standard deviations of the errors of both.
+    """
+
+    from_m: Floats
+    from_m_s: Floats
+    to_m: Floats
+    to_m_s: Floats
+    from_std_m_s: float
+    to_std_m_s: float
+
+    @property
+    def length_m(self) -> Floats:
+        """L, (n,)."""
+        return self.to_m - self.from_m
+
+    @property
+    def tells(self) -> NDArray[np.bool_]:
+        """Where the stretch is long enough, and both speeds were read."""
+        return (self.length_m >= SHORTEST_M) & (self.from_m_s > 0.0) & (self.to_m_s > 0.0)
+
+    def resistance_n_per_kn(self, taken_n_per_kn: Floats, expected_m_s: Floats, gravity_m_s2: Floats) -> Floats:
+        """w of cuts that would come with `expected_m_s` if they rolled with `taken_n_per_kn`; NaN where it is not told,
+        and where they would stop."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            lost = (expected_m_s**2 - self.to_m_s**2) / (2.0 * gravity_m_s2 * self.length_m)
+        return np.where(self.tells & (expected_m_s > 0.0), taken_n_per_kn + 1e3 * lost, np.nan)
+
+    def std_n_per_kn(self, gravity_m_s2: Floats) -> Floats:
+        """Standard deviation of w from the errors of both speeds, (n,)."""
+        speeds = np.hypot(self.from_std_m_s * self.from_m_s, self.to_std_m_s * self.to_m_s)
+        return np.asarray(1e3 * speeds / (gravity_m_s2 * np.maximum(self.length_m, SHORTEST_M)))
+
+
+@dataclass(frozen=True)
+class ResistanceOnStretch:
+    """Reading of the cuts of a scene: w on the free stretch, from speeds with errors of `speed_std_m_s`.
+
+    `from_m`: the exit of the position before, where a cut is when its last axle is there; None: the crest, where its
+    middle is there and its speed is known without error. The entrance is that of the scene, as is the law of the first
+    speed. w' is the mean of the cuts.
+    """
+
+    from_m: float | None
+    speed_std_m_s: float
+
+    def __post_init__(self) -> None:
+        require_between("measured stretch: speed_std_m_s", self.speed_std_m_s, 1e-4, 2.0)
+
+    def of(self, cuts: SceneCuts) -> TrueReadings:
+        """w, N/kN; `MOST_N_PER_KN` for a cut that stopped there."""
+        mean = mean_cuts(cuts)
+        speeds = self.speeds(cuts)
+        gravity = cuts.rolling.cuts.reduced_gravity_m_s2
+        taken = np.full(len(cuts), mean_resistance_n_per_kn(cuts))
+        expected = mean.roll_on(speeds.from_m, speeds.from_m_s, speeds.to_m[:, None]).speed_m_s[:, 0]
+        value = speeds.resistance_n_per_kn(taken, expected, gravity)
+        return TrueReadings(np.where(np.isnan(value), MOST_N_PER_KN, value), speeds.std_n_per_kn(gravity))
+
+    def speeds(self, cuts: SceneCuts) -> StretchSpeeds:
+        """True speeds at both ends."""
+        drawn, scene = cuts.rolling.cuts, cuts.scene
+        begin = 0.5 * drawn.car_lengths_m.sum(axis=1) if self.from_m is None else self.from_m + drawn.last_axle_m
+        end = np.maximum(scene.entrance_m + drawn.first_axle_m, begin)
+        comes = cuts.rolling.roll_on(begin, cuts.stretch_speed_m_s, end[:, None]).speed_m_s[:, 0]
+        begins_std = 0.0 if self.from_m is None else self.speed_std_m_s
+        return StretchSpeeds(begin, cuts.stretch_speed_m_s, end, comes, begins_std, self.speed_std_m_s)
+
+
+def mean_resistance_n_per_kn(cuts: SceneCuts) -> float:
+    """Mean w0 of the cuts of a scene."""
+    return float(cuts.rolling.cuts.resistance_n_per_kn.mean())
+
+
+def mean_cuts(cuts: SceneCuts) -> RollingCuts:
+    """The same cuts with the mean w0, mean bends and the mean wind of them all."""
+    arrays, count = cuts.rolling.arrays, len(cuts)
+    wind = np.full_like(arrays.wind_m_s, cuts.scene.population.weather.head_wind_mean_m_s)
+    constant = np.full_like(arrays.constant, 1e-3 * mean_resistance_n_per_kn(cuts))
+
+    def of_all(held: Floats) -> Floats:
+        return np.repeat(held[:, :count].mean(axis=1, keepdims=True), held.shape[1], axis=1)
+
+    bend_v2, bend_head = of_all(arrays.bend_v2), of_all(arrays.bend_head)
+    mean = arrays._replace(constant=constant, wind_m_s=wind, bend_v2=bend_v2, bend_head=bend_head)
+    return replace(cuts.rolling, arrays=mean)

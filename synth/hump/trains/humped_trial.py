@@ -1,0 +1,36 @@
+"""What the trains of a trial have come to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from synth.hump.trains.outcome_file import TrialTrains
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.resolved_trial import ResolvedTrial
+from synth.hump.trains.train_figures import TrainFigure, train_figures
+from synth.hump.trains.trial import HumpTrial
+
+
+@dataclass(frozen=True)
+class HumpedTrial:
+    """`found`: the outcomes of all trains of `trial`, which was made of `config`; `figures`: what they tell."""
+
+    config: ResolvedTrial
+    trial: HumpTrial
+    found: TrainOutcomes
+    figures: tuple[TrainFigure, ...]
+
+    @property
+    def of_trial(self) -> TrialTrains:
+        """Of which trial the trains are, for their file."""
+        return TrialTrains(self.config.routes, self.config.trains_sha256)
+
+    @property
+    def category_names(self) -> tuple[str, ...]:
+        """Names of the weight categories in their places."""
+        return tuple(member.name for member in self.config.categories.members)
+
+
+def humped_trial(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes) -> HumpedTrial:
+    """The trains with their figures."""
+    return HumpedTrial(config, trial, found, train_figures(found))

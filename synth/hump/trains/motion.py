@@ -1,0 +1,133 @@
+"""Heads of cuts on their way: free over the track, or braked at an even rate, and when they pass given places."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.simulation.free_roll import Rolled
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Moving:
+    """Where the heads of n cuts are, how fast, and when: (n,) each. A cut that stopped has speed 0 and time infinite;
+    `head_m` is then where it stands."""
+
+    head_m: Floats
+    speed_m_s: Floats
+    time_s: Floats
+
+    def chosen(self, which: NDArray[np.bool_] | Ints) -> Moving:
+        """Some of them."""
+        return Moving(self.head_m[which], self.speed_m_s[which], self.time_s[which])
+
+
+def merged(all_lanes: Moving, some: Moving, which: NDArray[np.bool_]) -> Moving:
+    """`all_lanes`, of which those `which` are now as in `some`."""
+    head, speed, time = all_lanes.head_m.copy(), all_lanes.speed_m_s.copy(), all_lanes.time_s.copy()
+    head[which], speed[which], time[which] = some.head_m, some.speed_m_s, some.time_s
+    return Moving(head, speed, time)
+
+
+class Rolls(Protocol):
+    """What rolls cuts, `rows`, on `routes`; see `RouteRolling`."""
+
+    def roll_on(
+        self,
+        rows: Ints,
+        routes: Ints,
+        start_m: Floats,
+        speed_m_s: Floats,
+        stations_m: Floats,
+        resistance_n_per_kn: Floats | None = None,
+    ) -> Rolled:
+        """Over `stations_m` (n, k), from the heads at `start_m` (n,) with `speed_m_s` (n,)."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Cars:
+    """Which cuts move, on which routes, (n,) each; `resistance_n_per_kn`: taken for their own, None: their own."""
+
+    rolls: Rolls
+    rows: Ints
+    routes: Ints
+    resistance_n_per_kn: Floats | None = None
+
+    def chosen(self, which: NDArray[np.bool_] | Ints) -> Cars:
+        """Some of them."""
+        own = self.resistance_n_per_kn
+        return Cars(self.rolls, self.rows[which], self.routes[which], None if own is None else own[which])
+
+
+def rolled_free(cars: Cars, start: Moving, to_m: Floats, heads_m: Floats) -> tuple[Moving, Floats]:
+    """Where the cuts are when their heads are at `to_m` (n,), and when their heads pass `heads_m` (n, k) on the way.
+
+    NaN for places that are not on the way, infinite for those behind a stop.
+    """
+    on_way = (heads_m > start.head_m[:, None]) & (heads_m <= to_m[:, None])
+    used = np.flatnonzero(on_way.any(axis=0))
+    places = np.clip(heads_m[:, used], start.head_m[:, None], to_m[:, None])
+    order = np.argsort(places, axis=1, kind="stable")
+    stations = np.concatenate((np.take_along_axis(places, order, axis=1), to_m[:, None]), axis=1)
+    rolled = cars.rolls.roll_on(
+        cars.rows, cars.routes, start.head_m, start.speed_m_s, stations, cars.resistance_n_per_kn
+    )
+    times = np.full(heads_m.shape, np.nan)
+    passed = np.empty(places.shape)
+    np.put_along_axis(passed, order, rolled.time_s[:, :-1], axis=1)
+    times[:, used] = np.where(on_way[:, used], start.time_s[:, None] + passed, np.nan)
+    stops = np.isfinite(rolled.stop_m)
+    head = np.where(stops, np.minimum(rolled.stop_m, to_m), to_m)
+    return Moving(head, rolled.speed_m_s[:, -1], start.time_s + rolled.time_s[:, -1]), times
+
+
+def braked_evenly(
+    start: Moving, to_m: Floats, exit_m_s: Floats, duration_s: Floats, heads_m: Floats
+) -> tuple[Moving, Floats]:
+    """As `rolled_free` for cuts whose energy falls evenly to that of `exit_m_s` at `to_m`, where they are `duration_s`
+    later: times in between are in proportion."""
+    path = to_m - start.head_m
+    moves = (start.speed_m_s > 0.0) & (exit_m_s > 0.0)
+    end = np.where(moves, start.time_s + duration_s, np.inf)
+    on_way = (heads_m > start.head_m[:, None]) & (heads_m <= to_m[:, None])
+    lane, column = np.nonzero(on_way)
+    share = (heads_m[lane, column] - start.head_m[lane]) / path[lane]
+    before, after = start.speed_m_s[lane], exit_m_s[lane]
+    between = even_speed_m_s(before, after, share)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        passed = start.time_s[lane] + duration_s[lane] * (share * (before + after) / (before + between))
+    times = np.full(heads_m.shape, np.nan)
+    times[lane, column] = np.where(moves[lane], passed, np.inf)
+    return Moving(np.where(moves, to_m, start.head_m), np.where(moves, exit_m_s, 0.0), end), times
+
+
+def even_speed_m_s(entry_m_s: Floats, exit_m_s: Floats, share: Floats) -> Floats:
+    """Speed after this share of a path on which a cut is braked at an even rate."""
+    return np.sqrt(entry_m_s**2 + share * (exit_m_s**2 - entry_m_s**2))
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Push:
+    """How n cuts are pushed before they are let go: at an even rate from the speed `before_m_s`, which the train had
+    `apart_m` before, when the cut ahead was let go; (n,) each."""
+
+    before_m_s: Floats
+    apart_m: Floats
+
+    def times_s(self, start: Moving, heads_m: Floats) -> Floats:
+        """When the heads pass `heads_m` (n, k) ahead of `start`, where they are let go; NaN for places behind it."""
+        left = start.head_m[:, None] - heads_m
+        now = start.speed_m_s[:, None]
+        gain = (now**2 - self.before_m_s[:, None] ** 2) / self.apart_m[:, None]
+        then = np.sqrt(np.maximum(now**2 - gain * np.clip(left, 0.0, self.apart_m[:, None]), 1e-6))
+        return np.where(left >= 0.0, start.time_s[:, None] - 2.0 * left / (now + then), np.nan)

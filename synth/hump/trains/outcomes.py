@@ -1,0 +1,142 @@
+"""What trains came to, a row each: catch-ups, misroutes, couplings, gaps, time over the crest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.aim.scene import COUPLING_SPEED_M_S
+from synth.hump.trains.hump_routes import HumpRoutes
+from synth.hump.trains.train_cuts import TrainCuts
+from synth.hump.trains.train_memory import TrainMemory
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+CLASSES_M_S = (COUPLING_SPEED_M_S, 1.5, 2.0)
+"""Over-speeds are told in the classes of [hump-computer-1970s]: up to 1.5, up to 2, faster."""
+
+SPEED_BINS_M_S = np.linspace(0.0, 6.0, 61)
+GAP_BINS_M = np.linspace(0.0, 600.0, 61)
+"""Bins of the histograms; what is beyond the last one is in it."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class TrainOutcomes:
+    """n trains. Counts of cuts unless told otherwise, (n,).
+
+    `train`: its number; `span_s`: from the first cut at the crest to the last, in which `span_m` and `span_cars` went
+    over it, counted from middle to middle. (n, elements), by the numbers of the routes: `misrouted`, `contact`,
+    `unseparated`, `foul`. `caught`: cuts misrouted or in contact, but not in the last position (`caught_in_last`).
+    `caught_on_track`: cuts that coupled to the one ahead while that rolled. `stopped`: on the way. `judged`: all
+    others, which reached a track; of these `overspeed` (n, 3) coupled in each class of speed, `gap_m` is what they left
+    free, all together. `speed_bins`, `gap_bins`: histograms. `passes`, `strokes`, `error2_m2_s2` (n, positions):
+    passes, commands to valves, and squares of (exit less command) summed up.
+    """
+
+    train: Ints
+    cuts: Ints
+    cars: Ints
+    span_s: Floats
+    span_m: Floats
+    span_cars: Floats
+    misrouted: Ints
+    contact: Ints
+    unseparated: Ints
+    foul: Ints
+    caught: Ints
+    caught_in_last: Ints
+    caught_on_track: Ints
+    stopped: Ints
+    judged: Ints
+    overspeed: Ints
+    gap_m: Floats
+    speed_bins: Ints
+    gap_bins: Ints
+    passes: Ints
+    strokes: Ints
+    error2_m2_s2: Floats
+
+    def __len__(self) -> int:
+        return len(self.train)
+
+
+def joined(parts: Sequence[TrainOutcomes]) -> TrainOutcomes:
+    """Trains of several batches, in order."""
+    return TrainOutcomes(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(TrainOutcomes)))
+
+
+def outcomes(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory) -> TrainOutcomes:
+    """What is to be told of `trains` that were humped."""
+    shape = trains.trains, trains.cuts
+    none = routes.elements
+    last_retarder = routes.retarder[memory.route].max(axis=2)
+    in_last = (memory.misrouted_at == none) & (memory.contact_at == last_retarder)
+    caught = ((memory.misrouted_at < none) | (memory.contact_at < none)) & ~in_last
+    ends = memory.end_m
+    last = routes.release_m[memory.route]
+    stopped = ~caught & ~in_last & (ends < last)
+    judged = ~caught & ~in_last & ~stopped
+    speed = np.where(judged, memory.end_speed_m_s, 0.0)
+    gap = np.where(
+        judged & (memory.end_speed_m_s <= 0.0) & ~memory.caught_on_track, np.maximum(memory.free_m - ends, 0.0), 0.0
+    )
+    bounds = (*CLASSES_M_S, np.inf)
+    over = [((speed > low) & (speed <= high)).sum(axis=1) for low, high in pairwise(bounds)]
+    length, cars = trains.length_m.reshape(shape), trains.cars.reshape(shape)
+    passed = np.isfinite(memory.exit_m_s)
+    error2 = np.where(passed, memory.exit_m_s - memory.command_m_s, 0.0) ** 2
+    return TrainOutcomes(
+        train=trains.first + np.arange(trains.trains),
+        cuts=np.full(trains.trains, trains.cuts),
+        cars=cars.sum(axis=1),
+        span_s=memory.crest_s[:, -1] - memory.crest_s[:, 0],
+        span_m=length.sum(axis=1) - 0.5 * (length[:, 0] + length[:, -1]),
+        span_cars=cars.sum(axis=1) - 0.5 * (cars[:, 0] + cars[:, -1]),
+        misrouted=at_elements(routes, memory.route, memory.misrouted_at),
+        contact=at_elements(routes, memory.route, memory.contact_at),
+        unseparated=over_elements(routes, memory.route, memory.unseparated),
+        foul=over_elements(routes, memory.route, memory.foul),
+        caught=caught.sum(axis=1),
+        caught_in_last=in_last.sum(axis=1),
+        caught_on_track=(memory.caught_on_track & ~caught & ~in_last).sum(axis=1),
+        stopped=stopped.sum(axis=1),
+        judged=judged.sum(axis=1),
+        overspeed=np.stack(over, axis=1),
+        gap_m=gap.sum(axis=1),
+        speed_bins=histograms(np.where(judged & (speed > 0.0), speed, np.nan), SPEED_BINS_M_S),
+        gap_bins=histograms(np.where(gap > 0.0, gap, np.nan), GAP_BINS_M),
+        passes=passed.sum(axis=1),
+        strokes=memory.strokes.sum(axis=1),
+        error2_m2_s2=error2.sum(axis=1),
+    )
+
+
+def at_elements(routes: HumpRoutes, route: Ints, column: Ints) -> Ints:
+    """How many cuts have their `column` (trains, cuts) at each element, (trains, numbers)."""
+    found = column[:, :, None] == np.arange(routes.elements)
+    return over_elements(routes, route, found)
+
+
+def over_elements(routes: HumpRoutes, route: Ints, found: Bools) -> Ints:
+    """How often `found` (trains, cuts, elements) is True at each element, (trains, numbers)."""
+    train, cut, column = np.nonzero(found)
+    counts = np.zeros((len(found), len(routes.numbers)), dtype=np.int64)
+    np.add.at(counts, (train, routes.vertex[route[train, cut], column]), 1)
+    return counts
+
+
+def histograms(values: Floats, bins: Floats) -> Ints:
+    """Of the values of each row that are not NaN, (rows, bins)."""
+    row, column = np.nonzero(~np.isnan(values))
+    place = np.clip(np.searchsorted(bins, values[row, column], side="right") - 1, 0, len(bins) - 2)
+    counts = np.zeros((len(values), len(bins) - 1), dtype=np.int64)
+    np.add.at(counts, (row, place), 1)
+    return counts

@@ -1,0 +1,99 @@
+"""The program of hump speeds of a train: over its cuts, and over time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.frame.picture.house_style import BLUE, INK, SKY, dress, legend_below, new_figure, place
+from synth.hump.trains.speed_program import SpeedProgram
+from synth.hump.trains.train_trace import TrainTrace
+
+Floats = NDArray[np.float64]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PushedTrain:
+    """Hump speeds of the train `number`, from 0, (cuts,): each cut has `speed_m_s` at `crest_s`, when its middle is at
+    the crest; between two such moments the train is pushed at an even rate."""
+
+    number: int
+    crest_s: Floats
+    speed_m_s: Floats
+    length_m: Floats
+
+    @property
+    def mean_m_s(self) -> float:
+        """From the first cut to the last; of one cut, its own."""
+        if len(self.length_m) < 2:
+            return float(self.speed_m_s[0])
+        pushed = self.length_m.sum() - 0.5 * (self.length_m[0] + self.length_m[-1])
+        return float(pushed / (self.crest_s[-1] - self.crest_s[0]))
+
+
+def pushed_train(trace: TrainTrace) -> PushedTrain:
+    """How a traced train was pushed."""
+    cuts = trace.cuts
+    return PushedTrain(
+        trace.number,
+        np.array([cut.crest_s for cut in cuts]),
+        np.array([cut.hump_speed_m_s for cut in cuts]),
+        np.array([cut.length_m for cut in cuts]),
+    )
+
+
+def planned_train(program: SpeedProgram) -> PushedTrain:
+    """How a train is to be pushed; times since its first cut was at the crest."""
+    time_s, speed_m_s, length_m = (
+        np.array([getattr(row, key) for row in program.rows]) for key in ("time_s", "hump_speed_m_s", "length_m")
+    )
+    return PushedTrain(program.number, time_s, speed_m_s, length_m)
+
+
+def hump_speed_program(program: PushedTrain) -> Figure:
+    """Above by cut, with the lengths of the cuts; below over time; dashed: the mean."""
+    count = len(program.speed_m_s)
+    figure = new_figure(
+        10.5,
+        6.2,
+        f"Hump speed program of train {program.number + 1}",
+        f"Mean from the first to the last cut: {program.mean_m_s:.2f} m/s, {3.6 * program.mean_m_s:.1f} km/h; "
+        f"{program.crest_s[-1] - program.crest_s[0]:.0f} s",
+    )
+    place(figure, left=0.65, right=0.75, bottom=1.0, top=0.85, h=0.42)
+    by_cut, by_time = figure.subplots(2, 1)
+    dress(by_cut, "By cut", "cut", "hump speed, m/s")
+    dress(by_time, "Over time", "seconds since the first cut was at the crest", "hump speed, m/s")
+    cuts = np.arange(1, count + 1)
+    lengths = by_cut.twinx()
+    lengths.bar(cuts, program.length_m, width=0.7, color=SKY, alpha=0.45, zorder=1)
+    dress(lengths, "", "", "length of the cut, m")
+    lengths.grid(False)
+    lengths.spines["right"].set_visible(True)
+    lengths.set_ylim(0.0, 2.5 * float(program.length_m.max()))
+    by_cut.set_zorder(lengths.get_zorder() + 1)
+    by_cut.patch.set_visible(False)
+    by_cut.step(cuts, program.speed_m_s, where="mid", color=BLUE, linewidth=1.4, zorder=3)
+    by_cut.plot(cuts, program.speed_m_s, ".", color=BLUE, markersize=5, zorder=4)
+    by_time.plot(program.crest_s, program.speed_m_s, color=BLUE, linewidth=1.4, marker=".", markersize=5, zorder=3)
+    top = 1.15 * float(program.speed_m_s.max())
+    for axes in (by_cut, by_time):
+        axes.axhline(program.mean_m_s, color=INK, linewidth=1.0, linestyle="--", zorder=2)
+        axes.set_ylim(0.0, top)
+    by_cut.set_xlim(0.4, count + 0.6)
+    by_cut.locator_params("x", nbins=20, integer=True)
+    by_time.set_xlim(left=min(0.0, float(program.crest_s[0])))
+    handles = [
+        Line2D([], [], color=BLUE, marker=".", label="hump speed when the middle of the cut is at the crest"),
+        Line2D([], [], color=INK, linestyle="--", linewidth=1.0, label=f"mean, {program.mean_m_s:.2f} m/s"),
+        Patch(color=SKY, alpha=0.45, label="length of the cut"),
+    ]
+    legend_below(figure, handles, columns=3)
+    return figure

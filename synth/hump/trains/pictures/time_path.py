@@ -1,0 +1,177 @@
+"""The time–path diagram of a train: its cuts as bands from tail to head, and when they occupy the elements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from plant_models.hump import Retarder, Switch
+from synth.frame.picture.house_style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    PURPLE,
+    VERMILLION,
+    dress,
+    legend_below,
+    new_figure,
+    place,
+)
+from synth.frame.picture.series import graded
+from synth.frame.printed_numbers import counted
+from synth.hump.trains.hump_routes import HumpRoutes
+from synth.hump.trains.pictures.element_strip import colour_of, draw_strip
+from synth.hump.trains.train_trace import AlarmKind, TracedCut, TrainTrace
+
+BAND_COLOURS = (GREEN, PURPLE, INK, GREY)
+"""Of cuts to different bunches; orange and blue are the sections."""
+
+SECONDS_PER_INCH, SHORTEST_IN, TALLEST_IN = 24.0, 4.0, 40.0
+STEP_M = 4.0
+BEHIND_M = 40.0
+"""Of the track behind the last position that is shown."""
+
+SHOWN = (AlarmKind.MISROUTED, AlarmKind.CONTACT, AlarmKind.FOUL, AlarmKind.UNSEPARATED)
+"""Alarms that belong to an element."""
+
+MARKERS = dict(zip(SHOWN, ("X", "o", "^", "s"), strict=True))
+
+
+def time_path(trace: TrainTrace) -> Figure:
+    """Path across from the crest, time down. Sections of all routes stand beside one another at their metres."""
+    routes = trace.routes
+    upto_m = float(routes.exit_m[np.isfinite(routes.exit_m)].max()) + BEHIND_M
+    ends_s = max(float(cut.trace.time_s[cut.trace.head_m <= upto_m].max()) for cut in trace.cuts)
+    tall = min(max(ends_s / SECONDS_PER_INCH, SHORTEST_IN), TALLEST_IN)
+    figure = new_figure(12.5, tall + 2.45, f"Time–path diagram of train {trace.number + 1}", subject_of(trace))
+    place(figure, left=1.35, right=0.75, bottom=1.15, top=1.3)
+    axes = figure.subplots()
+    dress(axes, "", "metres from the crest", "seconds since the first cut was at the crest")
+    axes.yaxis.tick_right()
+    axes.yaxis.set_label_position("right")
+    axes.spines["right"].set_visible(True)
+    axes.locator_params("y", nbins=max(int(tall), 4))
+    draw_occupied(axes, trace, ends_s)
+    colours = colours_by_bunch(trace)
+    for cut in trace.cuts:
+        draw_band(axes, cut, colours[bunch(routes, cut.route)], (upto_m, ends_s))
+        name_cut(axes, cut, colours[bunch(routes, cut.wanted)], routes)
+    drawn = draw_alarms(axes, trace)
+    draw_strip(figure, axes, routes, upto_m)
+    axes.set_xlim(0.0, upto_m)
+    axes.set_ylim(ends_s, float(trace.cuts[0].trace.time_s[0]))
+    legend_below(figure, legend(colours, drawn), columns=5)
+    return figure
+
+
+def subject_of(trace: TrainTrace) -> str:
+    """How long, how fast, and what went wrong."""
+    found = [
+        f"{sum(alarm.kind is kind for alarm in trace.alarms)} {kind.value}"
+        for kind in AlarmKind
+        if any(alarm.kind is kind for alarm in trace.alarms)
+    ]
+    cars = sum(cut.cars for cut in trace.cuts)
+    mean = trace.mean_hump_speed_m_s
+    pushed = f", mean hump speed {mean:.2f} m/s" if np.isfinite(mean) else ""
+    return f"{counted(len(trace.cuts), 'cut')} of {counted(cars, 'car')}{pushed}; alarms: {', '.join(found) or 'none'}"
+
+
+def bunch(routes: HumpRoutes, route: int) -> int:
+    """Number of the last but one retarder of the route; of a route that has fewer than others, that of as many as they
+    have but one; 0 where there is none."""
+    held = routes.retarder[route][routes.retarder[route] >= 0]
+    place = min(len(held), routes.positions - 1) - 1
+    return routes.numbers[int(routes.vertex[route, held[place]])] if place >= 0 else 0
+
+
+def colours_by_bunch(trace: TrainTrace) -> dict[int, str]:
+    """A colour for each bunch of the hump, in order."""
+    found = sorted({bunch(trace.routes, row) for row in range(len(trace.routes.routes))})
+    palette = BAND_COLOURS if len(found) <= len(BAND_COLOURS) else graded(len(found))
+    return dict(zip(found, palette, strict=False))
+
+
+def draw_occupied(axes: Axes, trace: TrainTrace, ends_s: float) -> None:
+    """A box for each cut and element: its section across, from the first axle in to the last axle out."""
+    kinds = {number: type(trace.routes.graph.vertex(number)) for number in trace.routes.numbers}
+    for kind in dict.fromkeys(kinds.values()):
+        boxes = [
+            [(o.from_m, o.from_s), (o.to_m, o.from_s), (o.to_m, to_s), (o.from_m, to_s)]
+            for o in trace.occupied
+            if kinds[o.number] is kind
+            for to_s in [min(o.to_s, ends_s)]
+        ]
+        axes.add_collection(
+            PolyCollection(boxes, facecolor=colour_of(kind), edgecolor=colour_of(kind), alpha=0.22, linewidth=0.6,
+                           zorder=2)
+        )  # fmt: skip
+
+
+def draw_band(axes: Axes, cut: TracedCut, colour: str, corner: tuple[float, float]) -> None:
+    """The cut from its tail to its head, as far as the `corner` (m, s) of the panel."""
+    way, (upto_m, upto_s) = cut.trace, corner
+    ends_m = min(float(way.head_m[-1]), upto_m + cut.length_m)
+    heads = np.append(np.arange(0.0, ends_m, STEP_M), ends_m)
+    times = np.interp(heads, way.head_m, way.time_s)
+    if ends_m == way.head_m[-1]:
+        heads, times = np.append(heads, ends_m), np.append(times, max(upto_s, times[-1]))
+    axes.fill_betweenx(times, heads - cut.length_m, heads, color=colour, alpha=0.5, linewidth=0.0, zorder=3)
+    axes.plot(heads, times, color=colour, linewidth=1.0, zorder=3)
+
+
+def name_cut(axes: Axes, cut: TracedCut, colour: str, routes: HumpRoutes) -> None:
+    """Number and track of the cut at the crest."""
+    track = routes.routes[cut.wanted].track
+    text = f"{cut.cut + 1} → {track}"
+    if cut.route != cut.wanted:
+        text += f", went to {routes.routes[cut.route].track}"
+    axes.annotate(
+        text, (0.0, cut.crest_s), (-4, 0), textcoords="offset points", ha="right", va="center", fontsize=7,
+        color=colour, annotation_clip=False,
+    )  # fmt: skip
+
+
+def draw_alarms(axes: Axes, trace: TrainTrace) -> list[AlarmKind]:
+    """Marks where cuts met, and the kinds that were drawn."""
+    drawn: list[AlarmKind] = []
+    for alarm in trace.alarms:
+        if alarm.kind not in MARKERS or not np.isfinite(alarm.time_s):
+            continue
+        at = float(trace.cuts[alarm.cut].trace.head_at(np.asarray(alarm.time_s)))
+        hollow = alarm.kind is AlarmKind.UNSEPARATED
+        axes.plot(
+            [at], [alarm.time_s], marker=MARKERS[alarm.kind], markersize=6 if hollow else 8, color=VERMILLION,
+            markerfacecolor="none" if hollow else VERMILLION, linestyle="none", zorder=6, clip_on=False,
+        )  # fmt: skip
+        if alarm.kind not in drawn:
+            drawn.append(alarm.kind)
+    return drawn
+
+
+def legend(colours: dict[int, str], drawn: Sequence[AlarmKind]) -> list[Artist]:
+    """What boxes, bands and marks mean."""
+    handles: list[Artist] = [
+        Patch(facecolor=ORANGE, alpha=0.35, label=f"{Switch.__name__.lower()} occupied"),
+        Patch(facecolor=BLUE, alpha=0.35, label=f"{Retarder.__name__.lower()} occupied"),
+    ]
+    handles += [
+        Patch(facecolor=colour, alpha=0.5, label="cut, tail to head" + (f", by retarder {number}" if number else ""))
+        for number, colour in colours.items()
+    ]
+    handles += [
+        Line2D([], [], color=VERMILLION, linestyle="none", marker=MARKERS[kind], markersize=7, label=kind.value,
+               markerfacecolor="none" if kind is AlarmKind.UNSEPARATED else VERMILLION)
+        for kind in SHOWN
+        if kind in drawn
+    ]  # fmt: skip
+    return handles

@@ -1,0 +1,143 @@
+"""What stands at each position of a hump for a trial: by the hump file, or otherwise by the configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+from plant_models.errors import PlantError, require, require_between
+from plant_models.hump import Retarder, Route
+from synth.hump.configuration.settings import HumpPositionSettings
+from synth.retarder.forms.table_file import read_tables
+
+T = TypeVar("T")
+
+SMALLEST_SUPPLY = 0.05
+
+
+@dataclass(frozen=True)
+class PositionChoice:
+    """Position `number` of every route that has so many, 1 being the first behind the crest: `site`, its name in the
+    library.
+
+    Its controller: `exit_std_m_s`, or `book` with the configuration `tuned_with` (None: the built-in one). Out of
+    service it brakes nothing. `supply_share`: of the full brake power. `std_set_by_user`: not by the hump file.
+    `top_target_m_s`: highest speed that the book has a table for in every class; None without a book.
+    """
+
+    number: int
+    site: str
+    exit_std_m_s: float | None
+    book: Path | None
+    tuned_with: Path | None
+    out_of_service: bool
+    supply_share: float
+    std_set_by_user: bool
+    top_target_m_s: float | None
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """Files that it is made from."""
+        return tuple(path for path in (self.book, self.tuned_with) if path is not None)
+
+
+def retarders_at(routes: Sequence[Route]) -> list[list[Retarder]]:
+    """The retarders of each position, each once, of the routes that have so many; `PlantError` where none has any."""
+    of_routes = [[e.vertex for e in route.elements if isinstance(e.vertex, Retarder)] for route in routes]
+    most = max(map(len, of_routes))
+    require(most > 0, "hump: there is no retarder on the way to any track; a trial needs one position at least")
+    places = ([held[place] for held in of_routes if place < len(held)] for place in range(most))
+    return [list({r.number: r for r in place}.values()) for place in places]
+
+
+def position_choices(
+    routes: Sequence[Route], settings: Sequence[HumpPositionSettings], hump_folder: Path, folder: Path
+) -> tuple[PositionChoice, ...]:
+    """The choice for each position; books of the hump file begin at `hump_folder`, those of `settings` at `folder`.
+
+    `PlantError` tells the key at fault.
+    """
+    places = retarders_at(routes)
+    own: dict[int, tuple[str, HumpPositionSettings]] = {}
+    for row, each in enumerate(settings):
+        key = f"position[{row}]"
+        require(
+            1 <= each.number <= len(places),
+            f"{key}.number is {each.number}; the hump has the positions 1 to {len(places)}, 1 being the first behind "
+            "the crest",
+        )
+        require(each.number not in own, f"{key}.number is {each.number}, which is there before; put the two together")
+        own[each.number] = key, each
+    return tuple(
+        choice_of(number, held, *own.get(number, ("", HumpPositionSettings(number=number))), hump_folder, folder)
+        for number, held in enumerate(places, start=1)
+    )
+
+
+def choice_of(
+    number: int, held: Sequence[Retarder], key: str, settings: HumpPositionSettings, hump_folder: Path, folder: Path
+) -> PositionChoice:
+    """The choice for one position, whose retarders are `held`."""
+    require_consistent(key, settings)
+    site = same_of(number, "position", {r.position for r in held})
+    std, book, tuned_with = settings.exit_std_m_s, None, None
+    if settings.tables is not None:
+        book = folder / settings.tables
+    elif std is None:
+        std, named = same_of(number, "exit_std_m_s or book", {(r.exit_std_m_s, r.book) for r in held})
+        book = None if named is None else hump_folder / named
+    if settings.tables_config is not None:
+        require(
+            book is not None,
+            f"{key}.tables_config is {settings.tables_config!r}, but no book of tables is named; add tables, or take "
+            "it out",
+        )
+        tuned_with = folder / settings.tables_config
+    for path in (book, tuned_with):
+        if path is not None and not path.is_file():
+            raise PlantError(f"position {number}: there is no file {str(path)!r}; 'retarder-synth tune' makes a book")
+    supply = 1.0 if settings.supply_share is None else settings.supply_share
+    require(
+        supply == 1.0 or book is None,
+        f"{key}.supply_share is {supply:g}, but position {number} runs a book of tables, whose plant has its supply in "
+        "its own configuration: change it there (tables_config)",
+    )
+    by_user = settings.exit_std_m_s is not None
+    out, top = settings.out_of_service, None if book is None else top_target_m_s(book)
+    return PositionChoice(number, site, std, book, tuned_with, out, supply, by_user, top)
+
+
+def top_target_m_s(book: Path) -> float:
+    """Highest target that every class of the tables in `book` has."""
+    (file,) = read_tables(book)
+    tops: dict[object, float] = {}
+    for table in file.tables:
+        key = table.cut.category, table.cut.mass_t, table.cut.axle_offsets_m
+        tops[key] = max(tops.get(key, 0.0), table.target_speed_m_s)
+    return min(tops.values())
+
+
+def require_consistent(key: str, settings: HumpPositionSettings) -> None:
+    """`PlantError` for values that no position has, and for two words on one thing."""
+    if settings.exit_std_m_s is not None:
+        require_between(f"{key}.exit_std_m_s", settings.exit_std_m_s, 0.0, 1.0)
+        require(
+            settings.tables is None,
+            f"{key}.exit_std_m_s is {settings.exit_std_m_s:g} and {key}.tables is {settings.tables!r}; both say how "
+            "exactly the position works: leave out one of the two",
+        )
+    if settings.supply_share is not None:
+        require_between(f"{key}.supply_share", settings.supply_share, SMALLEST_SUPPLY, 1.0)
+
+
+def same_of(number: int, what: str, found: set[T]) -> T:
+    """The only member; `PlantError` where the retarders of a position differ."""
+    if len(found) != 1:
+        told = ", ".join(sorted(str(each) for each in found))
+        raise PlantError(
+            f"hump: position {number}: its retarders differ in {what} ({told}); a trial has one model for a position: "
+            f"give exit_std_m_s or tables under [[position]] with number = {number}"
+        )
+    return next(iter(found))

@@ -1,0 +1,239 @@
+"""A hump trial configuration with every default filled in: hump, trains, positions, and the origin of each number."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from plant_models.errors import require
+from plant_models.library import (
+    CAR_MIXES,
+    WEIGHT_CATEGORIES,
+    Library,
+    SourcedValue,
+    WeightCategories,
+    load_weight_categories,
+)
+from plant_models.library.car_mix_entry import CarMixEntry, load_car_mix
+from plant_models.library.data_file import keyed
+from plant_models.library.hump_entry import HumpEntry
+from plant_models.library.weight_category import WeightCategory
+from plant_models.rolling.random_cuts import CutPopulation
+from synth.frame.settings.numbers import range_warnings
+from synth.hump.configuration.settings import HumpTrialSettings
+from synth.hump.configuration.trial_file import TrialFile, read_trial_file
+from synth.hump.control.sorting_list import SortingList
+from synth.hump.control.train_population import TrainPopulation
+from synth.hump.railml.write import to_railml
+from synth.hump.trains.aim_choice import AimChoice, aim_choices
+from synth.hump.trains.asked_speeds import ExitRange, exit_ranges, require_speeds
+from synth.hump.trains.asked_trains import (
+    cars_of_cuts,
+    category_shares,
+    mix_of,
+    population_of,
+    trains_of,
+    with_room,
+)
+from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
+from synth.hump.trains.position_choice import PositionChoice, position_choices
+from synth.hump.trains.rising_track import require_falling
+from synth.hump.trains.table_aim import aim_warnings, require_fitting
+from synth.hump.trains.trial_parameters import (
+    CHANGES_NO_TRAIN,
+    position_values,
+    range_values,
+    share_values,
+    trial_numbers,
+)
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.configuration.plant_fault import in_file
+from synth.retarder.configuration.position_choice import require_held
+from tuning_tables.canonical import canonical_json
+
+KEY_OF_PLANT_MESSAGE: Final = {
+    "weather: ": "weather.",
+    "resistance: ": "resistance.",
+    "car mix: ": "cars.",
+    "car mix: no car": "cars.mix: no car",
+    "train: ": "trains.",
+    "tracks: ": "tracks.",
+    "hump speed: ": "hump_speed.",
+}
+"""How the plant's messages begin, and the key path in a hump trial configuration that this means."""
+
+
+@dataclass(frozen=True)
+class ResolvedTrial:
+    """Everything that humped trains depend on.
+
+    `trains`: a population, or the humped cuts of a sorting list. `ranges_m_s`: of each position but the last. `aims`:
+    exported aim tables of last positions; for routes that have none, speeds are chosen for the trial.
+    `library`: with the user's own types. `parameters`: every number with unit, range, source and whether it is assumed;
+    `warnings`: sentences about values outside their sensible range; `place`: what messages call the file.
+    """
+
+    place: str
+    title: str
+    hump: HumpEntry
+    routes: HumpRoutes
+    people: CutPopulation
+    trains: TrainPopulation | SortingList
+    positions: tuple[PositionChoice, ...]
+    ranges_m_s: tuple[ExitRange, ...]
+    aims: tuple[AimChoice, ...]
+    settings: HumpTrialSettings
+    library: Library
+    parameters: tuple[SourcedValue, ...]
+    notes: tuple[str, ...]
+    warnings: tuple[str, ...]
+    names: dict[str, Any]
+
+    @property
+    def categories(self) -> WeightCategories:
+        """The weight categories of the cuts."""
+        return self.people.categories
+
+    @property
+    def kinds(self) -> dict[WeightCategory, set[int]]:
+        """How many cars the cuts of each weight category can have."""
+        return cars_of_cuts(self.trains, self.categories)
+
+    @property
+    def designed_rows(self) -> tuple[int, ...]:
+        """The routes with a position whose aim is chosen for the trial."""
+        return rows_without(self.aims, self.routes)
+
+    @property
+    def canonical_json(self) -> str:
+        """What the figures depend on, in one form: the same for the same figures, whatever files are called."""
+        return canonical_json(self._tree(())).decode("utf-8")
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of `canonical_json` in UTF-8, hexadecimal."""
+        return hashlib.sha256(self.canonical_json.encode()).hexdigest()
+
+    @property
+    def trains_json(self) -> str:
+        """The same of what each single train depends on: not how many there are, nor how they are judged."""
+        return canonical_json(self._tree(CHANGES_NO_TRAIN)).decode("utf-8")
+
+    @property
+    def trains_sha256(self) -> str:
+        """SHA-256 of `trains_json` in UTF-8, hexadecimal."""
+        return hashlib.sha256(self.trains_json.encode()).hexdigest()
+
+    def _tree(self, without: tuple[str, ...]) -> dict[str, Any]:
+        numbers = {v.key: v.value for v in self.parameters if not v.key.startswith(("hump.", *without))}
+        return {"format": "hump-trial", "version": 1, **self.names, "numbers": numbers}
+
+
+def load_trial(source: Path | None) -> ResolvedTrial:
+    """The configuration or hump `source`, or the built-in default; `InputError` on any fault."""
+    return resolve_trial(read_trial_file(source))
+
+
+def resolve_trial(file: TrialFile) -> ResolvedTrial:
+    """Fill in the library's values; `InputError` names file, key and value of whatever does not fit."""
+    place, library = file.place, file.library
+    settings = file.settings
+    require_held(f"{place}: cars.mix", CAR_MIXES, settings.cars.mix, library)
+    require_held(f"{place}: weight_categories", WEIGHT_CATEGORIES, settings.weight_categories, library)
+    with in_file(place, lambda sentence: keyed(sentence, KEY_OF_PLANT_MESSAGE)):
+        routes = hump_routes(file.hump.graph, lead_of(file))
+        mix = mix_of(load_car_mix(settings.cars.mix, library), settings)
+        settings = with_room(settings, mix, routes)
+        categories = load_weight_categories(settings.weight_categories, library)
+        positions = position_choices(routes.routes, settings.position, file.hump_source.parent, file.folder)
+        ranges = exit_ranges(settings, positions[:-1])
+        people = population_of(mix, categories, settings)
+        shares = category_shares(settings, categories)
+        trains = trains_of(settings, file.folder, people, shares, routes)
+        require_speeds(settings)
+        require_falling(routes, settings)
+        aims = aim_choices(routes.routes, settings.aim, file.hump_source.parent, file.folder)
+        for each in aims:
+            require_fitting(each, routes, cars_of_cuts(trains, categories), settings.aim.knowledge == "measured")
+    parameters = (
+        *trial_numbers(settings, file.hump, mix, categories, designed=len(rows_without(aims, routes)) > 0),
+        *(() if isinstance(trains, SortingList) else share_values(settings, shares)),
+        *range_values(settings.exit_speeds, ranges),
+        *position_values(positions, file.hump),
+    )
+    return ResolvedTrial(
+        place=place,
+        title=settings.title or f"Trains over: {file.hump.title}",
+        hump=file.hump,
+        routes=routes,
+        people=people,
+        trains=trains,
+        positions=positions,
+        ranges_m_s=ranges,
+        aims=aims,
+        settings=settings,
+        library=library,
+        parameters=parameters,
+        notes=(*file.hump.notes, *mix.notes),
+        warnings=(*range_warnings(parameters), *aim_warnings(aims, routes, settings)),
+        names=names_of(file, routes.lead, mix, categories, trains, positions) | aim_names(aims),
+    )
+
+
+def rows_without(aims: tuple[AimChoice, ...], routes: HumpRoutes) -> tuple[int, ...]:
+    """The routes with a position that has no aim tables."""
+    told = {row for each in aims for row in each.rows}
+    return tuple(row for row in range(len(routes.routes)) if routes.positions_of[row] > 0 and row not in told)
+
+
+def aim_names(aims: tuple[AimChoice, ...]) -> dict[str, Any]:
+    """What trains depend on of aim tables: for which retarders, and their content."""
+    return {"aim_tables": [[list(each.retarders), list(each.sha256)] for each in aims]} if aims else {}
+
+
+def lead_of(file: TrialFile) -> int:
+    """The crest that trains come over."""
+    leads, asked = file.hump.graph.leads, file.settings.lead
+    if asked is None:
+        return leads[0]
+    require(asked in leads, f"lead is {asked}; the signals at the crests of the hump are {', '.join(map(str, leads))}")
+    return asked
+
+
+def names_of(
+    file: TrialFile, lead: int, mix: CarMixEntry, categories: WeightCategories, trains: object,
+    positions: tuple[PositionChoice, ...],
+) -> dict[str, Any]:  # fmt: skip
+    """What trains depend on besides numbers; files by their content."""
+    settings = file.settings
+    return {
+        "hump_sha256": hashlib.sha256(to_railml(file.hump)).hexdigest(),
+        "lead": lead,
+        "mix": [car.car.name for car in mix.mix.cars],
+        "categories": [[member.number, member.name] for member in categories.members],
+        "law": settings.resistance.law,
+        "list": [cut_line(cut) for cut in trains.cuts] if isinstance(trains, SortingList) else None,
+        "one_wind_a_train": settings.trains.one_wind_a_train,
+        "standing": settings.tracks.standing,
+        "method": settings.hump_speed.method,
+        "worst_pair": settings.hump_speed.worst_pair,
+        "feedback": settings.exit_speeds.feedback,
+        "known": [settings.exit_speeds.knowledge, settings.aim.knowledge],
+        "positions": [position_names(each) for each in positions],
+    }
+
+
+def cut_line(cut: Any) -> list[Any]:
+    """What a train depends on of a cut of the list."""
+    return [cut.cars, cut.axles, cut.mass_t, cut.category, cut.track, cut.length_m]
+
+
+def position_names(choice: PositionChoice) -> dict[str, Any]:
+    """What a position depends on besides numbers."""
+    found: dict[str, Any] = {"site": choice.site, "out_of_service": choice.out_of_service}
+    if choice.book is not None:
+        found["book_sha256"] = hashlib.sha256(choice.book.read_bytes()).hexdigest()
+        found["tuned_with_sha256"] = load_config(choice.tuned_with).sha256
+    return found

@@ -1,0 +1,131 @@
+"""Cuts of different numbers of cars, each on its own route, rolled side by side."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
+from synth.hump.trains.route_ways import RouteWays
+from synth.kernels.roll.felt_track import LANES, Cuts
+from synth.kernels.roll.lane_cuts import CutRows, lay_in_lanes
+from synth.simulation.free_roll import STEP_M, Rolled, in_lanes, long_steps, roll_lanes
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class RouteRolling:
+    """`cuts` made ready for the kernel on any of the routes of `ways`; from `rolling_on`.
+
+    The bends of `cuts` are draws (`DrawnCuts.on_bends`): draw b is that of bend b of whichever route a cut takes. So a
+    cut meets the bends ahead of a parting in the same way on both routes. Each cut is worked out alone, and threads
+    change nothing. `linear_n_per_kn`: of the law of resistance.
+    """
+
+    ways: RouteWays
+    cuts: DrawnCuts
+    rows: CutRows
+    linear_n_per_kn: float
+    threads: int = 0
+
+    def __len__(self) -> int:
+        return len(self.cuts)
+
+    def roll_on(
+        self,
+        rows: Ints,
+        routes: Ints,
+        start_m: Floats,
+        speed_m_s: Floats,
+        stations_m: Floats,
+        resistance_n_per_kn: Floats | None = None,
+    ) -> Rolled:
+        """Roll the cuts `rows` (m,), which may repeat, on `routes` (m,), from the head positions `start_m` (m,) with
+        `speed_m_s` (m,) over `stations_m` (m, k), which increase. With `resistance_n_per_kn` (m,) they have that w0.
+
+        A station beyond the end of the route counts as the end; at one that is not ahead of the last, or of the start,
+        nothing changes. A cut of speed 0 stands. `ValueError` for a start or speed that is not finite.
+        """
+        if not (np.isfinite(start_m).all() and np.isfinite(speed_m_s).all()):
+            raise ValueError("roll: start_m and speed_m_s must be finite")
+        if len(rows) == 0:
+            return Rolled(np.empty(stations_m.shape), np.empty(stations_m.shape), np.empty(0))
+        order = np.argsort(-self.rows.cars[rows].astype(np.int8), kind="stable")
+        constant = self.rows.constant[rows] if resistance_n_per_kn is None else 1e-3 * resistance_n_per_kn
+        cut_of, route_of = in_lanes(rows[order]), in_lanes(routes[order])
+        lanes = self._lanes(len(cut_of), int(self.rows.cars[cut_of[0]]), in_lanes(constant[order]))
+
+        def lay(first: int, last: int) -> None:
+            lay_in_lanes(self.rows, self.ways.rows, cut_of, route_of, lanes, first, last)
+
+        stations = np.minimum(stations_m, self.ways.rows.ends_m[routes][:, None])
+        sorted_roll = roll_lanes(
+            self.ways.way, lanes, start_m[order], speed_m_s[order], stations[order], STEP_M, self.threads, lay
+        )
+        back = np.empty_like(order)
+        back[order] = np.arange(len(order))
+        return Rolled(sorted_roll.speed_m_s[back], sorted_roll.time_s[back], sorted_roll.stop_m[back])
+
+    def fall_m(self, rows: Ints, routes: Ints, head_m: Floats) -> Floats:
+        """How far the cuts `rows` (m,) on `routes` (m,) have fallen when their heads are at `head_m` (m,), as the
+        kernel takes it: cars by their mass, less the heads that snow and the slope's extra resistance take."""
+        place = head_m[:, None] * self.ways.way.nodes_per_m - self.rows.nodes[rows]
+        node = np.clip(place, 0.0, self.ways.way.fall_m.shape[1] - 1.5).astype(np.int64)
+        at = self.ways.rows.rows_from[routes][:, None] + self.rows.rows[rows] + node
+        falls = self.ways.way.fall_m.reshape(-1)
+        return np.asarray(
+            (self.rows.shares[rows] * (falls[at] + (place - node) * (falls[at + 1] - falls[at]))).sum(axis=1)
+        )
+
+    def _lanes(self, count: int, cars: int, constant: Floats) -> Cuts:
+        """Lanes to be laid."""
+        of_cars, of_bends = (cars, count), (self.ways.bends, count)
+        return Cuts(
+            cars_of_pack=np.empty(count // LANES, dtype=np.int64),
+            rows=np.empty(of_cars, dtype=np.int64),
+            shares=np.empty(of_cars),
+            nodes=np.empty(of_cars),
+            middles_m=np.empty(of_cars),
+            length_m=np.empty(count),
+            long_steps=np.empty(count),
+            gravity_m_s2=np.empty(count),
+            constant=constant,
+            linear=self.linear_n_per_kn,
+            air=np.empty(count),
+            wind_m_s=np.empty(count),
+            bends_from_m=np.empty(of_bends),
+            bends_to_m=np.empty(of_bends),
+            bends_per_m=np.empty(of_bends),
+            bend_v2=np.empty(of_bends),
+            bend_head=np.empty(of_bends),
+        )
+
+
+def rolling_on(ways: RouteWays, population: CutPopulation, cuts: DrawnCuts, threads: int = 0) -> RouteRolling:
+    """`cuts` on `ways`, by the law of resistance and the weather of `population`.
+
+    Behind the yard's beginning of its route a cut rolls in the yard. `threads` roll them, 0: one a processor.
+    """
+    if cuts.mix != ways.mix or cuts.bend_v2_m_s2.shape[1] < ways.bends:
+        raise ValueError(f"roll: the cuts must be of the mix of the routes, and have draws for {ways.bends} bends")
+    fronts, lengths = cuts.car_fronts_m, cuts.car_lengths_m
+    rows = CutRows(
+        cars=cuts.cars_of_cut,
+        rows=cuts.types * ways.way.fall_m.shape[1],
+        shares=cuts.shares,
+        nodes=(fronts + ways.first_m) * ways.way.nodes_per_m,
+        middles_m=fronts + 0.5 * lengths,
+        length_m=lengths.sum(axis=1),
+        long_steps=long_steps(cuts.cars_of_cut),
+        gravity_m_s2=cuts.reduced_gravity_m_s2,
+        constant=1e-3 * cuts.resistance_n_per_kn,
+        air=1e-3 * cuts.air_n_per_kn,
+        wind_m_s=cuts.head_wind_m_s,
+        v2_draws=cuts.bend_v2_m_s2,
+        head_draws=cuts.bend_head_m,
+    )
+    return RouteRolling(ways, cuts, rows, float(population.law.linear_n_per_kn), threads)

@@ -1,0 +1,95 @@
+"""The figures of many humped trains as tables: shares of cuts, and means over trains."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+from synth.frame.exhibits import Column, Exhibit, File, Row, Sentence, Table
+from synth.frame.printed_numbers import three_figures
+from synth.hump.trains.humped_trial import HumpedTrial
+from synth.hump.trains.outcome_file import TRAINS, to_npz
+from synth.hump.trains.train_figures import TrainFigure
+
+TITLES: Final = {
+    "hump_speed": "mean hump speed",
+    "cars_per_hour": "cars an hour",
+    "catch_ups": "catch-ups",
+    "misrouted": "misrouted",
+    "contacts": "in contact",
+    "contacts_in_last_position": "in contact in the last position alone",
+    "caught_on_track": "caught up on the track",
+    "stopped_on_the_way": "stopped on the way",
+    "unseparated_elements_per_cut": "elements where a cut was not separated",
+    "overspeed": "over-speed",
+    "overspeed_to_1_5": "over-speed up to 1.5 m/s",
+    "overspeed_to_2": "over-speed above 1.5, up to 2 m/s",
+    "overspeed_above_2": "over-speed above 2 m/s",
+    "gap_per_cut": "gap a cut",
+    "strokes_per_pass": "commands to valves a pass",
+}
+"""What a figure is called; others go by their names."""
+
+HOW_TO_READ: Final = (
+    "Misrouted: the cut came to a switch before it could be thrown behind the cut ahead, and followed that one. In "
+    "contact: it ran into the cut ahead. Catch-up: one of both, but not in the last position alone. Over-speed: of the "
+    "cuts that reached a track undisturbed, those that couple faster than 5 km/h. Gap: what such cuts leave free, 0 "
+    "for those that couple. Brackets: 95 % intervals; a train is what is drawn, and cuts of one train are not "
+    "independent. The last column of the shares tells how many cuts would give the share within 0.5 % either way."
+)
+
+
+def in_hundred(share: float) -> str:
+    """A share in per cent, which stands in the heading."""
+    return three_figures(100.0 * share)
+
+
+SHARES: Final = (
+    Column("title", "of all cuts", words=True),
+    Column("name", "name", words=True, detail=True),
+    Column("share", "share", "%", in_hundred),
+    Column("n", "cuts", spare=1),
+    Column("enough_n", "cuts for ±0.5 %", spare=2, form=lambda number: f"{math.ceil(number):,}"),
+)
+MEANS: Final = (
+    Column("title", "of all trains", words=True),
+    Column("name", "name", words=True, detail=True),
+    Column("mean", "mean"),
+    Column("unit", "unit", words=True),
+    Column("n", "trains", spare=1),
+)
+
+
+def figures(result: HumpedTrial) -> Iterator[Exhibit]:
+    """How many trains, their figures, and what each of them came to as a file."""
+    found, config = result.found, result.config
+    cuts, cars = int(found.cuts.sum()), int(found.cars.sum())
+    yield Sentence(
+        f"{config.title}: trains: {len(found)}; cuts: {cuts}; cars: {cars}",
+        {"trains": len(found), "cuts": cuts, "cars": cars, "trains_sha256": config.trains_sha256},
+        brief=True,
+    )
+    shares = [share_row(each) for each in result.figures if each.is_share]
+    means = [mean_row(each) for each in result.figures if not each.is_share]
+    yield Table("means", "Means over trains", MEANS, means, brief=True)
+    yield Table("shares", "Shares of cuts", SHARES, shares, brief=True)
+    yield Sentence(HOW_TO_READ)
+    yield File(TRAINS, to_npz(found, result.of_trial))
+
+
+def share_row(figure: TrainFigure) -> Row:
+    """A share of cuts; without any cut there is none."""
+    enough = figure.enough_n if figure.enough_n > 0.0 else None
+    return {**names_of(figure), "share": figure.told, "n": figure.n, "enough_n": enough}
+
+
+def mean_row(figure: TrainFigure) -> Row:
+    """A mean over trains."""
+    unit = None if figure.unit == "1" else figure.unit
+    return {**names_of(figure), "mean": figure.told, "unit": unit, "n": figure.n}
+
+
+def names_of(figure: TrainFigure) -> Row:
+    """For people and for programs."""
+    return {"title": TITLES.get(figure.name, figure.name.replace("_", " ")), "name": figure.name}

@@ -1,0 +1,79 @@
+"""The train that is shown of a trial: drawn, played on the plan, logged by the hump control; and its program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cache
+from typing import Any, Final
+
+from synth.frame.exhibits import Chart, Exhibit, File, Sentence
+from synth.hump.control.event_log import to_log_csv
+from synth.hump.trains.hump_page.hump_page import hump_page
+from synth.hump.trains.humped_trial import HumpedTrial
+from synth.hump.trains.traced_train import OneTrain
+from synth.hump.trains.train_trace import TrainTrace
+
+SHOWN_TRAIN: Final = 0
+"""The train that is drawn and played, and whose program and log are written."""
+
+PLAYER, LOG = "hump.html", "events.csv"
+
+TIME_PATH: Final = (
+    "Each band is a cut from its tail to its head; the figures at the crest are its number and its track. Boxes: an "
+    "element is occupied, from the first axle in to the last axle out. Elements of different routes at the same "
+    "distance from the crest lie on one another."
+)
+SPEED_PATH: Final = (
+    "Speed of each cut over the place of its head. Within a pass v² is drawn as falling evenly, whatever the position "
+    "does. Vertical strokes: from the commanded exit speed to the actual one."
+)
+Traced = Callable[[], TrainTrace]
+
+
+def traced_once(shown: OneTrain) -> Traced:
+    """Its trace, made when it is first asked for."""
+    return cache(shown.traced)
+
+
+def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Traced) -> Iterator[Exhibit]:
+    """What happened to it: the page that plays it, its log, and pictures."""
+    yield from standing_cuts(result, shown)
+    if result.config.settings.output.report:
+        page = hump_page(result.config.hump, traced(), result.category_names)
+        yield File(PLAYER, page.encode(), "Play the train on the plan")
+    control = shown.controlled()
+    otherwise = len(control.disagreements)
+    yield File(LOG, to_log_csv(control.events).encode(), "Event log of the hump control for this train")
+    yield Sentence(
+        f"The hump control was run on the times of this train: its points lay otherwise than cuts went {otherwise} "
+        "times.",
+        {"points_lay_otherwise": otherwise},
+    )
+    number = SHOWN_TRAIN + 1
+    yield Chart(
+        "hump-time-path", f"Time–path diagram of train {number}", TIME_PATH,
+        lambda: _pictures().time_path(traced()),
+    )  # fmt: skip
+    yield Chart(
+        "hump-speed-path", f"Speed over path of train {number}", SPEED_PATH,
+        lambda: _pictures().speed_path(traced(), result.category_names),
+    )  # fmt: skip
+
+
+def standing_cuts(result: HumpedTrial, shown: OneTrain) -> Iterator[Sentence]:
+    """A warning of cuts that stand behind the crest, where there are any."""
+    standing = shown.standing()
+    if standing:
+        first, fall_m = result.trial.routes.first_element
+        yield Sentence(
+            f"Warning: {standing} of the {len(shown.trains)} cuts of train {SHOWN_TRAIN + 1} stand before element "
+            f"{first}; the track falls by {fall_m:.2f} m up to there.",
+            {"standing_cuts": standing},
+            brief=True,
+        )
+
+
+def _pictures() -> Any:
+    from synth.hump.trains import pictures  # matplotlib
+
+    return pictures

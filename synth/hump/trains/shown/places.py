@@ -1,0 +1,74 @@
+"""Where cuts were caught up, and how they ended: counts by element, and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.frame.exhibits import Chart, Column, Exhibit, Row, Table
+from synth.hump.trains.hump_routes import HumpRoutes
+from synth.hump.trains.humped_trial import HumpedTrial
+from synth.hump.trains.outcomes import TrainOutcomes
+
+COUNTS: Final = (
+    Column("misrouted", "misrouted"),
+    Column("contact", "in contact"),
+    Column("unseparated", "not separated"),
+    Column("foul", "foul of the cut ahead"),
+)
+"""Fields of the outcomes by element."""
+
+MISROUTES: Final = (
+    "Cuts that came to a switch before it could be thrown behind the cut ahead of them. They follow that cut, and each "
+    "counts once, at the first such switch."
+)
+CONTACTS: Final = (
+    "Cuts that ran into the cut ahead of them on an element that both use. Misrouted cuts may be among them."
+)
+COUPLINGS: Final = (
+    "Cuts that reached a track undisturbed: the speed with which they met the standing cars, and what those that "
+    "stopped before left free. Shares are of all these cuts."
+)
+
+
+def catch_ups(result: HumpedTrial) -> Iterator[Exhibit]:
+    """The plan with misroutes and with contacts, and all counts."""
+    hump, found = result.config.hump, result.found
+    cuts = int(found.cuts.sum())
+    misrouted, contact = (by_element(result.config.routes, each) for each in (found.misrouted, found.contact))
+    yield Chart(
+        "hump-misroutes", "Misroutes by switch", MISROUTES,
+        lambda: _pictures().catch_ups(hump, misrouted, cuts, "misroutes"),
+    )  # fmt: skip
+    yield Chart(
+        "hump-contacts", "Contacts by element", CONTACTS,
+        lambda: _pictures().catch_ups(hump, contact, cuts, "contacts"),
+    )  # fmt: skip
+    rows = element_rows(result.config.routes, found)
+    yield Table("elements", "Cuts by element, where there was one", (Column("number", "element"), *COUNTS), rows)
+
+
+def couplings(found: TrainOutcomes) -> Iterator[Exhibit]:
+    """How cuts ended."""
+    yield Chart("hump-couplings", "Coupling speeds and gaps", COUPLINGS, lambda: _pictures().couplings(found))
+
+
+def by_element(routes: HumpRoutes, counts: NDArray[np.int64]) -> dict[int, int]:
+    """`counts` (trains, numbers) of all trains, by the number of the element."""
+    return {number: int(count) for number, count in zip(routes.numbers, counts.sum(axis=0), strict=True)}
+
+
+def element_rows(routes: HumpRoutes, found: TrainOutcomes) -> list[Row]:
+    """The counts at each element where there is one at all."""
+    counts = {column.key: by_element(routes, getattr(found, column.key)) for column in COUNTS}
+    rows = ({"number": number} | {key: each[number] for key, each in counts.items()} for number in routes.numbers)
+    return [row for row in rows if any(row[column.key] for column in COUNTS)]
+
+
+def _pictures() -> Any:
+    from synth.hump.trains import pictures  # matplotlib
+
+    return pictures

@@ -1,0 +1,162 @@
+"""The command `hump simulate`: whole trains over a hump, in batches that are stored as they come."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.exhibits import Chapter
+from synth.frame.input_error import InputError
+from synth.frame.processors import available
+from synth.frame.terminal.telling import say
+from synth.hump.configuration.trial_file import INPUTS, TrialFile, parse_trial_file, trial_text
+from synth.hump.trains.simulate_options import SimulateOptions
+
+if TYPE_CHECKING:
+    from synth.frame.workers.engine import Engine
+    from synth.hump.trains.asked_trial import AskedTrial
+    from synth.hump.trains.batch import BatchOrder
+    from synth.hump.trains.humped_trial import HumpedTrial
+    from synth.hump.trains.outcomes import TrainOutcomes
+    from synth.hump.trains.trial import HumpTrial
+
+LIMITS_OF_USE = (
+    "All figures are those of a model with the parameters listed here, not of a hump. Assumed parameters are guesses.",
+    "Intervals cover the chance of these trains only, neither the parameters nor the model.",
+    "A figure of 0 does not mean never: the upper end of its interval is what these trains show.",
+    "Cuts that were misrouted, in contact, or stopped count as such; their couplings and gaps are not counted.",
+    "The tool claims no safety integrity: no figure here proves that a hump is safe.",
+)
+
+
+@dataclass(frozen=True)
+class AskedTrains:
+    """The trains of a trial, and who humps them: so many `workers`, or those of the `scheduler`; None: as fits."""
+
+    trial: AskedTrial
+    workers: int | None
+    scheduler: str | None
+
+    @property
+    def number(self) -> int:
+        """Trains that are humped."""
+        return self.trial.config.settings.trains.number
+
+
+def resolve(asked: Asked[TrialFile, SimulateOptions]) -> AskedTrains:
+    """The trial with what was typed."""
+    options = asked.options
+    if options.workers is not None and options.scheduler is not None:
+        raise InputError("hump simulate: --workers and --scheduler are both given; leave one out")
+    from synth.hump.trains.asked_trial import asked_trial
+
+    return AskedTrains(asked_trial(asked.settings, options, options.trains), options.workers, options.scheduler)
+
+
+def head(asked: AskedTrains) -> Head:
+    """What is said of it."""
+    config = asked.trial.config
+    return asked.trial.head(config.title, config.canonical_json)
+
+
+def steps(asked: AskedTrains) -> Steps:
+    """A step for each batch."""
+    from synth.hump.trains.trial import BATCH
+
+    return Steps(-(-asked.number // BATCH), "humping", "batches")
+
+
+def compute(asked: AskedTrains, work: Work) -> HumpedTrial:
+    """All trains; the inputs are copied before, so that what ran can be repeated."""
+    from synth.hump.trains.humped_trial import humped_trial
+    from synth.hump.trains.made_trial import made_trial
+    from synth.hump.trains.trial_inputs import write_inputs
+    from synth.kernels.cache import guarded
+
+    started, config = time.monotonic(), asked.trial.config
+    write_inputs(asked.trial.file, config, work.directory)
+    trial = guarded(made_trial, config)
+    found = humped(asked, trial, work)
+    work.progress.note(f"{asked.number} trains humped after {time.monotonic() - started:.1f} s")
+    return humped_trial(config, trial, found)
+
+
+def humped(asked: AskedTrains, trial: HumpTrial, work: Work) -> TrainOutcomes:
+    """The outcomes of all trains, those of earlier runs among them. Raises `Unfinished` for a batch that fails."""
+    from synth.hump.trains.batch import orders_of
+    from synth.hump.trains.outcome_file import TrialTrains
+    from synth.hump.trains.train_run import BatchFiles, missing_of, run_trains
+
+    config, progress = asked.trial.config, work.progress
+    orders = list(orders_of(trial, config.trains_sha256, asked.number))
+    files = BatchFiles(work.directory, TrialTrains(config.routes, config.trains_sha256))
+    missing = missing_of(orders, files, progress)
+    progress.begin(len(orders) - len(missing))
+    return run_trains(orders, missing, files, engine_for(missing, asked), progress)
+
+
+def engine_for(missing: list[BatchOrder], asked: AskedTrains) -> Engine:
+    """The cluster that was named, processes, or this process for a single batch: workers have to load first."""
+    from synth.hump.trains.batch import answer_batch, answer_batch_here
+
+    if asked.scheduler is not None:
+        from synth.frame.workers.dask_cluster import connect
+
+        cluster = connect(asked.scheduler, answer_batch)
+        say(f"the scheduler at {asked.scheduler} has {cluster.threads()} threads of workers; more may join")
+        return cluster
+    if asked.workers is None and min(len(missing), available()) < 2:
+        from synth.frame.workers.engine import InThisProcess
+
+        return InThisProcess(answer_batch_here)
+    from synth.frame.workers.local_workers import LocalWorkers
+
+    return LocalWorkers(max(1, min(asked.workers or available(), len(missing))), answer_batch)
+
+
+def limits(result: HumpedTrial) -> Iterable[Limit]:
+    """Those of the configuration."""
+    from synth.hump.trains.trial_limits import trial_limits
+
+    return trial_limits(result.figures, result.config.settings.acceptance)
+
+
+def show(result: HumpedTrial) -> Iterator[Chapter]:
+    """All trains first: whatever becomes of the one that is shown, their figures are written before it is humped."""
+    from synth.hump.trains.shown.figures import figures
+    from synth.hump.trains.shown.one_train import SHOWN_TRAIN, one_train_exhibits, traced_once
+    from synth.hump.trains.shown.places import catch_ups, couplings
+    from synth.hump.trains.shown.positions import positions
+    from synth.hump.trains.shown.program import program_exhibits, pushed_chart
+    from synth.hump.trains.speed_program import speed_program
+    from synth.hump.trains.traced_train import one_train
+    from synth.kernels.cache import guarded
+
+    yield Chapter("Figures", tuple(figures(result)))
+    yield Chapter("Catch-ups", tuple(catch_ups(result)))
+    yield Chapter("Couplings and gaps", tuple(couplings(result.found)))
+    yield Chapter("Positions", tuple(positions(result)))
+    shown = guarded(one_train, result.trial, SHOWN_TRAIN)
+    traced = traced_once(shown)
+    yield Chapter(f"Train {SHOWN_TRAIN + 1}", tuple(one_train_exhibits(result, shown, traced)))
+    program = program_exhibits(guarded(speed_program, result.trial, SHOWN_TRAIN), brief=False)
+    yield Chapter("Hump speed", (*program, pushed_chart(SHOWN_TRAIN, traced)))
+
+
+COMMAND = Command(
+    name="hump simulate",
+    read=parse_trial_file,
+    options=SimulateOptions,
+    resolve=resolve,
+    head=head,
+    steps=steps,
+    compute=compute,
+    show=show,
+    limits=limits,
+    limits_of_use=LIMITS_OF_USE,
+    text=trial_text,
+    inputs=INPUTS,
+)

@@ -1,0 +1,90 @@
+"""What the control reads of the speeds of cuts on their way, with the errors of its sensors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri
+
+from plant_models.errors import require_between
+from plant_models.rolling.keyed_numbers import keyed_uniform
+from plant_models.rolling.random_numbers import Purpose
+from synth.hump.trains.asked import Asked
+from synth.hump.trains.free_stretch import StretchSpeeds
+from synth.hump.trains.hump_routes import HumpRoutes
+
+Floats = NDArray[np.float64]
+
+SLOWEST_M_S = 0.05
+"""No reading is less."""
+
+
+class SensedTrains(Protocol):
+    """What the sensors need of the cuts of some trains: their lengths and axles, rows = train·n + i, and the seed and
+    first train by which their errors are drawn. `TrainCuts` has it."""
+
+    @property
+    def cuts(self) -> int:
+        """Cuts of a train."""
+
+    @property
+    def first(self) -> int:
+        """Number of the first train."""
+
+    @property
+    def seed(self) -> int:
+        """Of all that is drawn."""
+
+    @property
+    def length_m(self) -> Floats:
+        """Over couplers."""
+
+    @property
+    def first_axle_m(self) -> Floats:
+        """Behind the head."""
+
+    @property
+    def last_axle_m(self) -> Floats:
+        """Behind the head."""
+
+
+@dataclass(frozen=True)
+class SpeedSensors:
+    """Sensors at the entrance and the exit of each position: independent normal errors of `std_m_s` (assumed), one a
+    cut and place, the same whoever asks. The hump speed is known without error."""
+
+    routes: HumpRoutes
+    trains: SensedTrains
+    std_m_s: float = 0.1
+
+    def __post_init__(self) -> None:
+        require_between("speed sensors: std_m_s", self.std_m_s, 1e-4, 2.0)
+
+    def stretch(self, asked: Asked, position: int) -> StretchSpeeds:
+        """The free stretch ahead of `position`, which is the one asked for or one before it. What is not over when the
+        control is asked is not read."""
+        trains, memory, lanes, cut = self.trains, asked.memory, asked.lanes, asked.cut
+        rows, now = lanes * trains.cuts + cut, asked.start.time_s
+        comes = asked.start.speed_m_s
+        if position < asked.position:
+            place = lanes, cut, position
+            comes = np.where(memory.begin_s[place] <= now, memory.entry_m_s[place], 0.0)
+        ends = self.routes.entrance_m[asked.routes, position] + trains.first_axle_m[rows]
+        if position == 0:
+            begins, leaves, std = 0.5 * trains.length_m[rows], memory.hump_speed_m_s[lanes, cut], 0.0
+        else:
+            place = lanes, cut, position - 1
+            begins = self.routes.exit_m[asked.routes, position - 1] + trains.last_axle_m[rows]
+            left = np.where(memory.end_s[place] <= now, memory.exit_m_s[place], 0.0)
+            leaves, std = self.read(asked, 2 * position - 1, left), self.std_m_s
+        return StretchSpeeds(begins, leaves, ends, self.read(asked, 2 * position, comes), std, self.std_m_s)
+
+    def read(self, asked: Asked, place: int, speed_m_s: Floats) -> Floats:
+        """Readings of `speed_m_s` (n,) at the entrance (2p) or exit (2p + 1) of position p; 0 where there is none."""
+        keys = self.trains.first + asked.lanes, np.full(len(asked.lanes), asked.cut), np.full(len(asked.lanes), place)
+        z = ndtri(keyed_uniform(self.trains.seed, Purpose.SPEED_READING, keys, 1)[0])
+        with np.errstate(invalid="ignore"):
+            return np.where(speed_m_s > 0.0, np.maximum(speed_m_s + self.std_m_s * z, SLOWEST_M_S), 0.0)

@@ -1,0 +1,149 @@
+"""The aim of last positions by exported aim tables, asked as a controller asks them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import PlantError, require
+from plant_models.library.weight_category import WeightCategory
+from synth.aim.readings import MOST_N_PER_KN, ResistanceByTwoSpeeds
+from synth.aim.scene import COUPLING_SPEED_M_S, MeasuredStretch
+from synth.hump.configuration.settings import HumpTrialSettings
+from synth.hump.trains.aim_choice import AimChoice
+from synth.hump.trains.aim_design import AimDesign, MeasuredAhead, scene_of
+from synth.hump.trains.hump_aim import CategoryAim, HumpAim, no_speeds
+from synth.hump.trains.hump_routes import HumpRoutes
+from tuning_tables.aim import AimTable, MeasuredResistance
+
+Floats = NDArray[np.float64]
+
+Kinds = Mapping[WeightCategory, Collection[int]]
+"""Numbers of cars of the cuts of each weight category that trains can have."""
+
+COUPLING_TOLERANCE_M_S, SAME_PLACE_M = 0.005, 1.0
+"""What counts as the same coupling speed, and as the same place."""
+
+
+def table_aim(choice: AimChoice, routes: HumpRoutes, kinds: Kinds, design: AimDesign) -> HumpAim:
+    """The aim by the tables of `choice` on its routes; `require_fitting` has found that they fit.
+
+    `design` tells the weight categories, whether resistance is measured, and which cuts its mean is expected of.
+    """
+    tables, lowest = [], []
+    for member in design.population.categories.members:
+        own = category_tables(choice, member, measured=isinstance(design.knowledge, MeasuredAhead))
+        if member not in kinds or not own:
+            tables.append(CategoryAim(no_speeds()))
+            lowest.append(design.requirement.bounds_m_s[0])
+            continue
+        read = own[-1] if own[-1].is_measured else None
+        mean = mean_reading_n_per_kn(choice, read, routes, member, design) if read is not None else np.nan
+        tables.append(CategoryAim(own[0], read, mean))
+        lowest.append(min(table.bounds_m_s[0] for table in own))
+    rows = np.array(choice.rows)
+    stretch = np.full((len(rows), 2), np.nan)
+    if isinstance(design.knowledge, MeasuredAhead):
+        stretch = stretches_m(choice, routes)
+    return HumpAim(np.zeros(len(rows), dtype=np.int64), (tuple(tables),), np.array([lowest]), stretch)
+
+
+def category_tables(choice: AimChoice, member: WeightCategory, measured: bool) -> tuple[AimTable, ...]:
+    """The table by category, if there is one, and that by measured resistance, if that is asked for. A controller
+    without the first has no answer where nothing was read."""
+    kinds = (False, True) if measured else (False,)
+    found = (choice.tables.select(member.number, kind) for kind in kinds)
+    return tuple(table for table in found if table is not None)
+
+
+def require_fitting(choice: AimChoice, routes: HumpRoutes, kinds: Kinds, measured: bool) -> None:
+    """`PlantError` unless the tables of `choice` answer for all cuts that trains can have on its routes."""
+    for member, cars in kinds.items():
+        asked = choice.of(member, measured)
+        for table in (asked, *category_tables(choice, member, measured)):
+            listed = table.axes.cars
+            for count in (min(cars), max(cars)):
+                require(
+                    bool(listed[0] <= count <= listed[-1]),
+                    f"{choice.named}, whose table {table.id} is for cuts of {listed[0]} to {listed[-1]} cars; trains "
+                    f"can have cuts of {min(cars)} to {max(cars)} (trains.most_cars): make a table for these",
+                )
+    if measured:
+        stretches_m(choice, routes)
+
+
+def aim_warnings(aims: tuple[AimChoice, ...], routes: HumpRoutes, settings: HumpTrialSettings) -> Iterator[str]:
+    """A sentence for each thing in which the tables are for something else than what is simulated."""
+    for choice in aims:
+        for table in choice.tables.tables:
+            known, std = table.knowledge, settings.sensors.speed_std_m_s
+            if (
+                settings.aim.knowledge == "measured"
+                and isinstance(known, MeasuredResistance)
+                and known.speed_std_m_s != std
+            ):
+                yield (
+                    f"sensors.speed_std_m_s is {std:g}; the aim table {table.id} was made for speeds measured to "
+                    f"{known.speed_std_m_s:g} m/s"
+                )
+            asked = table.required.coupling_speed_m_s
+            if abs(asked - COUPLING_SPEED_M_S) > COUPLING_TOLERANCE_M_S:
+                yield (
+                    f"the aim table {table.id} is for couplings at up to {asked:g} m/s; over-speeds are told above "
+                    f"{COUPLING_SPEED_M_S:.2f} m/s"
+                )
+        ends, exit_m = routes.release_m[list(choice.rows)], choice.tables.tables[0].position.exit_at_m
+        if np.abs(ends - exit_m).max() > SAME_PLACE_M:
+            yield (
+                f"{choice.named}, made for a position that ends {exit_m:g} m from the crest; in this hump it ends at "
+                f"{ends.min():g} to {ends.max():g} m: falls and bends may differ"
+            )
+
+
+def stretches_m(choice: AimChoice, routes: HumpRoutes) -> Floats:
+    """Where the resistance is measured on each route of `choice`, (rows, 2): as far from the end of the position as the
+    tables have it. `PlantError` where the tables differ in it, or it reaches into the position."""
+    stretches = {
+        (table.knowledge.from_m, table.knowledge.to_m)
+        for table in choice.tables.tables
+        if isinstance(table.knowledge, MeasuredResistance)
+    }
+    if len(stretches) != 1:
+        raise PlantError(
+            f"{choice.named}, whose tables are for resistances measured on {len(stretches)} different stretches "
+            f"({', '.join(f'{a:g} to {b:g} m' for a, b in sorted(stretches))}); those of one position must have one"
+        )
+    rows = np.array(choice.rows)
+    ((begin, end),) = stretches
+    ahead = routes.release_m[rows] - choice.tables.tables[0].position.exit_at_m
+    found = np.stack((begin + ahead, end + ahead), axis=1)
+    entrance = routes.entrance_m[rows, routes.positions_of[rows] - 1]
+    beyond = np.flatnonzero(found[:, 1] > entrance + 1e-6)
+    if len(beyond):
+        row = beyond[0]
+        raise PlantError(
+            f"{choice.named}, whose resistances are measured up to {found[row, 1]:g} m from the crest on the way to "
+            f"track {routes.tracks[rows[row]]}, where the last position begins at {entrance[row]:g} m; give tables "
+            "that are measured ahead of the position"
+        )
+    return found
+
+
+def mean_reading_n_per_kn(
+    choice: AimChoice, table: AimTable, routes: HumpRoutes, member: WeightCategory, design: AimDesign
+) -> float:
+    """The mean of what is read of single cars of a category on the stretch of `table`, on the first route of `choice`;
+    cars that stop there left out."""
+    assert isinstance(design.knowledge, MeasuredAhead)
+    begin, end = stretches_m(choice, routes)[0]
+    law = design.knowledge.speed_mean_m_s, design.knowledge.speed_spread_m_s
+    scene = replace(
+        scene_of(routes.routes[choice.rows[0]], design, design.threads),
+        stretch=MeasuredStretch(max(float(begin), 0.0), float(end), *law),
+    )
+    cuts = scene.draw(member, int(table.axes.cars[0]), design.seed, 0, design.design_cuts)
+    read = ResistanceByTwoSpeeds(design.knowledge.speed_std_m_s).of(cuts).value
+    return float(read[read < MOST_N_PER_KN].mean())

@@ -1,0 +1,135 @@
+"""Figures of many trains with their 95 % intervals: a train is the unit that is drawn, its cuts are not independent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import betaincinv, stdtrit
+
+from synth.frame.interval import Interval
+from synth.hump.trains.outcomes import TrainOutcomes
+
+Floats = NDArray[np.float64]
+
+CONFIDENCE = 0.95
+FEWEST_TRAINS = 2
+
+NEGLIGIBLE = 1e-3
+"""So small a part of a share is nothing."""
+
+
+@dataclass(frozen=True)
+class TrainFigure:
+    """A figure of `n` cuts (or trains), with its 95 % interval, NaN where the trains are too few.
+
+    `enough_n`: how many would tell it within `wanted` either way, N = t²·p(1 − p)/ε² times what cuts of one train have
+    in common; NaN for what is no share.
+    """
+
+    name: str
+    unit: str
+    value: float
+    low95: float
+    high95: float
+    n: int
+    enough_n: float = float("nan")
+
+    @property
+    def is_share(self) -> bool:
+        """A share is of cuts, a mean of trains."""
+        return not np.isnan(self.enough_n)
+
+    @property
+    def told(self) -> Interval | float:
+        """The figure as it is shown."""
+        return interval_of(self.value, self.low95, self.high95, self.n)
+
+
+def interval_of(value: float, low95: float, high95: float, n: int) -> Interval | float:
+    """The figure with its interval; alone where the trains are too few for one, NaN where there is none."""
+    return value if np.isnan(low95) or np.isnan(high95) else Interval(value, low95, high95, n)
+
+
+def ratio(hits: Floats, base: Floats) -> tuple[float, float, float]:
+    """Σ hits / Σ base over trains, with the interval of a ratio: Student's, linearised, trains being independent.
+
+    It covered the truth in 94 to 96 % of 1000 sets of at least 20 trains that had 80 hits or more together; of rare
+    hits it covers less: these are told by `share`.
+    """
+    trains, total = len(base), float(base.sum())
+    if total == 0.0:
+        return float("nan"), float("nan"), float("nan")
+    value = float(hits.sum()) / total
+    if trains < FEWEST_TRAINS:
+        return value, float("nan"), float("nan")
+    residual = (hits - value * base) / (total / trains)
+    half = float(stdtrit(trains - 1, 0.5 + 0.5 * CONFIDENCE)) * float(residual.std(ddof=1)) / np.sqrt(trains)
+    return value, value - half, value + half
+
+
+def share(hits: Floats, base: Floats) -> tuple[float, float, float, float]:
+    """Share of cuts with its interval, and how much larger its variance is than that of independent cuts.
+
+    Korn and Graubard, Survey Methodology 24 (1998): the exact interval (Clopper and Pearson) of as many independent
+    cuts as these are worth, with Student's quantile for few trains; valid for rare events, too, also if there was none.
+    It covered the truth in 95 to 100 % of 1000 sets of 20 to 1000 trains with 40 cuts and shares of 0.001 to 0.1, where
+    the cuts of a train are independent. Where they have a correlation of 0.1: in 94 to 95 % of the sets with 80
+    expected hits or more, in 92 to 94 % with 40, but only in 78 to 83 % with 4 to 8. So few hits do not tell how they
+    cluster, and the upper end is then too low.
+
+    Two or three trains are worth so few cuts that the lower end may be 1e-60: one below `NEGLIGIBLE` of the share is 0;
+    likewise the upper end 1, by the share of the other cuts.
+    """
+    trains, total, found = len(base), float(base.sum()), float(hits.sum())
+    if total == 0.0:
+        return float("nan"), float("nan"), float("nan"), float("nan")
+    p = found / total
+    effect = 1.0
+    if trains >= FEWEST_TRAINS and 0.0 < p < 1.0:
+        residual = (hits - p * base) / (total / trains)
+        effect = max(float(residual.var(ddof=1)) / trains * total / (p * (1.0 - p)), 1.0)
+    few = 1.0
+    if trains >= FEWEST_TRAINS:
+        few = float(stdtrit(trains - 1, 0.975) / stdtrit(max(total - 1.0, 1.0), 0.975)) ** 2
+    n = total / (effect * few)
+    k = p * n
+    tail = 0.5 * (1.0 - CONFIDENCE)
+    low = float(betaincinv(k, n - k + 1.0, tail)) if k > 0.0 else 0.0
+    high = float(betaincinv(k + 1.0, n - k, 1.0 - tail)) if k < n else 1.0
+    return p, low if low >= NEGLIGIBLE * p else 0.0, high if 1.0 - high >= NEGLIGIBLE * (1.0 - p) else 1.0, effect
+
+
+def train_figures(found: TrainOutcomes, wanted_share: float = 0.005) -> tuple[TrainFigure, ...]:
+    """The figures that are told of trains; `wanted_share`: for `enough_n` of shares."""
+    cuts, judged = found.cuts.astype(float), found.judged.astype(float)
+
+    def part(name: str, hits: NDArray[np.int64], base: Floats) -> TrainFigure:
+        p, low, high, effect = share(hits.astype(float), base)
+        enough = 1.959964**2 * p * (1.0 - p) / wanted_share**2 * effect
+        return TrainFigure(name, "1", p, low, high, int(base.sum()), enough)
+
+    def mean(name: str, unit: str, sums: Floats, base: Floats) -> TrainFigure:
+        return TrainFigure(name, unit, *ratio(sums, base), len(base))
+
+    passes = found.passes.sum(axis=1).astype(float)
+    figures = [
+        mean("hump_speed", "m/s", found.span_m, found.span_s),
+        mean("cars_per_hour", "1/h", 3600.0 * found.span_cars, found.span_s),
+        part("catch_ups", found.caught, cuts),
+        part("misrouted", found.misrouted.sum(axis=1), cuts),
+        part("contacts", found.contact.sum(axis=1), cuts),
+        part("contacts_in_last_position", found.caught_in_last, cuts),
+        part("caught_on_track", found.caught_on_track, cuts),
+        part("stopped_on_the_way", found.stopped, cuts),
+        mean("unseparated_elements_per_cut", "1", found.unseparated.sum(axis=1).astype(float), cuts),
+        part("overspeed", found.overspeed.sum(axis=1), judged),
+        part("overspeed_to_1_5", found.overspeed[:, 0], judged),
+        part("overspeed_to_2", found.overspeed[:, 1], judged),
+        part("overspeed_above_2", found.overspeed[:, 2], judged),
+        mean("gap_per_cut", "m", found.gap_m, judged),
+    ]
+    if found.strokes.any():  # no position models its valves otherwise
+        figures.append(mean("strokes_per_pass", "1", found.strokes.sum(axis=1).astype(float), passes))
+    return tuple(figures)

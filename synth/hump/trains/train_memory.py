@@ -1,0 +1,37 @@
+"""What happened to the cuts of many trains so far: written cut by cut, read by the control of those that follow."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from synth.hump.trains.hump_routes import HumpRoutes, Mark
+
+
+class TrainMemory:
+    """Arrays (trains, cuts, …), NaN or −1 where nothing happened yet.
+
+    `route`: rows of the routes that the cuts went, at last. `crest_s`, `hump_speed_m_s`. `time_s` (…, elements, marks).
+    (…, positions): `begin_s` and `entry_m_s` of a pass, `command_m_s`, `exit_m_s`, `end_s`, `strokes` of valves;
+    `ruled_m_s`, what the position was set to while the cut was in it, also where it was in contact.
+    Columns of elements, the number of elements where none: `misrouted_at`, `contact_at`; `behind`, the cut with which
+    it is in contact from `since_s` on, −1 for none. (…, elements): `unseparated`, `foul`. At the track: `free_m` that
+    the cut found, head at its end `end_m` with `end_speed_m_s` at `end_time_s`; where it is `caught_on_track`, because
+    it touched the cut ahead while that still rolled, the speed is the difference of both. `tail_m`: where the last axle
+    stands at last, from `still_s` on, also of cuts in contact.
+    """
+
+    def __init__(self, trains: int, cuts: int, routes: HumpRoutes) -> None:
+        shape, elements, positions = (trains, cuts), routes.elements, routes.positions
+        self.route = np.full(shape, -1)
+        self.crest_s, self.hump_speed_m_s = np.full(shape, np.nan), np.full(shape, np.nan)
+        self.time_s = np.full((*shape, elements, len(Mark)), np.nan)
+        self.begin_s, self.entry_m_s, self.command_m_s, self.exit_m_s, self.end_s, self.ruled_m_s = (
+            np.full((*shape, positions), np.nan) for _ in range(6)
+        )
+        self.strokes = np.zeros((*shape, positions), dtype=np.int64)
+        self.misrouted_at, self.contact_at = np.full(shape, elements), np.full(shape, elements)
+        self.unseparated, self.foul = np.zeros((*shape, elements), bool), np.zeros((*shape, elements), bool)
+        self.behind, self.since_s = np.full(shape, -1), np.full(shape, np.nan)
+        self.caught_on_track = np.zeros(shape, bool)
+        self.tail_m, self.still_s = np.full(shape, np.nan), np.full(shape, np.nan)
+        self.free_m, self.end_m, self.end_speed_m_s, self.end_time_s = (np.full(shape, np.nan) for _ in range(4))

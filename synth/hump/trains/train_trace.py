@@ -1,0 +1,261 @@
+"""One humped train to look at: the way of each cut, who occupied which element, and what went wrong when."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from synth.aim.scene import COUPLING_SPEED_M_S
+from synth.hump.trains.cut_trace import CutTrace, TracedTrain
+from synth.hump.trains.hump_routes import HumpRoutes, Mark
+from synth.hump.trains.humping import Hump
+from synth.hump.trains.train_cuts import TrainCuts
+from synth.hump.trains.train_memory import TrainMemory
+
+
+class AlarmKind(Enum):
+    """What can go wrong, as it is called."""
+
+    MISROUTED = "misrouted"
+    CONTACT = "contact"
+    UNSEPARATED = "not separated"
+    FOUL = "foul"
+    ON_TRACK = "coupled to a rolling cut"
+    OVERSPEED = "coupled too fast"
+    STOPPED = "stopped before its track"
+
+    @property
+    def severe(self) -> bool:
+        """Whether something went wrong; cuts are often close together in a retarder, or meet gently on a track."""
+        return self not in (AlarmKind.UNSEPARATED, AlarmKind.ON_TRACK)
+
+
+@dataclass(frozen=True)
+class Alarm:
+    """`cut` of the train, counted from 0, met `ahead` (None: nobody) at the element `number` (None: on its track)."""
+
+    kind: AlarmKind
+    time_s: float
+    cut: int
+    ahead: int | None
+    number: int | None
+
+
+@dataclass(frozen=True)
+class Occupied:
+    """`cut` is on the element `number`, `from_m` to `to_m` from the crest, until its last axle is out, which is never
+    where it stays there."""
+
+    number: int
+    cut: int
+    from_m: float
+    to_m: float
+    from_s: float
+    to_s: float
+
+
+@dataclass(frozen=True)
+class Passage:
+    """A pass of the retarder `number`, speeds in m/s; `end_s` is infinite where the cut stopped in it."""
+
+    number: int
+    begin_s: float
+    end_s: float
+    entry_m_s: float
+    command_m_s: float
+    exit_m_s: float
+
+
+@dataclass(frozen=True)
+class TracedCut:
+    """Cut number `cut` of a train, from 0: what it is, and what became of it.
+
+    `route`: row of the route that it went, `wanted`: of that to its track. `coupled_m_s`, `gap_m`: how much faster it
+    was than the cars that it met on its track, and what it left free ahead of them; None where it did not, and where
+    neither counts: it was misrouted, in contact, or stopped on the way.
+    """
+
+    cut: int
+    route: int
+    wanted: int
+    cars: int
+    category: int
+    mass_t: float
+    length_m: float
+    crest_s: float
+    hump_speed_m_s: float
+    passages: tuple[Passage, ...]
+    free_m: float
+    coupled_m_s: float | None
+    gap_m: float | None
+    trace: CutTrace
+
+
+@dataclass(frozen=True)
+class TrainTrace:
+    """The train `number`, from 0, of its seed; its cuts in order; alarms by time."""
+
+    number: int
+    routes: HumpRoutes
+    cuts: tuple[TracedCut, ...]
+    occupied: tuple[Occupied, ...]
+    alarms: tuple[Alarm, ...]
+
+    @property
+    def end_s(self) -> float:
+        """When everything stands."""
+        return max(float(cut.trace.time_s[-1]) for cut in self.cuts)
+
+    @property
+    def mean_hump_speed_m_s(self) -> float:
+        """From the middle of the first cut at the crest to that of the last one; NaN of one cut."""
+        if len(self.cuts) < 2:
+            return float("nan")
+        pushed = sum(cut.length_m for cut in self.cuts) - 0.5 * (self.cuts[0].length_m + self.cuts[-1].length_m)
+        return pushed / (self.cuts[-1].crest_s - self.cuts[0].crest_s)
+
+
+def train_trace(hump: Hump, trains: TrainCuts, memory: TrainMemory, lane: int) -> TrainTrace:
+    """The train `lane` of those that `memory` tells; `hump` and `trains` must be those that were humped.
+
+    Nothing is simulated anew: free rolls go from the states that the memory has, passes as they were.
+    """
+    ways = list(TracedTrain(hump, trains, memory, lane).traces())
+    touch_s: dict[int, float] = {}
+    for cut in range(trains.cuts):
+        leader = leader_of(memory, lane, cut)
+        if leader is not None:
+            length = float(trains.length_m[lane * trains.cuts + leader])
+            by_s = float(memory.since_s[lane, cut])
+            if memory.caught_on_track[lane, cut]:
+                ways[cut], touch_s[cut] = ways[cut].held_up(ways[leader], length)
+            else:
+                ways[cut], touch_s[cut] = ways[cut].behind(ways[leader], length, by_s)
+    cuts = tuple(traced_cut(hump, trains, memory, lane, way) for way in enumerate(ways))
+    occupied = tuple(occupations(hump.routes, memory, lane))
+    found = sorted(alarms(hump.routes, memory, lane, cuts, touch_s), key=lambda alarm: (alarm.time_s, alarm.cut))
+    return TrainTrace(trains.first + lane, hump.routes, cuts, occupied, tuple(found))
+
+
+def leader_of(memory: TrainMemory, lane: int, cut: int) -> int | None:
+    """The cut with which `cut` came in contact, on the way or, while both rolled, on their track."""
+    if not memory.caught_on_track[lane, cut]:
+        leader = int(memory.behind[lane, cut])
+        return leader if leader >= 0 else None
+    same = np.flatnonzero(memory.route[lane, :cut] == memory.route[lane, cut])
+    return int(same[-1]) if len(same) else None
+
+
+def user_ahead(routes: HumpRoutes, memory: TrainMemory, lane: int, cut: int, column: int) -> int | None:
+    """Who used the element of `column` last before `cut`; nobody, where there is no such column."""
+    if column >= routes.elements:
+        return None
+    vertex = routes.vertex[memory.route[lane], column]
+    used = np.isfinite(memory.time_s[lane, :cut, column, Mark.FIRST_IN])
+    same = np.flatnonzero(used & (vertex[:cut] == vertex[cut]))
+    return int(same[-1]) if len(same) else None
+
+
+def traced_cut(
+    hump: Hump, trains: TrainCuts, memory: TrainMemory, lane: int, numbered: tuple[int, CutTrace]
+) -> TracedCut:
+    """One cut with its way."""
+    cut, way = numbered
+    row, elements = lane * trains.cuts + cut, hump.routes.elements
+    caught = min(memory.misrouted_at[lane, cut], memory.contact_at[lane, cut]) < elements
+    judged = not (caught or stopped_early(hump.routes, memory, lane, cut))
+    speed = float(memory.end_speed_m_s[lane, cut])
+    coupled = judged and (speed > 0.0 or bool(memory.caught_on_track[lane, cut]))
+    gap = float(memory.free_m[lane, cut] - memory.end_m[lane, cut])
+    return TracedCut(
+        cut,
+        route=int(memory.route[lane, cut]),
+        wanted=int(trains.route[row]),
+        cars=int(trains.cars[row]),
+        category=int(trains.category[row]),
+        mass_t=float(trains.mass_t[row]),
+        length_m=float(trains.length_m[row]),
+        crest_s=float(memory.crest_s[lane, cut]),
+        hump_speed_m_s=float(memory.hump_speed_m_s[lane, cut]),
+        passages=tuple(passages(hump.routes, memory, lane, cut)),
+        free_m=float(memory.free_m[lane, cut]),
+        coupled_m_s=speed if coupled else None,
+        gap_m=gap if judged and not coupled else None,
+        trace=way,
+    )
+
+
+def stopped_early(routes: HumpRoutes, memory: TrainMemory, lane: int, cut: int) -> bool:
+    """Whether a cut stopped of itself with its head ahead of the end of its last position."""
+    leaves = routes.exit_m[memory.route[lane, cut]]
+    return bool(memory.end_m[lane, cut] < leaves[np.isfinite(leaves)].max(initial=0.0))
+
+
+def passages(routes: HumpRoutes, memory: TrainMemory, lane: int, cut: int) -> Iterator[Passage]:
+    """The passes of a cut in order."""
+    route = memory.route[lane, cut]
+    for position in np.flatnonzero(np.isfinite(memory.begin_s[lane, cut])):
+        number = routes.numbers[routes.vertex[route, routes.retarder[route, position]]]
+        kept = (memory.begin_s, memory.end_s, memory.entry_m_s, memory.command_m_s, memory.exit_m_s)
+        yield Passage(number, *(float(array[lane, cut, position]) for array in kept))
+
+
+def occupations(routes: HumpRoutes, memory: TrainMemory, lane: int) -> Iterator[Occupied]:
+    """Which cut is on which element from when to when, in the order of cuts and of their ways."""
+    time = memory.time_s[lane]
+    for cut, column in zip(*np.nonzero(np.isfinite(time[:, :, Mark.FIRST_IN])), strict=True):
+        route = memory.route[lane, cut]
+        vertex = routes.vertex[route, column]
+        if vertex >= 0:
+            place = routes.place_m[route, column]
+            ends = time[cut, column, Mark.LAST_OUT]
+            yield Occupied(
+                number=routes.numbers[vertex],
+                cut=int(cut),
+                from_m=float(place[Mark.FIRST_IN]),
+                to_m=float(place[Mark.LAST_OUT]),
+                from_s=float(time[cut, column, Mark.FIRST_IN]),
+                to_s=float(np.nan_to_num(ends, nan=np.inf, posinf=np.inf)),
+            )
+
+
+def alarms(
+    routes: HumpRoutes, memory: TrainMemory, lane: int, cuts: tuple[TracedCut, ...], touch_s: Mapping[int, float]
+) -> Iterator[Alarm]:
+    """What went wrong, cut by cut. Elements where two cuts are not separated count at the first of them alone, and not
+    where they are coupled already.
+
+    `touch_s`: when cuts in contact touch those ahead of them.
+    """
+    for each in cuts:
+        cut = each.cut
+        met = (
+            (AlarmKind.MISROUTED, int(memory.misrouted_at[lane, cut]), Mark.FIRST_IN),
+            (AlarmKind.CONTACT, int(memory.contact_at[lane, cut]), Mark.FIRST_IN),
+            (AlarmKind.UNSEPARATED, first_true(memory.unseparated[lane, cut]), Mark.FIRST_IN),
+            (AlarmKind.FOUL, first_true(memory.foul[lane, cut]), Mark.FIRST_CLEAR),
+        )
+        for kind, column, mark in met:
+            if column < routes.elements:
+                number = routes.numbers[routes.vertex[each.route, column]]
+                ahead = user_ahead(routes, memory, lane, cut, column)
+                met_s = float(memory.time_s[lane, cut, column, mark])
+                if kind is AlarmKind.UNSEPARATED and met_s > touch_s.get(cut, np.inf):
+                    continue
+                yield Alarm(kind, touch_s.get(cut, met_s) if kind is AlarmKind.CONTACT else met_s, cut, ahead, number)
+        ends_s = float(each.trace.time_s[-1])
+        if memory.caught_on_track[lane, cut]:
+            ahead = leader_of(memory, lane, cut)
+            yield Alarm(AlarmKind.ON_TRACK, touch_s.get(cut, ends_s), cut, ahead, None)
+        if each.coupled_m_s is not None and each.coupled_m_s > COUPLING_SPEED_M_S:
+            yield Alarm(AlarmKind.OVERSPEED, touch_s.get(cut, ends_s), cut, None, None)
+        if stopped_early(routes, memory, lane, cut):
+            yield Alarm(AlarmKind.STOPPED, ends_s, cut, None, None)
+
+
+def first_true(found: np.ndarray) -> int:
+    """Place of the first one, else how many there are."""
+    return int(found.argmax()) if found.any() else len(found)

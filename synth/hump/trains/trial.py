@@ -1,0 +1,243 @@
+"""A trial: all that trains over a hump depend on, and the trains themselves, batch by batch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
+from plant_models.errors import require, require_between
+from synth.hump.trains.aim_control import AimControl, ReadAhead
+from synth.hump.trains.asked import ExitSpeeds, HumpSpeeds
+from synth.hump.trains.expected_way import ExpectedWay
+from synth.hump.trains.forecast import Given
+from synth.hump.trains.free_tracks import FreeTracks
+from synth.hump.trains.hump_aim import HumpAim
+from synth.hump.trains.hump_position import HumpPosition
+from synth.hump.trains.hump_routes import HumpRoutes
+from synth.hump.trains.humping import Hump, humped
+from synth.hump.trains.interval import CentredRule, IntervalRule
+from synth.hump.trains.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
+from synth.hump.trains.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
+from synth.hump.trains.outcomes import TrainOutcomes, outcomes
+from synth.hump.trains.rollability import CategoryMean, Rollability, measured_rollability
+from synth.hump.trains.route_rolling import RouteRolling, rolling_on
+from synth.hump.trains.route_ways import RouteWays
+from synth.hump.trains.speed_sensors import SpeedSensors
+from synth.hump.trains.stretch_reading import AimReading, ReadByRoute, ReadOnStretch
+from synth.hump.trains.train_cuts import TrainCuts, expected
+from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.trains.train_plan import Planner, TrainPlan
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+CENTRED = CentredRule()
+
+WORST_ENTRY_M_S = 1.0
+"""Assumed: bad runners against the wind come to the last position with this at least."""
+
+USUAL_M_S = 4.0
+"""Speed at which the wind is counted in that."""
+
+SPARE_M = 30.0
+"""Room that a cut gets besides its length (assumed)."""
+
+BATCH = 250
+"""Trains that are humped side by side; no figure depends on it."""
+
+
+class TrainSource(Protocol):
+    """Where trains come from: a population, or one list again and again."""
+
+    def trains(self, first: int, count: int) -> TrainCuts:
+        """Trains `first` … `first + count − 1`; each is the same whatever the others."""
+
+
+class BrakeHead(Protocol):
+    """What a position can take from cuts."""
+
+    def __call__(self, mass_t: Floats, axles: Ints, category: Ints) -> Floats:
+        """Energy head (rows,), metres."""
+
+
+class Program(Protocol):
+    """How hump speeds and the exit speeds before the train are found."""
+
+    def plan(self, planner: Planner, known: KnownCuts) -> TrainPlan:
+        """The plan of some trains."""
+
+
+@dataclass(frozen=True)
+class SimulatedPairs:
+    """Hump speeds from simulated pairs of cuts, by the method of the planner."""
+
+    def plan(self, planner: Planner, known: KnownCuts) -> TrainPlan:
+        """See `Program`."""
+        return planner.plan(known)
+
+
+@dataclass(frozen=True)
+class ConstantSpeed:
+    """One hump speed for all cuts."""
+
+    speed_m_s: float
+
+    def __post_init__(self) -> None:
+        require_between("hump speed: constant_m_s", self.speed_m_s, 0.3, 4.0)
+
+    def plan(self, planner: Planner, known: KnownCuts) -> TrainPlan:
+        """See `Program`."""
+        return planner.constant(known, self.speed_m_s)
+
+
+@dataclass(frozen=True)
+class Sensing:
+    """What the control measures of cuts on their way: speeds at both ends of every free stretch (`SpeedSensors`).
+
+    `for_aim`, `for_intervals`: what the resistance so read is used for.
+    """
+
+    speed_std_m_s: float = 0.1
+    for_aim: bool = True
+    for_intervals: bool = True
+
+
+@dataclass(frozen=True)
+class Control:
+    """`feedback`: exit speeds of the interval positions are chosen when a cut comes; else as planned before the train.
+
+    `sensing` None: the resistance of a cut is that of its category. `slow_down_s`: a feedback slows the train down for
+    a cut that would come closer than this to those ahead of it; None: never. `rule`: of the feedback.
+    """
+
+    feedback: bool = True
+    sensing: Sensing | None = None
+    slow_down_s: float | None = None
+    rule: IntervalRule = CENTRED
+
+
+@dataclass(frozen=True)
+class HumpTrial:
+    """Trains from `source` over `routes`, whose `ways` are the routes as their cars feel them.
+
+    `positions`: models in order from the crest, of every route that has so many; the last of each route aims, all
+    others keep intervals; `planner` with the ranges of all but the last one; `free`: tracks before each train. `aim`:
+    exit speeds of the last position of each route; `usable_heads_m`: energy head (rows,) that
+    each position can be trusted to take from cuts, by mass, axles and category.
+    """
+
+    source: TrainSource
+    routes: HumpRoutes
+    ways: RouteWays
+    positions: tuple[HumpPosition, ...]
+    planner: Planner
+    program: Program
+    control: Control
+    aim: HumpAim
+    usable_heads_m: tuple[BrakeHead, ...]
+    free: FreeTracks
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        require(
+            len(self.positions) == self.routes.positions == len(self.planner.ranges) + 1,
+            f"hump trial: {len(self.positions)} position models and {len(self.planner.ranges)} ranges of exit speeds; "
+            f"the hump has {self.routes.positions} positions, and ranges belong to all but the last",
+        )
+
+    def batch(self, first: int, count: int) -> TrainOutcomes:
+        """What the trains `first` … `first + count − 1` come to."""
+        trains, _, memory = self.humped(first, count)
+        return outcomes(self.routes, trains, memory)
+
+    def humped(self, first: int, count: int) -> tuple[TrainCuts, TrainPlan, TrainMemory]:
+        """The same trains with their plan and all that happened to them."""
+        trains, free_m, known, plan = self.planned(first, count)
+        rolls = rolling_on(self.ways, trains.population, trains.drawn, self.threads)
+        hump = Hump(self.routes, self.positions, rolls)
+        control = self.control_of(trains, known, plan, self.aim_of(trains, known, rolls))
+        speeds: HumpSpeeds = ProgramSpeeds(plan.hump_speed_m_s)
+        if self.control.slow_down_s is not None and isinstance(control, Feedback):
+            speeds = FeedbackSpeeds(control, self.control.slow_down_s)
+        return trains, plan, humped(hump, trains, free_m, speeds, control)
+
+    def planned(self, first: int, count: int) -> tuple[TrainCuts, Floats, KnownCuts, TrainPlan]:
+        """The same trains before they are humped: with their free tracks, what is known of them, and their plan."""
+        trains = self.source.trains(first, count)
+        free_m = with_room(self.routes, trains, self.free.free_m(self.routes, trains.seed, first, count))
+        known = self.known(trains, free_m)
+        return trains, free_m, known, self.program.plan(self.planner, known)
+
+    def known(self, trains: TrainCuts, free_m: Floats) -> KnownCuts:
+        """What is known of trains before they are humped, and how they will be aimed if tracks stay as they are."""
+        release = self.routes.release_m[trains.route] + trains.last_axle_m
+        lanes = np.repeat(np.arange(trains.trains), trains.cuts)
+        free = free_m[lanes, trains.route] - release
+        sensing = self.control.sensing
+        measured = sensing is not None and sensing.for_aim
+        aim = self.aim.expected_m_s(trains.route, trains.category, trains.cars, free, measured)
+        gravity = reduced_gravity_m_s2(trains)
+        heads = [brake(trains.mass_t, trains.axles, trains.category) for brake in self.usable_heads_m]
+        braked = 2.0 * gravity[:, None] * np.stack(heads, axis=1)
+        least = np.sqrt(WORST_ENTRY_M_S**2 + 2.0 * gravity * self.worse_head_m(trains))
+        last = self.routes.positions_of[trains.route] - 1
+        given = Given(aim, np.sqrt(aim**2 + braked[np.arange(len(trains)), last]), least)
+        return known_cuts(trains, self.ways, given, braked, self.threads)
+
+    def worse_head_m(self, trains: TrainCuts) -> Floats:
+        """Energy head (rows,) that bad runners against the wind lose more than expected ahead of the last position."""
+        rows, last = np.arange(len(self.routes.routes)), self.routes.positions_of - 1
+        begins = np.where(last > 0, self.routes.exit_m[rows, np.maximum(last - 1, 0)], 0.0)
+        stretch = np.where(last >= 0, self.routes.entrance_m[rows, last] - begins, 0.0)[trains.route]
+        drawn = expected(trains)
+        weather = trains.population.weather
+        wind = np.array([weather.head_wind_mean_m_s, weather.head_wind_mean_m_s + 2.0 * weather.head_wind_std_m_s])
+        against = (USUAL_M_S + wind) * np.abs(USUAL_M_S + wind)
+        worse = runner_n_per_kn(trains, drawn, BAD) - drawn.resistance_n_per_kn
+        return np.asarray(1e-3 * stretch * (worse + drawn.air_n_per_kn * (against[1] - against[0])))
+
+    def aim_of(self, trains: TrainCuts, known: KnownCuts, rolls: RouteRolling) -> AimControl:
+        """The control of the last position for these trains, which roll as in `rolls`."""
+        sensing, stretch_m = self.control.sensing, self.aim.stretch_m
+        reading: AimReading | None = None
+        if sensing is not None and sensing.for_aim:
+            sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
+            reading = ReadAhead(sensors, expected_way(trains, known))
+            if stretch_m is not None and np.isfinite(stretch_m).any():
+                reading = ReadByRoute(reading, ReadOnStretch(sensors, rolls, stretch_m))
+        return AimControl(self.aim, self.routes, trains, reading)
+
+    def control_of(self, trains: TrainCuts, known: KnownCuts, plan: TrainPlan, aim: AimControl) -> ExitSpeeds:
+        """The control of all positions for these trains."""
+        if not self.control.feedback:
+            return OpenLoop(plan, aim)
+        sensing = self.control.sensing
+        rollability: Rollability = CategoryMean(known)
+        if sensing is not None and sensing.for_intervals:
+            sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
+            rollability = measured_rollability(sensors, trains, expected_way(trains, known))
+        return Feedback(self.planner, known, plan, self.control.rule, rollability, aim)
+
+
+def expected_way(trains: TrainCuts, known: KnownCuts) -> ExpectedWay:
+    """The way of `trains` as it is expected before the train."""
+    return ExpectedWay(known.rolls, known.mean_n_per_kn, reduced_gravity_m_s2(trains))
+
+
+def reduced_gravity_m_s2(trains: TrainCuts) -> Floats:
+    """g' of each cut by its list, (rows,)."""
+    return np.asarray(GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * trains.axles / trains.mass_t))
+
+
+def with_room(routes: HumpRoutes, trains: TrainCuts, free_m: Floats) -> Floats:
+    """`free_m` (trains, routes), but where a train brings more cars than there is room for, all room that they need:
+    nobody sends cuts to a full track. As much as the track has, where that is less."""
+    train = np.repeat(np.arange(trains.trains), trains.cuts)
+    needs = np.zeros(free_m.shape)
+    np.add.at(needs, (train, trains.route), trains.length_m + SPARE_M)
+    begins = routes.standing_from_m
+    return np.asarray(np.clip(begins + needs, free_m, routes.length_m))

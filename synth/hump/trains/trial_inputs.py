@@ -1,0 +1,103 @@
+"""All inputs of a trial in one folder, so that what ran can be told and repeated when the files it came from are gone.
+
+inputs/config.toml               the configuration, with what the command line said
+inputs/hump.toml or hump.railml  the hump
+inputs/train.csv                 the sorting list, if there was one
+inputs/tables/position-N.h5      the book of a position, position-N.toml what it was tuned with
+inputs/aim/N/                    aim tables of the last position, for each group of routes
+inputs/types/                    the user's own types
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from plant_models.library import Library, TypeFile
+from synth.frame.results_directory import ResultsDirectory
+from synth.frame.settings.toml_file import read_text, toml_tree
+from synth.frame.settings.toml_text import toml_text
+from synth.hump.configuration.trial_file import INPUTS, TrialFile
+from synth.hump.hump_file import RAILML_SUFFIXES, hump_text
+from synth.hump.trains.position_choice import PositionChoice
+from synth.hump.trains.resolved_trial import ResolvedTrial
+from synth.retarder.configuration.own_types import with_own_types
+from synth.retarder.forms.table_file import file_stem
+
+CONFIG, LIST, TABLES, AIMS, TYPES = "config.toml", "train.csv", "tables", "aim", "types"
+
+
+def files_read(file: TrialFile, config: ResolvedTrial) -> Iterator[Path]:
+    """Every file that `config`, which was resolved from `file`, was read from."""
+    yield Path(file.place)
+    yield file.hump_source
+    yield from (Path(each.place) for each in file.library.own)
+    if file.settings.trains.list is not None:
+        yield file.folder / file.settings.trains.list
+    for choice in config.positions:
+        yield from filter(None, (choice.book, choice.tuned_with))
+    for aim in config.aims:
+        yield from aim.files
+
+
+def write_inputs(file: TrialFile, config: ResolvedTrial, directory: ResultsDirectory) -> None:
+    """Write the inputs of `config`, which was resolved from `file`, into the folder of `directory`."""
+    tree: dict[str, Any] = config.settings.model_dump(mode="json", exclude_none=True, exclude_unset=True)
+    own: dict[str, TypeFile] = {str(each): each for each in file.library.own}
+    contents: dict[str, bytes] = {}
+    suffix = file.hump_source.suffix if file.hump_source.suffix in RAILML_SUFFIXES else ".toml"
+    tree["hump"] = f"hump{suffix}"
+    contents[tree["hump"]] = hump_text(file.hump_source).encode("utf-8")
+    if file.settings.trains.list is not None:
+        tree.setdefault("trains", {})["list"] = LIST
+        contents[LIST] = (file.folder / file.settings.trains.list).read_bytes()
+    told = (position_tree(choice, contents, own) for choice in config.positions)
+    tree["position"] = [each for each in told if len(each) > 1]
+    if config.aims:
+        kept = {key: value for key, value in tree.get("aim", {}).items() if key not in ("tables", "tables_of")}
+        tree["aim"] = kept | aim_tree(config, contents)
+    if own:
+        tree["library"] = [f"{TYPES}/"]
+    for type_file in own.values():
+        contents[f"{TYPES}/{type_file.kind.folder}/{type_file.name}.toml"] = type_file.text.encode("utf-8")
+    contents[CONFIG] = toml_text(tree).encode("utf-8")
+    directory.write_all({f"{INPUTS}/{name}": content for name, content in contents.items()})
+
+
+def position_tree(choice: PositionChoice, contents: dict[str, bytes], own: dict[str, TypeFile]) -> dict[str, Any]:
+    """A position as [[position]] tells it; its files are added to `contents`, the types that they name to `own`."""
+    found: dict[str, Any] = {"number": choice.number}
+    if choice.out_of_service:
+        found["out_of_service"] = True
+    if choice.supply_share != 1.0:
+        found["supply_share"] = choice.supply_share
+    if choice.std_set_by_user:
+        found["exit_std_m_s"] = choice.exit_std_m_s
+    if choice.book is not None:
+        found["tables"] = f"{TABLES}/position-{choice.number}{choice.book.suffix}"
+        contents[found["tables"]] = choice.book.read_bytes()
+    if choice.tuned_with is not None:
+        found["tables_config"] = f"{TABLES}/position-{choice.number}.toml"
+        tree, library = with_own_types(
+            toml_tree(read_text(choice.tuned_with), str(choice.tuned_with)), str(choice.tuned_with)
+        )
+        own |= {str(each): each for each in library.own}
+        contents[found["tables_config"]] = toml_text(relocated(tree, library)).encode("utf-8")
+    return found
+
+
+def aim_tree(config: ResolvedTrial, contents: dict[str, bytes]) -> dict[str, Any]:
+    """The aim tables as [aim] tells them; they are added to `contents`."""
+    folders: dict[str, str] = {}
+    for number, choice in enumerate(config.aims, start=1):
+        for place, (file, table) in enumerate(zip(choice.files, choice.tables.tables, strict=True), start=1):
+            contents[f"{AIMS}/{number}/{place}-{file_stem(table)}.json"] = file.read_bytes()
+        folders |= {str(retarder): f"{AIMS}/{number}" for retarder in choice.retarders}
+    of_all = len(config.aims) == 1 and not config.designed_rows
+    return {"tables": f"{AIMS}/1"} if of_all else {"tables_of": folders}
+
+
+def relocated(tree: dict[str, Any], library: Library) -> dict[str, Any]:
+    """The configuration in `tree` as it stands in the folder of tables."""
+    return {**tree, "library": [f"../{TYPES}/"]} if library.own else tree

@@ -1,0 +1,44 @@
+"""A configuration as its author wrote it, so that it can be written again with other numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from plant_models.library import BUILT_IN, Library
+from synth.frame.settings.toml_file import Tree, read_text, toml_tree
+from synth.retarder.configuration.config_file import BUILT_IN as BUILT_IN_PLACE
+from synth.retarder.configuration.config_file import valid_settings
+from synth.retarder.configuration.own_types import with_own_types
+from synth.retarder.configuration.resolved_config import ResolvedConfig, resolve
+
+
+@dataclass(frozen=True)
+class ConfigSource:
+    """A configuration as its author wrote it: names in place of paths, and his own types. None: the built-in one."""
+
+    place: str
+    tree: Tree
+    library: Library
+
+    @property
+    def reads(self) -> tuple[Path, ...]:
+        """The files of his own types."""
+        return tuple(Path(each.place) for each in self.library.own)
+
+    def resolved(self) -> ResolvedConfig:
+        """Every default filled in."""
+        return resolve(valid_settings(self.tree, self.place), self.place, self.library)
+
+
+def config_source(path: Path | None) -> ConfigSource:
+    """The configuration in the file `path`; `InputError` on any fault."""
+    if path is None:
+        return ConfigSource(BUILT_IN_PLACE, {}, BUILT_IN)
+    return source_of_text(read_text(path), str(path))
+
+
+def source_of_text(text: str, place: str) -> ConfigSource:
+    """The configuration written in `text`; `place`: what messages call it, and where paths in it begin."""
+    tree, library = with_own_types(toml_tree(text, place), place)
+    return ConfigSource(place, tree, library)

@@ -1,0 +1,150 @@
+"""Which drift it is that an alarm tells of, since which pass, and how large it is.
+
+Each cause is given its most likely size and beginning on the passes up to now; the one with the largest likelihood is
+named.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.logs.drift.causes import TIMES, Cause
+from synth.logs.drift.charts import Charts
+from synth.logs.drift.evidence import Evidence
+
+Floats = NDArray[np.float64]
+
+BACK = 30
+"""A drift may have begun so many passes before the chart that gave the alarm left 0."""
+
+FURTHER = 250
+"""Passes after an alarm that the decision takes at most."""
+
+ODDS = 500.0
+"""A cause is named where it is so many times as likely as the next one.
+
+Each has its best size and beginning, and the question is asked anew after every pass until the answer is yes: with 50,
+5 in 100 names of a slow exhaust without gauge were wrong."""
+
+NEAR = 8.0
+"""Sizes whose logarithms of likelihood differ by less have a parabola through them."""
+
+FALL95 = 1.9207294103470202
+"""Half the 95 % quantile of χ² with one degree of freedom."""
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Of one cause: its most likely size and beginning, and the logarithm of its likelihood over that of no drift."""
+
+    cause: Cause
+    size: float
+    begin: int
+    log_gain: float
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What is behind an alarm, known by the passes up to and with `until`.
+
+    `gains`: of all causes, the most likely first; `begins95`: earliest and latest pass that the drift of the first one
+    may have begun with.
+    """
+
+    alarm: int
+    until: int
+    gains: tuple[Gain, ...]
+    begins95: tuple[int, int]
+
+    @property
+    def first(self) -> Gain:
+        """The most likely cause."""
+        return self.gains[0]
+
+    @property
+    def odds(self) -> float:
+        """How many times as likely as the next one the first one is, each at its own best."""
+        return math.exp(min(self.gains[0].log_gain - self.gains[1].log_gain, 700.0))
+
+    @property
+    def decided(self) -> bool:
+        """Whether the first cause is the cause."""
+        return self.odds >= ODDS
+
+
+def diagnosed(evidence: Evidence, charts: Charts) -> Diagnosis | None:
+    """What is behind the first alarm, decided as early as the odds allow; None without an alarm."""
+    if charts.alarm is None:
+        return None
+    alarm = charts.alarm[0]
+    last = min(alarm + FURTHER, len(evidence) - 1)
+    for until in range(alarm, last):
+        found = gains_of(evidence, charts, until)
+        if found[0].log_gain - found[1].log_gain >= math.log(ODDS):
+            return diagnosis(evidence, charts, until, found)
+    return diagnosis(evidence, charts, last, gains_of(evidence, charts, last))
+
+
+def first_begin(charts: Charts) -> int:
+    """The earliest pass that the drift behind the first alarm is taken to have begun with."""
+    assert charts.alarm is not None
+    return max(0, charts.zero_before(*charts.alarm) + 1 - BACK)
+
+
+def gains_of(evidence: Evidence, charts: Charts, until: int) -> tuple[Gain, ...]:
+    """All causes by the passes up to `until`, the most likely first."""
+    begin = first_begin(charts)
+    found = []
+    for cause, ratio in zip(evidence.causes, evidence.ratios, strict=True):
+        sums = from_each(ratio[begin : until + 1])
+        number = int(np.argmax(sums.max(axis=1)))
+        size, gain = highest(cause, sums[number])
+        found.append(Gain(cause, size, begin + number, gain))
+    return tuple(sorted(found, key=lambda gain: -gain.log_gain))
+
+
+def diagnosis(evidence: Evidence, charts: Charts, until: int, gains: tuple[Gain, ...]) -> Diagnosis:
+    """`gains`, with the interval of the beginning."""
+    assert charts.alarm is not None
+    first, begin = gains[0], first_begin(charts)
+    ratio = evidence.ratios[evidence.causes.index(first.cause)]
+    by_begin = np.array([highest(first.cause, row)[1] for row in from_each(ratio[begin : until + 1])])
+    near = begin + np.flatnonzero(by_begin >= by_begin.max() - FALL95)
+    return Diagnosis(charts.alarm[0], until, gains, (int(near[0]), int(near[-1])))
+
+
+def from_each(ratio: Floats) -> Floats:
+    """Sums from each pass to the last, (m, sizes)."""
+    return np.asarray(np.cumsum(ratio[::-1], axis=0)[::-1])
+
+
+def scaled(cause: Cause, sizes: Sequence[float] | Floats) -> Floats:
+    """Sizes on the scale of their steps: logarithms of factors."""
+    values = np.asarray(sizes, dtype=np.float64)
+    return np.asarray(np.log(values)) if cause.scale is TIMES else values
+
+
+def unscaled(cause: Cause, value: float) -> float:
+    """The size at a place on that scale."""
+    return math.exp(value) if cause.scale is TIMES else value
+
+
+def highest(cause: Cause, total: Floats) -> tuple[float, float]:
+    """(most likely size, gain there) of summed ratios (sizes,): the best of the sizes.
+
+    Where its neighbours are not far below, by the parabola through the three. Farther apart a parabola is no likelihood
+    any more: it would rise above the best size by more than the truth does.
+    """
+    k = int(np.argmax(total))
+    if not 0 < k < len(total) - 1 or total[k] - min(total[k - 1], total[k + 1]) > NEAR:
+        return cause.sizes[k], float(total[k])
+    at = scaled(cause, cause.sizes)
+    slope, bend = 0.5 * (total[k + 1] - total[k - 1]), total[k + 1] - 2.0 * total[k] + total[k - 1]
+    if bend >= 0.0:
+        return cause.sizes[k], float(total[k])
+    return unscaled(cause, float(at[k] - slope / bend * (at[k + 1] - at[k]))), float(total[k] - 0.5 * slope**2 / bend)

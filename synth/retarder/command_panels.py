@@ -1,0 +1,66 @@
+"""Panels of the best command, one a stage: colours over path and speed, for whoever draws lines or sensors on them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_rgba_array
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from synth.frame.picture.house_style import new_figure, place
+from synth.retarder.case_result import PolicyMap
+
+DOWN, HOLD, UP, HATCH = "#cfe4f3", "#fafafa", "#fae0cf", "#b5b5b5"
+STRIPE_PERIOD, STRIPE_WIDTH = 9, 2
+"""Of the hatching, in pixels along the path."""
+
+
+def stage_panels(title: str, subject: str, stages: int) -> tuple[Figure, Any]:
+    """A figure with a panel for each stage and at least one free place, path across and speed upwards; and its grid."""
+    columns = math.ceil((stages + 1) / 2)
+    figure = new_figure(3.7 * columns + 0.4, 6.6, title, subject)
+    place(figure, left=0.6, right=0.2, bottom=0.5, top=0.85, w=0.08, h=0.22)
+    grid = figure.subplots(2, columns, sharex=True, sharey=True)
+    for free in grid.flat[stages:]:
+        free.set_axis_off()
+    return figure, grid
+
+
+def label_panels(grid: Any, stages: int) -> None:
+    """Names and units on the outer panels of `stage_panels`, after they are drawn."""
+    for stage in range(stages):
+        below_is_free = stage + grid.shape[1] >= stages
+        grid.flat[stage].tick_params(labelbottom=below_is_free)
+        if below_is_free:
+            grid.flat[stage].set_xlabel("path of the first axle, m", fontsize=9)
+    for row in grid:
+        row[0].set_ylabel("speed, m/s", fontsize=9)
+
+
+def command_image(
+    policy: PolicyMap,
+    stage: int,
+    ends_m: tuple[float, float],
+    speeds_m_s: tuple[float, float],
+    pixels: tuple[int, int],
+) -> NDArray[np.uint8]:
+    """The map of one stage as colours (speed, path, 4) on an even mesh of `pixels`, path by speed; slowest first."""
+    width, height = pixels
+    path = ends_m[0] + (np.arange(width) + 0.5) / width * (ends_m[1] - ends_m[0])
+    speed = speeds_m_s[0] + (np.arange(height) + 0.5) / height * (speeds_m_s[1] - speeds_m_s[0])
+    node = np.clip(np.searchsorted(policy.path_m, path, side="right") - 1, 0, policy.path_m.size - 1)
+    here = np.ix_(node, nearest(policy.speed_m_s, speed))
+    shown = policy.command[stage][here].T + 1
+    stripe = (np.arange(width) - np.arange(height)[:, None]) % STRIPE_PERIOD < STRIPE_WIDTH
+    shown[stripe & policy.indifferent[stage][here].T] = 3
+    colours = np.round(255.0 * to_rgba_array([DOWN, HOLD, UP, HATCH])).astype(np.uint8)
+    image: NDArray[np.uint8] = colours[shown]
+    return image
+
+
+def nearest(nodes: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Index of the node nearest to each value; `nodes` increase."""
+    return np.searchsorted(0.5 * (nodes[1:] + nodes[:-1]), values)

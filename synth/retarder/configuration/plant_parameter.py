@@ -1,0 +1,182 @@
+"""The parameters of a plant that a table may have been tuned on wrongly, and how far each can be off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from plant_models import Plant, PressingForce
+from plant_models.library import SourcedValue
+from synth.retarder.configuration.cut_class import CutClass
+from synth.retarder.configuration.plant_values import (
+    GRADE,
+    RELATIVE,
+    SLOPE_BY_AXLES,
+    SLOPES,
+    STAGE_PRESSURES,
+    TOUCH_PRESSURE,
+)
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+
+FULL_RANGE: Final = 0.5
+"""Relative change at which a parameter that is nominally zero takes the end of its sensible range."""
+
+LEFT_OUT: Final = {
+    "retarder.zones_m": "surveyed with a tape; a table is refused for other zones",
+    "retarder.max_entry_speed_m_s": "a limit of use, not part of the motion",
+    "targets.exit_speeds_m_s": "commanded, not a property of the plant",
+    "cut.car.length_m": "drawing of the car",
+    "cut.car.pivot_base_m": "drawing of the car; a table is refused for other axles",
+    "cut.car.bogie_axle_offsets_m": "drawing of the car; a table is refused for other axles",
+    "cut.car.pivots_m": "drawing of the car; a table is refused for other axles",
+    "cut.car.axle_offsets_m": "drawing of the car; a table is refused for other axles",
+    "cut.allowed_stage": "a rule of the yard; a table is refused for another",
+    "cut.entrance_stage": "a rule of the yard; a table is refused for another",
+    "sensor.missed_share": "none is lost; what a third would do stands in the report of a tune",
+    "sensor.missed_burst_s": "without effect while no reading is lost",
+    "friction.mean_cv": "no property of a pass: what lines with an estimator are designed for",
+    "retarder.pneumatics.day_spread": "no property of a pass: what lines with an estimator are designed for",
+    "regulator.approach_m": "where the regulator acts; a table is refused for another (study approach)",
+}
+"""Assumed values that are not changed, and why."""
+
+NAMES: Final = {
+    STAGE_PRESSURES: "stage pressures, all",
+    SLOPES[0]: "K: force by pressure (= mean friction)",
+    SLOPES[1]: "K: force by pressure and load (= mean friction)",
+    TOUCH_PRESSURE: "P0: touch pressure",
+    SLOPE_BY_AXLES: "c(n): slope with all axles inside",
+    "retarder.pneumatics.supply_pressure_kpa": "supply pressure",
+    "retarder.pneumatics.brake_delay_s": "tZ2: supply valve delay",
+    "retarder.pneumatics.touch_delay_s": "t00: extra delay up to touch",
+    "retarder.pneumatics.release_delay_s": "tZ0: exhaust valve delay",
+    "retarder.pneumatics.fill_time_constant_s": "filling time constant",
+    "retarder.pneumatics.exhaust_time_constant_s": "exhaust time constant",
+    "retarder.pneumatics.dead_band_kpa": "dead band of the stages",
+    "retarder.pneumatics.closing_delay_s": "valve closing delay",
+    "entry.low_m_s": "lowest entry speed",
+    "entry.high_m_s": "highest entry speed",
+    "friction.common_cv": "CV of friction, per cut",
+    "friction.axle_cv": "CV of friction, per axle",
+    "friction.path_std": "std of friction along the path",
+    "friction.correlation_length_m": "correlation length of friction",
+    "friction.floor": "floor of friction",
+    "sensor.noise_m_s": "sensor noise",
+    "sensor.sample_period_s": "sampling period",
+    "sensor.computing_delay_s": "computing delay",
+    GRADE: "grade",
+    "cut.mass_t": "mass, within the category",
+    "cut.rolling_resistance.mean_n_per_kn": "mean rolling resistance",
+    "cut.rolling_resistance.std_n_per_kn": "std of rolling resistance",
+}
+"""What each parameter is called in tables and pictures, by its key; in this order they are studied."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number of a plant: `key` of the configuration, `nominal` value (1 for the factors of `plant_values`).
+
+    `low`, `high`: limits that physics or use put to it, in words `limited_by`; `assumed`: nothing citable stands
+    behind it; `largest` stands for +50 % where `nominal` is 0 (−50 % is then 0); `sensible`: the library's range, None
+    where it has none for this very value.
+    """
+
+    key: str
+    name: str
+    nominal: float
+    assumed: bool
+    low: float = 0.0
+    high: float = math.inf
+    limited_by: str = ""
+    largest: float = 0.0
+    sensible: tuple[float, float] | None = None
+
+    def at(self, relative: float) -> float:
+        """The value `relative` off (−0.5 … +0.5), clipped to the limits."""
+        return min(max(self.wanted(relative), self.low), self.high)
+
+    def wanted(self, relative: float) -> float:
+        """The value `relative` off, not clipped."""
+        if self.nominal == 0.0:
+            return self.largest * max(0.0, relative) / FULL_RANGE
+        return self.nominal * (1.0 + relative)
+
+    def note(self, relative: float) -> str:
+        """A remark where the value is not simply nominal·(1 + `relative`)."""
+        if self.nominal == 0.0:
+            return f"nominal 0; {self.at(relative):g}"
+        if self.at(relative) != self.wanted(relative):
+            return f"clipped to {self.at(relative):.4g} ({self.limited_by})"
+        return ""
+
+
+def parameters(config: ResolvedConfig, cut_class: CutClass, plant: Plant, target_m_s: float) -> tuple[Parameter, ...]:
+    """All parameters of `plant`, which is the nominal one of `cut_class`, in the order of `NAMES`."""
+    assumed = set(assumed_keys(config, cut_class))
+    ranges = {value.key: sensible_range(value) for value in config.retarder.provenance}
+    limits = limits_of(cut_class, plant, target_m_s)
+    found = []
+    for key, name in NAMES.items():
+        nominal = nominal_value(plant, key)
+        if nominal is None:
+            continue
+        low, high, why = limits.get(key, (0.0, math.inf, ""))
+        span = ranges.get(key)
+        largest = span[1] if nominal == 0.0 and span else 0.0
+        found.append(Parameter(key, name, nominal, key in assumed, low, high, why, largest, span))
+    return tuple(found)
+
+
+def sensible_range(value: SourcedValue) -> tuple[float, float] | None:
+    """The library's range of a single number; for those of `RELATIVE` as factors on the number."""
+    number = value.value[0] if isinstance(value.value, tuple) and len(value.value) == 1 else value.value
+    if value.range is None or not isinstance(number, float):
+        return None
+    if value.key not in RELATIVE:
+        return value.range
+    return (value.range[0] / number, value.range[1] / number) if number > 0.0 else None
+
+
+def assumed_keys(config: ResolvedConfig, cut_class: CutClass) -> Iterator[str]:
+    """Keys of the assumed values of the configuration, 'cut.' for those of the class."""
+    yield from (value.key for value in config.retarder.provenance if value.assumed)
+    for value in cut_class.provenance:
+        if value.assumed:
+            yield "cut." + value.key.partition(".")[2]
+
+
+def nominal_value(plant: Plant, key: str) -> float | None:
+    """The value of `plant` under `key`; None where its force law has none."""
+    if key in RELATIVE:
+        return 1.0
+    force = plant.position.force
+    if key == TOUCH_PRESSURE:
+        return force.touch_pressure_kpa
+    if key in SLOPES:
+        pressing = isinstance(force, PressingForce)
+        field = "slope_kn_per_kpa_per_pair" if pressing else "slope_kn_per_kpa_per_t"
+        return float(getattr(force, field)) if key == SLOPES[0 if pressing else 1] else None
+    section, _, field = key.rpartition(".")
+    holder = {
+        "retarder.pneumatics": plant.position.pneumatics,
+        "friction": plant.friction,
+        "sensor": plant.sensor,
+        "entry": plant.entry,
+        "cut": plant.cut,
+        "cut.rolling_resistance": plant.resistance,
+    }[section]
+    return float(getattr(holder, field))
+
+
+def limits_of(cut_class: CutClass, plant: Plant, target_m_s: float) -> dict[str, tuple[float, float, str]]:
+    """(low, high, reason) of the parameters that cannot go anywhere."""
+    entry = plant.entry
+    return {
+        "entry.low_m_s": (target_m_s, entry.high_m_s, "from the target to the highest entry speed"),
+        "entry.high_m_s": (
+            entry.low_m_s, plant.position.max_entry_speed_m_s, "from the lowest entry speed to the limit of the type",
+        ),
+        "cut.mass_t": (*cut_class.mass_limits_t, "the category, tare and gross mass"),
+    }  # fmt: skip

@@ -1,0 +1,50 @@
+"""The position that a configuration names, with the user's types and values in it."""
+
+from __future__ import annotations
+
+from plant_models.library import POSITIONS, RETARDERS, SENSORS, Kind, Library, PositionEntry
+from plant_models.library.near_miss import near_miss
+from plant_models.library.position_entry import position_with_types
+from synth.frame.input_error import InputError
+from synth.retarder.configuration.plant_fault import in_file
+from synth.retarder.configuration.plant_settings import DEFAULT_POSITION
+from synth.retarder.configuration.settings import Settings
+from tuning_tables.excerpt import excerpt
+
+
+def resolve_position(settings: Settings, file: str, library: Library) -> PositionEntry:
+    """The library's position, other types in it where the file says so, and the values that it sets."""
+    name = position_name(settings, file, library)
+    types = (("retarder.type", RETARDERS, settings.retarder.type), ("sensor.type", SENSORS, settings.sensor.type))
+    for key, kind, chosen in types:
+        if chosen is not None:
+            require_held(f"{file}: {key}", kind, chosen, library)
+    zones = settings.retarder.zones_m
+    if zones is not None and zones[0][0] != 0.0:
+        raise InputError(
+            f"{file}: retarder.zones_m begins with {zones[0]}; the first zone must start at 0, the entrance"
+        )
+    with in_file(file):
+        entry = position_with_types(name, library, settings.retarder.type, settings.sensor.type)
+        return entry.with_values(settings.library_overrides())
+
+
+def position_name(settings: Settings, file: str, library: Library) -> str:
+    """The name under position.name or, as it was once spelt, retarder.name."""
+    name, older = settings.position.name, settings.retarder.name
+    if name is not None and older is not None and name != older:
+        raise InputError(
+            f"{file}: position.name is {excerpt(name)!r}, but retarder.name is {excerpt(older)!r}; both name the "
+            "position: leave out retarder.name"
+        )
+    if name is not None:
+        return require_held(f"{file}: position.name", POSITIONS, name, library)
+    return require_held(f"{file}: retarder.name", POSITIONS, older or DEFAULT_POSITION, library)
+
+
+def require_held(where: str, kind: Kind, name: str, library: Library) -> str:
+    """`name`, if the library holds such a type; `InputError` that begins with `where`."""
+    known = library.names(kind)
+    if name not in known:
+        raise InputError(f"{where} is {excerpt(name)!r}, which the library does not hold; {near_miss(name, known)}")
+    return name

@@ -1,0 +1,48 @@
+"""The forms that tables for point sensors are exported in: for each the files, by name, with their bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from synth.retarder.forms.code_options import PLAIN, CodeOptions
+from synth.retarder.forms.table_forms import Files, one_each
+from tuning_tables.passages.csv_file import to_passage_csv
+from tuning_tables.passages.json_file import to_passage_json
+from tuning_tables.passages.passage_table import PassageTable
+
+PassageForm = Callable[[Sequence[PassageTable], CodeOptions], Files]
+
+
+def passage_json_form(tables: Sequence[PassageTable], _options: CodeOptions = PLAIN) -> Files:
+    """One JSON file a table."""
+    return one_each(tables, to_passage_json, ".json")
+
+
+def passage_csv_form(tables: Sequence[PassageTable], _options: CodeOptions = PLAIN) -> Files:
+    """One CSV file a table."""
+    return one_each(tables, to_passage_csv, ".csv")
+
+
+def passage_c_form(tables: Sequence[PassageTable], options: CodeOptions = PLAIN) -> Files:
+    """C99 source of all tables together, self-test and golden rows; `InvalidTable` if they make no book."""
+    from tuning_tables.passages.c_source import passage_c_files
+    from tuning_tables.passages.passage_book import PassageBook
+
+    return passage_c_files(PassageBook(tuple(tables)), options.prefix, options.self_test.passages)
+
+
+def passage_st_form(tables: Sequence[PassageTable], options: CodeOptions = PLAIN) -> Files:
+    """Structured Text of all tables together and its self-test; `InvalidTable` if they make no book."""
+    from tuning_tables.passages.passage_book import PassageBook
+    from tuning_tables.passages.st_source import passage_st_files, passage_st_unit_files
+
+    write = passage_st_unit_files if options.split else passage_st_files
+    return write(PassageBook(tuple(tables)), options.prefix, options.self_test.passages)
+
+
+PASSAGE_FORMS: Mapping[str, PassageForm] = {
+    "json": passage_json_form,
+    "csv": passage_csv_form,
+    "c": passage_c_form,
+    "st": passage_st_form,
+}

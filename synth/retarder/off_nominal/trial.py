@@ -1,0 +1,71 @@
+"""A table as stored, put through the first of its validation passes on each changed plant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from plant_models import PlantError
+from synth.retarder.off_nominal.condition import CONDITIONS, Change, Condition
+from synth.retarder.off_nominal.outcome import OffNominal, Outcome
+from synth.simulation.closed_loop import TableController
+from synth.simulation.common_passes import CommonPasses, common_passes
+from synth.simulation.exit_statistics import OVERSPEED_M_S, overspeed_of, rms_ratio
+from synth.simulation.passes import ExitSample
+from synth.simulation.replicates import rms_of, share_of
+from tuning_tables import ControllerTable
+
+PASSES = 4000
+"""Passes of a condition: the first of the validation, or all of these if they are fewer."""
+
+ChangedPasses = Mapping[str, CommonPasses] | str
+"""The passes on each changed plant, by what the change does; a sentence where no plant can be so."""
+
+
+@dataclass(frozen=True)
+class Trials:
+    """The passes of every condition."""
+
+    passes: tuple[tuple[Condition, ChangedPasses], ...]
+
+    def of(self, table: ControllerTable, nominal: ExitSample) -> tuple[OffNominal, ...]:
+        """What becomes of `table`, whose validation passes on its own plant were `nominal`."""
+        return tuple(tried(condition, passes, table, nominal) for condition, passes in self.passes)
+
+
+def trials(validation: CommonPasses, count: int = PASSES) -> Trials:
+    """The first `count` passes of `validation` on every changed plant; the same for all tables of a class."""
+    first = validation.first(count)
+    return Trials(tuple((condition, changed_passes(condition.changes, first)) for condition in CONDITIONS))
+
+
+def changed_passes(changes: Mapping[str, Change], nominal: CommonPasses) -> ChangedPasses:
+    """The same passes on the plant of each change; a sentence where one of these cannot be."""
+    try:
+        return {name: common_passes(change(nominal.plant), nominal.passes) for name, change in changes.items()}
+    except PlantError as error:
+        return str(error)
+
+
+def tried(condition: Condition, passes: ChangedPasses, table: ControllerTable, nominal: ExitSample) -> OffNominal:
+    """The worst that becomes of `table` in `condition`."""
+    if isinstance(passes, str):
+        return OffNominal(condition.key, condition.name, None, passes)
+    try:
+        samples = {name: each.run(TableController(table)) for name, each in passes.items()}
+    except PlantError as error:  # valves that cannot follow commands at any time
+        return OffNominal(condition.key, condition.name, None, str(error))
+    outcomes = [outcome_of(name, sample, table.target_speed_m_s, nominal) for name, sample in samples.items()]
+    return OffNominal(condition.key, condition.name, max(outcomes, key=lambda each: each.rms_m_s))
+
+
+def outcome_of(change: str, sample: ExitSample, target_m_s: float, nominal: ExitSample) -> Outcome:
+    """The figures of `sample`, the first passes of `nominal` on the changed plant."""
+    same = ExitSample(**{name: array[: len(sample)] for name, array in vars(nominal).items()})
+    known = bool(np.any(same.exit_speed_m_s != target_m_s)) and bool(np.any(sample.exit_speed_m_s != target_m_s))
+    ratio, ratio_ci95 = rms_ratio(sample, same, target_m_s) if known else (None, None)
+    overspeed, stalled = overspeed_of(sample, target_m_s, OVERSPEED_M_S), share_of(sample.stalled, sample.weight)
+    rms = rms_of(sample.exit_speed_m_s - target_m_s, sample.weight)
+    return Outcome(change, len(sample), *rms, ratio, ratio_ci95, *overspeed, *stalled)

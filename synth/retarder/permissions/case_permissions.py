@@ -1,0 +1,159 @@
+"""What each permission would give in every case of a configuration, computed and simulated, nothing quoted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TypeVar
+
+from plant_models import Plant
+from plant_models.approach import Approach
+from synth.problem.aim import Aim
+from synth.retarder.attempted_case import attempted
+from synth.retarder.class_setup import ClassSetup, class_setup, origin_of, validation_passes
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.settings import RegulatorSettings
+from synth.retarder.failed_case import FailedCase, parted
+from synth.retarder.permissions.permission import (
+    AllPermissions,
+    CasePermissions,
+    FailedPermission,
+    Permission,
+    PermissionResult,
+)
+from synth.retarder.tuned_table import TunedTable, at_any_time, solutions, tuned_table
+from synth.retarder.watcher import Watcher
+from synth.retarder.work_queue import run_nested
+from synth.simulation.closed_loop import TableController
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio
+from synth.simulation.passes import ExitSample
+from synth.solver.backward_induction import Solution
+from synth.solver.one_blas_thread import one_blas_thread
+
+APPROACH_M = 4.0
+"""The approach that is tried where the configuration has none."""
+
+Design = Callable[[], PermissionResult]
+"""Designs, predicts and simulates one permission; raises what `attempted` takes for a failure."""
+
+Made = TypeVar("Made")
+
+
+@dataclass(frozen=True)
+class CaseTuned:
+    """A case with its table as configured: what permissions are compared with."""
+
+    config: ResolvedConfig
+    setup: ClassSetup
+    aim: Aim
+    tuned: TunedTable
+    sample: ExitSample
+
+    @property
+    def target_m_s(self) -> float:
+        """The commanded exit speed."""
+        return self.aim.target_speed_m_s
+
+    def result(self, permission: Permission, sample: ExitSample, predicted_m_s: float) -> PermissionResult:
+        """What a closed loop on the common passes says of a permission."""
+        ratio, ci95 = rms_ratio(sample, self.sample, self.target_m_s)
+        return PermissionResult(permission, exit_statistics(sample, self.target_m_s), ratio, ci95, predicted_m_s)
+
+    def attempt(self, make: Callable[[], Made]) -> Made | FailedCase:
+        """What `make` gives for this case, or why it gives nothing."""
+        return attempted(make, self.setup.label, self.target_m_s, self.config)
+
+
+@one_blas_thread()
+def permissions_of(config: ResolvedConfig, created: str, workers: int, watcher: Watcher) -> AllPermissions:
+    """All cases of `config`, on `workers` threads; no figure depends on how many.
+
+    A case without a table, or a permission without a design, is told of, and loses no other.
+    """
+    origin, passes = origin_of(config.sha256, created), validation_passes(config)
+
+    def start(label: str, plant: Plant) -> list[Callable[[], CasePermissions | FailedCase]]:
+        aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
+        setup = attempted(partial(class_setup, config, label, plant, passes, origin), label, 0.0, config)
+        if isinstance(setup, FailedCase):
+            failed = [replace(setup, target_m_s=aim.target_speed_m_s) for aim in aims]
+            return [partial(case_failed, watcher, case) for case in failed]
+        return [partial(told_permissions, watcher, config, setup, each) for each in solutions(setup.design, aims)]
+
+    found = run_nested([partial(start, *each) for each in config.plants()], workers)
+    return AllPermissions(*parted(case for cases in found for case in cases))
+
+
+def told_permissions(
+    watcher: Watcher, config: ResolvedConfig, setup: ClassSetup, solution: Solution
+) -> CasePermissions | FailedCase:
+    """All permissions of one case, told of."""
+    make = partial(case_tuned, config, setup, solution)
+    case = attempted(make, setup.label, solution.aim.target_speed_m_s, config)
+    if isinstance(case, FailedCase):
+        return case_failed(watcher, case)
+    found = case_permissions(case)
+    watcher.done(f"{found.label} to {found.target_speed_m_s:g} m/s: {found.told}")
+    return found
+
+
+def case_failed(watcher: Watcher, case: FailedCase) -> FailedCase:
+    """A case without a table, told of."""
+    watcher.done(case.sentence)
+    return case
+
+
+def case_tuned(config: ResolvedConfig, setup: ClassSetup, solution: Solution) -> CaseTuned:
+    """The table of a solution, and its passes."""
+    tuned = tuned_table(setup, solution)
+    return CaseTuned(config, setup, solution.aim, tuned, setup.passes.run(TableController(tuned.table)))
+
+
+def case_permissions(case: CaseTuned) -> CasePermissions:
+    """All permissions of one case; with its reason each that nothing can be designed for."""
+    results, failed = [], []
+    for permission, design in designs(case):
+        found = case.attempt(design)
+        if isinstance(found, FailedCase):
+            failed.append(FailedPermission(permission, found.reason))
+        else:
+            results.append(found)
+    in_order = {each.permission: each for each in results}
+    return CasePermissions(
+        case.setup.label,
+        case.target_m_s,
+        exit_statistics(case.sample, case.target_m_s),
+        case.tuned.table.predicted.rms_m_s,
+        tuple(in_order[each] for each in Permission if each in in_order),
+        tuple(failed),
+    )
+
+
+def designs(case: CaseTuned) -> Iterator[tuple[Permission, Design]]:
+    """Every permission that can be asked for, with its design."""
+    regulator, plant = case.config.regulator, case.setup.plant
+    kind = Permission.NO_ESTIMATOR if regulator.estimator else Permission.ESTIMATOR
+    other = regulator.model_copy(update={"estimator": not regulator.estimator})
+    yield kind, partial(tuned_anew, case, kind, replace(case.config, regulator=other), plant)
+    for kind, pressure in ((Permission.ANY_TIME, "gauge"), (Permission.WITHOUT_GAUGE, "none")):
+        sampled = regulator.model_copy(update={"commands": "any_time", "pressure": pressure})
+        yield kind, partial(with_surfaces, case, kind, sampled)
+    ahead = plant.approach.length_m > 0.0
+    kind = Permission.NO_APPROACH if ahead else Permission.APPROACH
+    approach = Approach() if ahead else Approach(APPROACH_M, plant.approach.entrance_stage)
+    yield kind, partial(tuned_anew, case, kind, case.config, replace(plant, approach=approach))
+
+
+def tuned_anew(case: CaseTuned, permission: Permission, config: ResolvedConfig, plant: Plant) -> PermissionResult:
+    """The same case tuned with another configuration or plant, on the same passes."""
+    setup = class_setup(config, case.setup.label, plant, case.setup.passes.passes, case.setup.origin)
+    (solution,) = solutions(setup.design, [case.aim])
+    other = case_tuned(config, setup, solution)
+    return case.result(permission, other.sample, other.tuned.table.predicted.rms_m_s)
+
+
+def with_surfaces(case: CaseTuned, permission: Permission, regulator: RegulatorSettings) -> PermissionResult:
+    """The table for commands at any time, polished from the lines of the table."""
+    table = at_any_time(replace(case.setup, regulator=regulator), case.aim, case.tuned).table
+    return case.result(permission, case.setup.passes.run(TableController(table)), table.predicted.rms_m_s)

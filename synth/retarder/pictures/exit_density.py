@@ -1,0 +1,143 @@
+"""Predicted exit-speed density over the simulated histogram: two independent computations of one thing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.frame.picture.house_style import (
+    GREY,
+    INK,
+    SKY,
+    VERMILLION,
+    dress,
+    legend_below,
+    logarithmic_y,
+    new_figure,
+    place,
+)
+from synth.retarder.case_names import cut_name
+from synth.retarder.case_result import CaseResult
+from synth.retarder.exit_bins import NARROW_M_S, WIDE_M_S, prediction_origin
+from synth.simulation.exit_statistics import OVERSPEED_M_S, ExitStatistics
+from synth.solver.exit_density import ExitDensity
+
+LEAST = 1e-4
+"""Bottom of the logarithmic panel, 1/(m/s): one cut in 100 000 in a wide bin."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class DrawnExits:
+    """What is drawn of one case: simulated exits, each standing for `exit_weight` cuts, and the predicted density."""
+
+    target_speed_m_s: float
+    exit_speeds_m_s: NDArray[np.float32]
+    exit_weight: NDArray[np.float64]
+    predicted: ExitDensity
+    predicted_rms_m_s: float
+    statistics: ExitStatistics
+
+
+def exit_density(cases: Sequence[CaseResult]) -> Figure:
+    """The exits of cases of one class with lines; see `density_figure`."""
+    exits = [
+        DrawnExits(
+            case.target_speed_m_s,
+            case.exit_speeds_m_s,
+            case.exit_weight,
+            case.predicted,
+            case.comparison.table.predicted_rms_m_s,
+            case.comparison.table.statistics,
+        )
+        for case in cases
+    ]
+    return density_figure(cut_name(cases[0]), exits, prediction_origin(cases))
+
+
+def density_figure(subject: str, exits: Sequence[DrawnExits], origin: str) -> Figure:
+    """One column a case: density in 1/(m/s) over exit speed in m/s, near the target, and its tails logarithmically.
+
+    `origin`: what the predictions come from, for the legend.
+    """
+    columns = len(exits)
+    figure = new_figure(3.9 * columns + 0.7, 6.4, "Exit speed, predicted and simulated", subject)
+    in_legend = min(4, 2 * columns)  # beside each other: a single panel is narrow
+    place(figure, left=0.8, right=0.2, bottom=0.75 + 0.2 * math.ceil(4 / in_legend), top=1.25, w=0.2, h=0.22)
+    panels = figure.subplots(2, columns, squeeze=False)
+    for column, each in enumerate(exits):
+        draw_case(panels[0, column], panels[1, column], each)
+    panels[0, 0].set_ylabel("density, 1/(m/s)", fontsize=9)
+    panels[1, 0].set_ylabel("the same, logarithmic", fontsize=9)
+    handles = [
+        Patch(facecolor=SKY, label="simulated passes"),
+        Line2D([], [], color=VERMILLION, linewidth=1.4, label=origin),
+        Line2D([], [], color=INK, linewidth=1.2, label="target"),
+        Line2D([], [], color=GREY, linewidth=1.2, linestyle="--", label=f"target ± {OVERSPEED_M_S:g} m/s"),
+    ]
+    legend_below(figure, handles, columns=in_legend)
+    return figure
+
+
+def draw_case(near: Axes, tails: Axes, case: DrawnExits) -> None:
+    """Both panels of one case."""
+    target, speeds, share = case.target_speed_m_s, case.exit_speeds_m_s, case.exit_weight / case.exit_weight.sum()
+    speed, predicted = predicted_density(case.predicted)
+    edges = bin_edges_m_s(target, float(max(speeds.max(initial=0.0), speed[-1])))
+    moving = speeds > 0.0
+    simulated = np.histogram(speeds[moving], edges, weights=share[moving])[0] / np.diff(edges)
+    dress(near, panel_title(case))
+    dress(tails, x="exit speed, m/s")
+    told = predicted > LEAST
+    shown = np.concatenate((speed[told], edges[1:][simulated > LEAST], edges[:-1][simulated > LEAST]))
+    if not shown.size:
+        near.text(0.5, 0.5, "no pass leaves the position", transform=near.transAxes, ha="center", fontsize=9)
+        return
+    for axes in (near, tails):
+        axes.stairs(simulated, edges, fill=True, color=SKY, linewidth=0)
+        axes.plot(speed, np.where(told, predicted, np.nan), color=VERMILLION, linewidth=1.3)
+        axes.axvline(target, color=INK, linewidth=1.0)
+        for mark in (target - OVERSPEED_M_S, target + OVERSPEED_M_S):
+            axes.axvline(mark, color=GREY, linewidth=1.0, linestyle="--")
+    highest, far = max(float(predicted.max()), float(simulated.max())), 1.2 * OVERSPEED_M_S
+    near.set(xlim=(target - far, target + far), ylim=(0.0, 1.08 * highest))
+    tails.set_xlim(min(target - far, float(shown.min())), max(target + far, float(shown.max())))
+    logarithmic_y(tails, (1.25 * LEAST, 2.0 * highest))
+
+
+def predicted_density(exits: ExitDensity) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Speeds, and the density there in 1/(m/s); the grid's first energy stands for cuts next to a stall."""
+    speed, probability = exits.speed_m_s[1:], exits.probability[1:]
+    return speed, probability * speed / (0.5 * exits.speed_m_s[1] ** 2)
+
+
+def bin_edges_m_s(target_m_s: float, highest_m_s: float) -> NDArray[np.float64]:
+    """Edges of the bins from 0 to beyond `highest_m_s`; the target is one of them."""
+    half = round(OVERSPEED_M_S / NARROW_M_S)
+    narrow = NARROW_M_S * np.arange(-half, half + 1)
+    wide = np.arange(OVERSPEED_M_S + WIDE_M_S, max(target_m_s, highest_m_s - target_m_s) + 1.5 * WIDE_M_S, WIDE_M_S)
+    edges = target_m_s + np.concatenate((-wide[::-1], narrow, wide))
+    return np.append(0.0, edges[edges > 1e-9])
+
+
+def panel_title(case: DrawnExits) -> str:
+    """Target, both rms with the interval of the simulated one, stalls if there are any."""
+    found = case.statistics
+    low, high = found.rms_ci95_m_s
+    lines = [
+        f"target {case.target_speed_m_s:g} m/s",
+        f"predicted rms {case.predicted_rms_m_s:.4f} m/s",
+        f"simulated rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s",
+    ]
+    if found.stalled:
+        lines[0] += f" · {found.stalled:.2%} of the passes stopped"
+    return "\n".join(lines)

@@ -1,0 +1,36 @@
+"""Best command and the region of indifferent control on the solver's grid."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.retarder.case_result import PolicyMap
+from synth.solver.backward_induction import TIE_M2_S2, Solution
+
+
+def policy_map(solution: Solution, tolerance_m2_s2: float) -> PolicyMap:
+    """The solver's map by measured speed.
+
+    The cost of holding is taken as 0, of a change as minus its gain; the best command is the cheapest, hold in
+    a tie; a state is indifferent if a second command costs at most `tolerance_m2_s2` more than the best.
+    """
+    grid = solution.chain.grid
+    down, up = (np.moveaxis(gain, 1, 0) for gain in (solution.gain_down, solution.gain_up))
+    down, up = np.where(available(down), down, -np.inf), np.where(available(up), up, -np.inf)
+    up[solution.chain.plant.entrance_stage :, : solution.chain.approach_nodes] = -np.inf
+    best = np.maximum(0.0, np.maximum(down, up))
+    command = np.zeros(down.shape, dtype=np.int8)
+    command[(down > 0.0) & (down >= up)] = -1
+    command[(up > 0.0) & (up > down)] = 1
+    near = np.stack([best - gain <= tolerance_m2_s2 for gain in (np.zeros_like(best), down, up)])
+    indifferent = near.sum(axis=0) >= 2
+    changes = np.maximum(down, up)
+    tied = np.abs(changes[np.isfinite(changes)]) <= TIE_M2_S2
+    return PolicyMap(grid.path_m[:-1], grid.speed_m_s, command, indifferent, float(tied.mean()))
+
+
+def available(gain: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which commands a stage has at all: the sweep leaves the gain of a missing one exactly zero everywhere."""
+    exists: NDArray[np.bool_] = np.any(gain != 0.0, axis=(1, 2), keepdims=True)
+    return np.broadcast_to(exists, gain.shape)

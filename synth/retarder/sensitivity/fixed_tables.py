@@ -1,0 +1,67 @@
+"""The tables that stay as they are while the plant under them varies: tuned here, or read from a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from plant_models import Plant
+from synth.problem.aim import Aim
+from synth.retarder.class_setup import class_setup, origin_of, validation_passes
+from synth.retarder.configuration.cut_class import CutClass
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.forms.table_file import read_tables
+from synth.retarder.tuned_table import solutions, tuned_table
+from synth.retarder.validation.revalidation import plant_for
+from synth.solver.one_blas_thread import one_blas_thread
+from tuning_tables import ControllerTable
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class FixedTables:
+    """The tables of one class, in the order of their targets, and its nominal plant."""
+
+    cut_class: CutClass
+    plant: Plant
+    tables: tuple[ControllerTable, ...]
+
+
+def tables_in(path: Path, config: ResolvedConfig, source: str) -> tuple[FixedTables, ...]:
+    """The tables in `path` with the classes of `config` that they fit; `InputError` where there is none."""
+    tables = [table for file in read_tables(path, directory_allowed=True) for table in file.tables]
+    labels = [plant_for(table, config, source)[0] for table in tables]
+    found = []
+    for cut_class in config.cuts:
+        own = [table for table, label in zip(tables, labels, strict=True) if label == cut_class.label]
+        if own:
+            ordered = tuple(sorted(own, key=lambda table: table.target_speed_m_s))
+            found.append(FixedTables(cut_class, config.plant_of(cut_class), ordered))
+    return tuple(found)
+
+
+@one_blas_thread()
+def tables_tuned(config: ResolvedConfig, created: str, workers: int, tell: Tell) -> tuple[FixedTables, ...]:
+    """The tables that a tune of `config` makes: the same lines, to the bit."""
+
+    def of(cut_class: CutClass) -> FixedTables:
+        plant = config.plant_of(cut_class)
+        origin = origin_of(config.sha256, created)
+        setup = class_setup(config, cut_class.label, plant, validation_passes(config).part(0, 1), origin)
+        aims = [Aim(target, config.criterion) for target in config.targets_of(cut_class.label)]
+        tables = tuple(tuned_table(setup, solution).table for solution in solutions(setup.design, aims))
+        tell(f"{cut_class.label}: {len(tables)} tables tuned")
+        return FixedTables(cut_class, plant, tables)
+
+    return side_by_side(of, config.cuts, workers)
+
+
+def side_by_side(
+    work: Callable[[CutClass], FixedTables], cuts: Sequence[CutClass], workers: int
+) -> tuple[FixedTables, ...]:
+    """`work` of each class, in their order."""
+    with ThreadPoolExecutor(max_workers=workers) as pool:
+        return tuple(pool.map(work, cuts))

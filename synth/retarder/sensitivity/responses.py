@@ -1,0 +1,59 @@
+"""What fixed tables do at the points of a hypercube: every point another plant, everywhere the same passes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant, PlantError
+from synth.retarder.configuration.plant_values import with_values
+from synth.retarder.sensitivity.outputs import OUTPUTS
+from synth.retarder.sensitivity.varied import Varied, values_at
+from synth.simulation.closed_loop import TableController
+from synth.simulation.common_passes import common_passes
+from synth.simulation.random_passes import RandomPasses
+from tuning_tables import ControllerTable
+
+Floats = NDArray[np.float64]
+
+AT_ONCE = 25
+"""Points of one task of a thread."""
+
+
+def responses(
+    plant: Plant,
+    tables: Sequence[ControllerTable],
+    varied: Mapping[str, Varied],
+    keys: Sequence[str],
+    unit: Floats,
+    passes: RandomPasses,
+    threads: int,
+) -> Floats:
+    """The outputs, (tables, outputs, points), at the points `unit` (points, keys); `threads` change no bit of them.
+
+    Raises `PlantError` that names the values of a point which the plant refuses.
+    """
+    controllers = [TableController(table) for table in tables]
+
+    def at(row: list[float]) -> list[list[float]]:
+        values = dict(values_at(varied, keys, row))
+        try:
+            run = common_passes(with_values(plant, values), passes).run
+        except PlantError as fault:
+            told = ", ".join(f"{key} {value:.6g}" for key, value in values.items())
+            raise PlantError(f"{fault} (at the values {told})") from fault
+        samples = [run(controller) for controller in controllers]
+        return [
+            [output.of(sample, table.target_speed_m_s) for output in OUTPUTS]
+            for sample, table in zip(samples, tables, strict=True)
+        ]
+
+    def part(first: int) -> list[list[list[float]]]:
+        return [at(row) for row in unit[first : first + AT_ONCE].tolist()]
+
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+        found = [point for points in pool.map(part, range(0, len(unit), AT_ONCE)) for point in points]
+    return np.moveaxis(np.array(found), 0, -1)

@@ -1,0 +1,95 @@
+"""Pictures of a plan of point sensors: rms over their number, where they stand, and the best command there."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from synth.frame.picture.house_style import (
+    BLUE,
+    ENTRANCE_STYLE,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    VERMILLION,
+    dress,
+    legend_below,
+    logarithmic_y,
+    new_figure,
+    place,
+)
+from synth.retarder.sensors.layout_results import LayoutResults
+from synth.retarder.sensors.plan_map import plan_map
+
+
+def shown_plan(results: LayoutResults) -> Figure:
+    """The chosen plan, else that of most sensors, over the best command of its first case."""
+    tuned = results.shown.best.tuned[0][0]
+    subject = f"{results.labels[0]} to {tuned.aim.target_speed_m_s:g} m/s, {results.shown.deciding + 1} sensors"
+    return plan_map(subject, results.anywhere, tuned)
+
+
+def rms_over_number(results: LayoutResults) -> Figure:
+    """Planned layouts, equal sections, the rule, and the radar as a level line."""
+    figure = new_figure(8.4, 4.6, "What sensors and places give", subject_of(results))
+    place(figure, left=0.8, right=0.3, bottom=1.15, top=0.85)
+    axes = figure.subplots()
+    dress(axes, "", "sensors, the one behind the exit included", "predicted rms, m/s")
+    numbers = [plan.deciding + 1 for plan in results.plans]
+    planned = [plan.best.rms_m_s for plan in results.plans]
+    equal = [plan.equal.rms_m_s for plan in results.plans]
+    rule = len(results.rule.deciding_m) + 1, results.rule.rms_m_s
+    axes.plot(numbers, equal, color=VERMILLION, marker="s", linestyle="--", markersize=5, linewidth=1.5)
+    axes.plot(numbers, planned, color=BLUE, marker="o", markersize=5, linewidth=1.5)
+    axes.plot(*rule, color=GREEN, marker="D", markersize=7, linestyle="none")
+    axes.axhline(results.radar_mean_rms_m_s, color=INK, linestyle=":", linewidth=1.3)
+    logarithmic_y(axes, [*planned, *equal, rule[1], results.radar_mean_rms_m_s])
+    axes.set_xticks(sorted({*numbers, rule[0]}))
+    handles = [
+        Line2D([], [], color=BLUE, marker="o", label="planned"),
+        Line2D([], [], color=VERMILLION, marker="s", linestyle="--", label="equal sections"),
+        Line2D([], [], color=GREEN, marker="D", linestyle="none", label="by the rule"),
+        Line2D([], [], color=INK, linestyle=":", label="radar"),
+    ]
+    if results.chosen is not None:
+        at = results.chosen.deciding + 1, results.chosen.best.rms_m_s
+        axes.plot(*at, color=ORANGE, marker="o", markersize=13, markerfacecolor="none", linestyle="none")
+        handles.append(Line2D([], [], color=ORANGE, marker="o", markersize=10, markerfacecolor="none",
+                              linestyle="none", label="chosen"))  # fmt: skip
+    legend_below(figure, handles, columns=5)
+    return figure
+
+
+def places_by_number(results: LayoutResults) -> Figure:
+    """A row of marks for each number of sensors."""
+    rows = [(str(plan.deciding + 1), plan.best, BLUE) for plan in results.plans]
+    rows.append((f"{len(results.rule.deciding_m) + 1}, by the rule", results.rule, GREEN))
+    figure = new_figure(9.6, 1.9 + 0.3 * len(rows), "Where the sensors stand", subject_of(results))
+    place(figure, left=1.25, right=0.3, bottom=0.95, top=0.85)
+    axes = figure.subplots()
+    dress(axes, "", "path from the entrance of the first retarder, m", "sensors")
+    position = results.problem.cases[0].plant.position
+    for start, end in position.zones_m:
+        axes.axvspan(start, end, color=GREY, alpha=0.18, linewidth=0)
+    axes.axvline(0.0, color=INK, linewidth=0.8, linestyle=ENTRANCE_STYLE)
+    for row, (_, layout, colour) in enumerate(rows):
+        *deciding, last = results.places_of(layout)
+        axes.plot(deciding, [row] * len(deciding), color=colour, marker="|", markersize=11, linestyle="none", mew=2)
+        axes.plot([last], [row], color=GREY, marker="|", markersize=11, linestyle="none", mew=2)
+    axes.set_yticks(range(len(rows)), [name for name, _, _ in rows])
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    handles = [
+        Line2D([], [], color=BLUE, marker="|", markersize=11, mew=2, linestyle="none", label="decides"),
+        Line2D([], [], color=GREY, marker="|", markersize=11, mew=2, linestyle="none", label="logs the exit"),
+    ]
+    legend_below(figure, handles, columns=2)
+    return figure
+
+
+def subject_of(results: LayoutResults) -> str:
+    """The position, and for how many classes and targets."""
+    position = results.problem.cases[0].plant.position.name
+    aims = sum(len(case.aims) for case in results.problem.cases)
+    classes = len(results.problem.cases)
+    return f"{position}; {classes} cut class{'es' * (classes > 1)}, {aims} table{'s' * (aims > 1)}"

@@ -1,0 +1,40 @@
+"""All controllers of every case side by side, on the same passes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from synth.frame.exhibits import Column, Exhibit, Row, Table
+from synth.frame.printed_numbers import decimals
+from synth.retarder.case_result import CaseResult
+from synth.retarder.comparison.measured import Measured
+from synth.retarder.exit_figures import CASE, LOOP, PREDICTED, loop_row
+from synth.retarder.found_book import FoundBook
+from synth.retarder.shown.results import table_ratio
+
+CONTROLLERS: Final = (
+    *CASE,
+    Column("controller", "controller", words=True),
+    *LOOP,
+    PREDICTED,
+    Column("table_ratio", "rms of the table / its rms", form=decimals(3)),
+)
+
+
+def controllers(found: FoundBook) -> Iterator[Exhibit]:
+    """A row for each controller of each case: the table, the reference, and the classical laws."""
+    rows = [row_of(case, each) for case in found.book.cases for each in case.comparison.entries]
+    yield Table("controllers", "Every controller, on the same passes; ratios are paired", CONTROLLERS, rows)
+
+
+def row_of(case: CaseResult, found: Measured) -> Row:
+    """One controller of one case."""
+    return {
+        "label": case.label,
+        "target_speed_m_s": case.target_speed_m_s,
+        "controller": found.name,
+        **loop_row(found.statistics),
+        "predicted_rms_m_s": found.predicted_rms_m_s,
+        "table_ratio": table_ratio(found),
+    }

@@ -1,0 +1,152 @@
+"""The first chapter of a book: a row for each case, and what these rows come to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from statistics import median
+from typing import Final
+
+from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
+from synth.frame.interval import Interval
+from synth.frame.printed_numbers import decimals, speed
+from synth.retarder.acceptance import CaseVerdict, advice_of
+from synth.retarder.case_result import CaseResult
+from synth.retarder.comparison.measured import Measured
+from synth.retarder.exit_figures import (
+    CASE,
+    DETAILS,
+    EFFORT,
+    LEGEND,
+    TOLD,
+    table_row,
+    told,
+)
+from synth.retarder.found_book import FoundBook
+from synth.retarder.off_nominal.worst import worst_of
+from synth.retarder.permissions.refusal import tellable
+from synth.retarder.shown.cases import (
+    KEYS,
+    PROMISE,
+    UNAVOIDABLE,
+    VERDICT,
+    failed_cases,
+    failed_rows,
+    is_outside,
+    key_row,
+    unavoidable,
+)
+from synth.retarder.shown.pictures import accuracy_charts
+
+ENTRY: Final = (
+    Column("entry_m_s", "entry speeds", "m/s", detail=True),
+    Column("served_entry_m_s", "of them served", "m/s", decimals(2), detail=True),
+)
+CASES: Final = (
+    *CASE, VERDICT, *TOLD,
+    Column("at_rest_ratio", "rms / at rest", form=decimals(2), spare=7),
+    Column("regret", "regret", form=decimals(2), spare=5),
+    Column("best_baseline_m_s", "best baseline", "m/s", decimals(4), spare=6),
+    Column("best_baseline", "which", words=True, spare=6),
+    UNAVOIDABLE, *EFFORT, *DETAILS, *KEYS, *ENTRY, *PROMISE,
+)  # fmt: skip
+
+HOW_TO_READ: Final = (
+    "Regret: rms of the table over that of a controller of its kind that is told the friction of each cut, with lines "
+    "polished for it: a reference, no lower bound. Best baseline: the classical law of least rms, tuned for the case. "
+    "Unavoidable: rms of what cuts leave too fast by under the hardest braking, and too slow by without any; where it "
+    "is above the limit, no regulator of the position keeps that limit, and the case is infeasible. All controllers "
+    "see the same passes, and may act from the same place."
+)
+PERMISSIONS: Final = (
+    "What commands at any time and other permissions of the hardware would give: retarder-synth permissions."
+)
+
+
+NO_REGRET: Final = (
+    "No regret is told where the regulator that is told the friction is beaten by one that is not: it is no reference "
+    "there."
+)
+
+
+def results(found: FoundBook) -> Iterator[Exhibit]:
+    """The table of cases, what is to be known of it, and the pictures of all cases."""
+    rows = [case_row(case, verdict) for case, verdict in found.judged]
+    rows += failed_rows(found.book.failed)
+    yield Table("cases", found.book.config.title, CASES, rows, True, is_outside)
+    yield from failed_cases(found.book.failed)
+    yield Sentence(passes_told(found), overall(found), brief=True)
+    yield Sentence(HOW_TO_READ)
+    for sentence in (*remarks(found), *(infeasible(case, each) for case, each in found.judged if not each.feasible)):
+        yield Sentence(sentence, brief=True)
+    yield from accuracy_charts(found.book.cases, found.book.config.acceptance.rms_m_s)
+
+
+def case_row(case: CaseResult, verdict: CaseVerdict) -> Row:
+    """Everything about one case in figures."""
+    found, entry, best = case.comparison, case.plant.entry, case.comparison.best_baseline
+    n = found.table.statistics.passes
+    at_rest = found.at_rest
+    return {
+        **key_row(case.label, case.plant, case.table, verdict),
+        **table_row(found.table.statistics, case.brake_power, case.table.predicted),
+        "unavoidable_rms_m_s": unavoidable(case.feasibility.unavoidable, n),
+        "regret": told(found.regret, found.regret_ci95, n),
+        "at_rest_ratio": None if at_rest is None else table_ratio(at_rest),
+        "best_baseline": best and best.name,
+        "best_baseline_m_s": best and told(best.statistics.rms_m_s, best.statistics.rms_ci95_m_s, n),
+        "entry_m_s": (entry.low_m_s, entry.high_m_s),
+        "served_entry_m_s": case.feasibility.served_m_s,
+    }
+
+
+def table_ratio(found: Measured) -> Interval | None:
+    """The rms of the table over that of another controller."""
+    return told(found.table_ratio, found.table_ratio_ci95, found.statistics.passes)
+
+
+def passes_told(found: FoundBook) -> str:
+    """How many passes, and what the columns are."""
+    return f"{found.book.cases[0].comparison.table.statistics.passes} stratified passes a case. {LEGEND}"
+
+
+def overall(found: FoundBook) -> Row:
+    """Figures over the feasible cases; infeasible ones are only counted."""
+    feasible = [case.comparison for case in found.feasible]
+    regrets = [each.regret for each in feasible if each.has_reference]
+    honest = [each.table.honesty for each in feasible]
+    return {
+        "criterion": found.book.config.criterion.sentence,
+        "cases": len(found.book.cases),
+        "feasible": len(feasible),
+        "highest_rms_m_s": max((each.table.statistics.rms_m_s for each in feasible), default=None),
+        "median_regret": median(regrets) if regrets else None,
+        "lowest_honesty": min(honest, default=None),
+        "highest_honesty": max(honest, default=None),
+    }
+
+
+def remarks(found: FoundBook) -> Iterator[str]:
+    """What is to be done or known besides the verdict."""
+    if not all(case.comparison.has_reference for case in found.book.cases):
+        yield NO_REGRET
+    worst = worst_of(found.feasible)
+    if worst is not None:
+        yield worst.told
+    if advice := advice_of(found.verdicts):
+        yield advice
+    if found.book.pareto_line:
+        yield found.book.pareto_line
+    if tellable(found.book.config):
+        yield PERMISSIONS
+
+
+def infeasible(case: CaseResult, verdict: CaseVerdict) -> str:
+    """What of an infeasible case can be served."""
+    served, entry, least = case.feasibility.served_m_s, case.plant.entry, case.feasibility.unavoidable
+    part = f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s" if served else "no entry speed"
+    low, high = map(speed, least.rms_ci95_m_s)
+    return (
+        f"Infeasible and outside the verdict: {verdict.name}, {verdict.obstacle}: {part} can be served of the "
+        f"{entry.low_m_s:g} to {entry.high_m_s:g} m/s asked for, where the rms that no regulator avoids is "
+        f"{speed(least.rms_m_s)} [{low}, {high}] m/s."
+    )

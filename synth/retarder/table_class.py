@@ -1,0 +1,122 @@
+"""Tables of a position by cut class, and what the closed loop of a class needs of cuts that are not quite of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant, PressingForce
+from plant_models.cut import ROTATING_MASS_PER_AXLE_T
+from plant_models.errors import require
+from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.loop import closed_loop as kernel
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.validation.revalidation import plant_for
+from synth.simulation.closed_loop import ClosedLoop, close_loop
+from synth.simulation.controllers import Controller, TableController, fixed
+from synth.simulation.lost_readings import readings_z
+from synth.simulation.random_passes import RandomPasses
+from tuning_tables import ControllerTable
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SLOWEST_ENTRY_M_S = 0.05
+"""Entry speed of cuts that come slower, or not at all: the kernel divides by it."""
+
+
+@dataclass(frozen=True)
+class TableClass:
+    """A cut class with its regulators: `targets_m_s` increase, one controller each."""
+
+    plant: Plant
+    targets_m_s: tuple[float, ...]
+    controllers: tuple[Controller, ...]
+
+    def __post_init__(self) -> None:
+        require(
+            len(self.targets_m_s) == len(self.controllers) >= 2,
+            f"tables for {self.plant.cut.category}, {self.plant.cut.mass_t:g} t: {len(self.targets_m_s)} targets; a "
+            "position that is commanded needs two or more to choose between",
+        )
+
+    @cached_property
+    def loops(self) -> tuple[ClosedLoop, ...]:
+        """The closed loop of each controller; those of as many stages share theirs."""
+        made = {stages: close_loop(self.plant, stages) for stages in {c.stages for c in self.controllers}}
+        return tuple(made[controller.stages] for controller in self.controllers)
+
+    def brakes(self, passes: RandomPasses, mass_t: Floats, axles: Ints) -> Brakes:
+        """How cuts (n,) of this mass and so many axles are braked in `passes`.
+
+        They stand where the axles of the class do. Where the force does not follow the mass, the work of the brake is
+        that on their axles, and its share of their mass; where it does, that is the same for all.
+        """
+        plant = self.plant
+        factor = plant.friction.cut_factor(passes.cut_z, plant.friction_cv)
+        if isinstance(plant.position.force, PressingForce):
+            inertia = mass_t + ROTATING_MASS_PER_AXLE_T * axles
+            factor = factor * (plant.cut.inertia_t / inertia * (axles / plant.cut.axles))
+        path = self.loops[0].path
+        factor, path_z = fixed(factor, np.float64), fixed(passes.path_z, np.float32)
+        rows = np.empty((len(passes), len(path.gravity_m_s2)))
+        kernel.brake_rows(path, factor, path_z, rows)
+        return Brakes(factor, rows)
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Brakes:
+    """Friction factor of n cuts (n,), and deceleration by one kPa in each path cell of each of them (n, cells)."""
+
+    factor: Floats
+    rows_m_s2_per_kpa: Floats
+
+
+def draws(
+    loop: ClosedLoop, passes: RandomPasses, brakes: Brakes, entry_m_s: Floats, resistance_n_kn: Floats
+) -> kernel.Draws:
+    """`passes` with entry speed, resistance and brake of cuts (n,)."""
+    start = loop.plant.start_speed_m_s(np.maximum(entry_m_s, SLOWEST_ENTRY_M_S), resistance_n_kn)
+    return kernel.Draws(
+        fixed(brakes.factor, np.float64),
+        fixed(resistance_n_kn, np.float64),
+        fixed(start, np.float64),
+        fixed(passes.phase_u * loop.plant.sensor.sample_period_s, np.float64),
+        fixed(passes.path_z, np.float32),
+        fixed(readings_z(passes, loop.plant.sensor), np.float32),
+        fixed(brakes.rows_m_s2_per_kpa, np.float64),
+        fixed(passes.weight, np.float64),
+    )
+
+
+def chosen_draws(drawn: kernel.Draws, rows: Ints) -> kernel.Draws:
+    """Some of `drawn`."""
+    arrays: Iterator[Any] = (fixed(values[rows], values.dtype.type) for values in drawn)
+    return kernel.Draws(*arrays)
+
+
+def table_classes(tables: Sequence[ControllerTable], config: ResolvedConfig, source: str) -> tuple[TableClass, ...]:
+    """The classes of `tables`, made from `config`; `source` is what a message calls it.
+
+    Raises `InputError` where no cut class of the configuration fits a table, `PlantError` where a class has one target.
+    """
+    placed = [(*plant_for(table, config, source), table) for table in tables]
+    placed.sort(key=lambda p: (p[0], p[2].target_speed_m_s))
+    classes = []
+    for _, group in groupby(placed, key=lambda p: p[0]):
+        of_class = list(group)
+        targets = tuple(table.target_speed_m_s for _, _, table in of_class)
+        classes.append(TableClass(of_class[0][1], targets, tuple(TableController(t) for _, _, t in of_class)))
+    return tuple(classes)
+
+
+def taken(passes: RandomPasses, rows: Ints) -> RandomPasses:
+    """Some of `passes`."""
+    return RandomPasses(**{name: values[rows] for name, values in vars(passes).items()})

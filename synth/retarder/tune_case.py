@@ -1,0 +1,127 @@
+"""One case of a tune: its table, and beside it everything that the table is compared with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from synth.problem.problem import Problem
+from synth.retarder.case_result import CaseResult, CaseStudy
+from synth.retarder.class_setup import ClassSetup
+from synth.retarder.comparison.baselines import tune_baselines
+from synth.retarder.comparison.comparison import Comparison
+from synth.retarder.comparison.friction_bound import friction_bound
+from synth.retarder.comparison.measured import Measured
+from synth.retarder.comparison.served_entry import EntrySweep, feasibility_of
+from synth.retarder.estimation.estimated_table import controller_of
+from synth.retarder.off_nominal.trial import Trials
+from synth.retarder.pareto.case_front import Front
+from synth.retarder.policy_map import policy_map
+from synth.retarder.tuned_table import Store, TunedTable, ValidatedTable, tuned_table, validated_table
+from synth.simulation.closed_loop import TableController
+from synth.simulation.common_passes import CommonPasses
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio
+from synth.simulation.passes import ExitSample
+from synth.solver.backward_induction import Solution
+from synth.solver.tabulate import lines_of
+from tuning_tables import Decisions
+
+TRACE_FACTORS = (0.8, 1.0, 1.2)
+LINE_NODES = 301
+INDIFFERENCE_SHOWN_M2_S2 = 1e-4
+"""Costs that differ by less than (1 cm/s)² are drawn as equal."""
+
+
+@dataclass(frozen=True)
+class CaseOrder:
+    """What to do for one case, and with what.
+
+    `solution` on the design chain; `entries`: what the position can do by entry speed; `limit_m_s`: the rms that makes
+    a case feasible; `tuning`: passes that baselines are tuned on; `trials`: those off nominal; `front`: where it is
+    wanted, what makes the curve of accuracy against time.
+    """
+
+    setup: ClassSetup
+    solution: Solution
+    entries: EntrySweep
+    limit_m_s: float
+    tuning: CommonPasses
+    trials: Trials
+    store: Store
+    front: Front | None
+
+
+def tune_case(order: CaseOrder) -> CaseResult:
+    """Tune one case; the table is validated as read back from where it is stored."""
+    setup, solution = order.setup, order.solution
+    tuned = tuned_table(setup, solution)
+    validated = validated_table(setup, tuned.table, order.store)
+    told = friction_bound(setup, tuned, validated)
+    return CaseResult(
+        label=setup.label,
+        problem=Problem(setup.plant, solution.aim),
+        table=validated.table,
+        predicted=tuned.predicted,
+        polish=tuned.design.kept.polish if tuned.surfaces is None else tuned.surfaces.polish,
+        grid=tuned.design.grid,
+        finding=tuned.design.kept.finding,
+        estimate=tuned.trimmed,
+        exit_speeds_m_s=validated.sample.exit_speed_m_s.astype(np.float32),
+        exit_weight=validated.sample.weight,
+        brake_power=validated.brake_power,
+        comparison=comparison(order, tuned, validated, told),
+        feasibility=feasibility_of(setup.passes, order.entries, solution.aim.target_speed_m_s, order.limit_m_s),
+        study=case_study(order, validated),
+        front=None if order.front is None else order.front(),
+        off_nominal=order.trials.of(validated.table, validated.sample),
+    )
+
+
+def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, told: ExitSample) -> Comparison:
+    """The closed loops of all controllers on the common passes; `told`: that of the reference."""
+    passes, target, sample = order.setup.passes, order.solution.aim.target_speed_m_s, validated.sample
+    baselines = tune_baselines(order.tuning, target, permitted(tuned))
+    by_baselines = {each.name: passes.run(each.controller) for each in baselines}
+    best = min(by_baselines, key=lambda name: exit_statistics(by_baselines[name], target).rms_m_s)
+    predicted = validated.table.predicted
+
+    def at_rest() -> Measured:
+        controller = controller_of(tuned.lines, validated.table.estimator)
+        return beside_table("commands at rest", passes.run(controller), sample, target)
+
+    return Comparison(
+        table=Measured("table", validated.statistics, predicted.rms_m_s, predicted.passes),
+        friction_known=beside_table("friction known", told, sample, target),
+        baselines=tuple(beside_table(name, each, sample, target) for name, each in by_baselines.items()),
+        baseline_ratio_ci95=beside_table(best, by_baselines[best], told, target).table_ratio_ci95,
+        at_rest=None if tuned.surfaces is None else at_rest(),
+    )
+
+
+def permitted(tuned: TunedTable) -> tuple[Decisions, ...]:
+    """When laws that the table is compared with may command: as it, or less often."""
+    return (Decisions.AT_REST,) if tuned.surfaces is None else (Decisions.AT_REST, Decisions.AT_ANY_TIME)
+
+
+def beside_table(name: str, sample: ExitSample, table: ExitSample, target_speed_m_s: float) -> Measured:
+    """Figures of a controller's `sample`, and how the table fares on the same passes."""
+    found = exit_statistics(sample, target_speed_m_s)
+    if found.rms_m_s == 0.0:
+        return Measured(name, found)
+    ratio, ci95 = rms_ratio(table, sample, target_speed_m_s)
+    return Measured(name, found, table_ratio=ratio, table_ratio_ci95=ci95)
+
+
+def case_study(order: CaseOrder, validated: ValidatedTable) -> CaseStudy:
+    """Lines, policy map, and three passes."""
+    passes, controller = order.setup.passes, TableController(validated.table)
+    return CaseStudy(
+        table_lines=lines_of(
+            validated.table, np.linspace(order.setup.plant.start_m, order.setup.plant.exit_m, LINE_NODES)
+        ),
+        solver_lines=order.solution.lines,
+        policy_map=policy_map(order.solution, INDIFFERENCE_SHOWN_M2_S2),
+        traces=tuple(passes.trace(controller, i, factor) for i, factor in enumerate(TRACE_FACTORS)),
+        trace_factors=TRACE_FACTORS,
+    )

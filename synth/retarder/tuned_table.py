@@ -1,0 +1,161 @@
+"""The one way from an aim to a validated table: solve, fit, polish, round, predict, simulate.
+
+`tune` adds comparison and studies to it, a sweep adds nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.problem.aim import Aim
+from synth.problem.any_time_resolution import design_resolution
+from synth.retarder.any_time.surface_table import polished_surfaces, starting_surfaces
+from synth.retarder.checked_design import NODES_KEPT, CheckedDesign, checked_design
+from synth.retarder.class_setup import ClassSetup, EstimatorSetup
+from synth.retarder.estimation.estimated_lines import SimulatedRms, estimated_lines
+from synth.retarder.estimation.estimated_surfaces import estimated_surfaces
+from synth.retarder.estimation.estimated_table import EstimatedTable, trimmed_on
+from synth.retarder.estimation.simulated_prediction import density_of, simulated_prediction
+from synth.retarder.rounded_table import PredictedTable, rounded, with_prediction
+from synth.simulation.closed_loop import TableController
+from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics
+from synth.simulation.passes import ExitSample
+from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
+from synth.solver.any_time.surface_polish import SurfacePolish
+from synth.solver.backward_induction import Solution, solve_all
+from synth.solver.chain.chain import Chain
+from synth.solver.exit_density import ExitDensity
+from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.tabulate import UNPREDICTED, tabulate
+from tuning_tables import ControllerTable, Validated, from_json, to_json
+
+AnyEstimate = EstimatedTable[PolynomialLines] | EstimatedTable[PolynomialSurfaces]
+
+Store = Callable[[ControllerTable], ControllerTable]
+"""Keeps a table, and gives it back as a controller will read it."""
+
+
+AnyDesign = CheckedDesign[PredictedTable] | CheckedDesign[SimulatedRms]
+
+
+@dataclass(frozen=True)
+class SurfaceDesign:
+    """How surfaces were polished, and with an estimator how they were trimmed."""
+
+    polish: SurfacePolish
+    estimate: EstimatedTable[PolynomialSurfaces] | None
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class TunedTable:
+    """The rounded table with its prediction, not yet simulated.
+
+    `predicted`: the exit density behind the prediction; `design`: of lines for commands at rest, and for the speed that
+    the regulator compares with them; `estimate`: with an estimator, how these were trimmed; `surfaces`: those of a
+    regulator that commands at any time.
+    """
+
+    table: ControllerTable
+    predicted: ExitDensity
+    design: AnyDesign
+    estimate: EstimatedTable[PolynomialLines] | None
+    surfaces: SurfaceDesign | None
+
+    @property
+    def lines(self) -> PolynomialLines:
+        """The lines for commands at rest."""
+        return self.design.kept.lines if self.estimate is None else self.estimate.lines
+
+    @property
+    def trimmed(self) -> AnyEstimate | None:
+        """With an estimator, how the table's lines or surfaces were trimmed."""
+        return self.estimate if self.surfaces is None else self.surfaces.estimate
+
+
+@dataclass(frozen=True)
+class ValidatedTable:
+    """The table as stored, with what the closed loop on the common passes says of it."""
+
+    table: ControllerTable
+    sample: ExitSample
+    statistics: ExitStatistics
+    brake_power: BrakePower
+
+
+def solutions(chain: Chain, aims: Sequence[Aim]) -> tuple[Solution, ...]:
+    """Solutions for several aims at once, with no more values than anybody reads."""
+    return solve_all(chain, aims, nodes_kept=NODES_KEPT)
+
+
+def tuned_table(setup: ClassSetup, solution: Solution) -> TunedTable:
+    """The table of one solution on `setup.design`: fitted, polished, trimmed where it has an estimator, rounded, and
+    predicted.
+
+    Raises `PlantError` where the grid is too coarse for lines, `InvalidTable` where rounding would let lines touch.
+    """
+    if setup.estimator is None:
+        at_rest = measuring_table(setup, solution)
+    else:
+        at_rest = estimating_table(setup, setup.estimator, solution)
+    return at_any_time(setup, solution.aim, at_rest) if setup.regulator.at_any_time else at_rest
+
+
+def measuring_table(setup: ClassSetup, solution: Solution) -> TunedTable:
+    """The table of lines for the measured speed, predicted without sampling."""
+
+    def judge(lines: PolynomialLines) -> PredictedTable:
+        return with_prediction(setup.check, rounded(setup, lines, solution.aim.target_speed_m_s))
+
+    design = checked_design(solution, setup.check, setup.degree, judge)
+    return TunedTable(design.verdict.table, design.verdict.density, design, None, None)
+
+
+def estimating_table(setup: ClassSetup, estimator: EstimatorSetup, solution: Solution) -> TunedTable:
+    """The table of lines for the estimated speed: trimmed on days of another mean friction, predicted by passes."""
+    design, made = estimated_lines(setup.plant, solution, setup.degree, estimator.tuning, estimator.days)
+    target_m_s = solution.aim.target_speed_m_s
+    return TunedTable(*predicted_by_passes(setup, made, estimator, target_m_s), design, made, None)
+
+
+def at_any_time(setup: ClassSetup, aim: Aim, at_rest: TunedTable) -> TunedTable:
+    """The table of surfaces for commands at any time, polished from the lines of a table `at_rest`."""
+    plant, target_m_s, gauge = setup.plant, aim.target_speed_m_s, setup.regulator.has_gauge
+    if setup.estimator is None or at_rest.estimate is None:
+        steps = design_resolution(plant, target_m_s)
+        polish = polished_surfaces(plant, aim, starting_surfaces(plant, at_rest.lines, gauge), steps)
+        told = with_prediction(setup.check, rounded(setup, polish.surfaces, target_m_s))
+        made, predicted = None, (told.table, told.density)
+    else:
+        polish, untrimmed = estimated_surfaces(plant, aim, at_rest.estimate, gauge, setup.estimator.tuning)
+        made = trimmed_on(setup.estimator.days, target_m_s, untrimmed)
+        predicted = predicted_by_passes(setup, made, setup.estimator, target_m_s)
+    return TunedTable(*predicted, at_rest.design, at_rest.estimate, SurfaceDesign(polish, made))
+
+
+def read_back(table: ControllerTable) -> ControllerTable:
+    """A store that keeps nothing: the table as a controller would read it from its file."""
+    return from_json(to_json(table))
+
+
+def validated_table(setup: ClassSetup, table: ControllerTable, store: Store) -> ValidatedTable:
+    """`table` stored, simulated on the setup's passes as it is read back, and stored with the figures."""
+    target, kept = table.target_speed_m_s, store(table)
+    sample = setup.passes.run(TableController(kept))
+    found = exit_statistics(sample, target)
+    figures = Validated(found.passes, found.rms_m_s, found.rms_ci95_m_s)
+    power = brake_power(sample, setup.passes.at_full_brake, target)
+    return ValidatedTable(store(kept.with_validated(figures)), sample, found, power)
+
+
+def predicted_by_passes(
+    setup: ClassSetup, made: AnyEstimate, estimator: EstimatorSetup, target_speed_m_s: float
+) -> tuple[ControllerTable, ExitDensity]:
+    """The rounded table for the estimated speed, with what passes that nothing else uses say of it."""
+    origin = (setup.origin.generator, setup.table_id(target_speed_m_s), setup.origin.created)
+    table = tabulate(setup.plant, made.lines, target_speed_m_s, UNPREDICTED, *origin, made.estimator)
+    sample = estimator.prediction.run(TableController(table))
+    density = density_of(sample, setup.design.grid.speed_m_s)
+    return replace(table, predicted=simulated_prediction(sample, target_speed_m_s)), density

@@ -1,0 +1,186 @@
+"""The command `validate`: exported tables in the closed loop, beside what their file says of them."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.exhibits import Chapter, File, Sentence
+from synth.frame.input_error import InputError
+from synth.frame.processors import available
+from synth.frame.settings.settings_file import BUILT_IN
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configured import head_of
+from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY
+from synth.retarder.tables_configuration import configuration_for
+from synth.retarder.validation.options import ValidateOptions
+
+if TYPE_CHECKING:
+    from synth.retarder.validation.revalidation import Rehearsal, Revalidation
+    from tuning_tables import ControllerTable
+    from tuning_tables.passages.passage_table import PassageTable
+
+LIMITS_OF_USE = (MODEL_ONLY, CHANCE_ONLY)
+
+
+@dataclass(frozen=True)
+class AskedPasses:
+    """The tables of one file, with lines or for point sensors; the other part is empty.
+
+    `infeasible`: whether the summary beside the file calls the case of each so; `log`: None where none is asked for.
+    """
+
+    tables: tuple[ControllerTable, ...]
+    passages: tuple[PassageTable, ...]
+    infeasible: tuple[bool, ...]
+    rehearsal: Rehearsal
+    log: AskedLog | None
+
+    @property
+    def all_tables(self) -> tuple[ControllerTable | PassageTable, ...]:
+        """Of either kind."""
+        return (*self.tables, *self.passages)
+
+
+@dataclass(frozen=True)
+class AskedLog:
+    """`passes` passes of each table are to be logged in a file called `name`; `gauge_std_kpa` None: without a gauge."""
+
+    name: str
+    passes: int
+    gauge_std_kpa: float | None
+
+
+@dataclass(frozen=True)
+class FoundPasses:
+    """What became of each table, and the log of so many passes of each; None and 0 where none was asked for."""
+
+    title: str
+    seed: int
+    tables: tuple[Revalidation, ...]
+    log: File | None
+    logged: int
+
+
+def read(text: str, place: str) -> ResolvedConfig | None:
+    """The configuration in `text`; None without a file: the tables tell which built-in one is theirs."""
+    return None if place == BUILT_IN else parse_config(text, place)
+
+
+def resolve(asked: Asked[ResolvedConfig | None, ValidateOptions]) -> AskedPasses:
+    """The tables; refused where one fits no class of the configuration, or its passes cannot be logged."""
+    from synth.retarder.forms.passage_file import read_passages
+    from synth.retarder.forms.table_file import is_infeasible, read_tables, summary_beside
+
+    path, options = asked.options.source, asked.options
+    passages = () if path.is_dir() else read_passages(path)
+    tables = () if passages else read_tables(path)[0].tables
+    config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, passages)
+    if passages and options.log is not None:
+        raise InputError(f"{path}: its tables are for point sensors, whose passes are not logged; leave out --log")
+    if options.log is None and options.model_fields_set & {"log_passes", "gauge_std_kpa"}:
+        raise InputError("--log-passes and --gauge-std are about a log; name its file in DIR by --log NAME.csv")
+    from synth.retarder.passage_class import passage_class
+    from synth.retarder.validation.revalidation import Rehearsal, plant_for
+
+    for table in tables:
+        plant_for(table, config, source)
+    for each in passages:
+        passage_class(each, config, source)
+    summary = summary_beside(path)
+    infeasible = (
+        *(is_infeasible(each, summary) for each in tables),
+        *(is_infeasible(each, summary) for each in passages),
+    )
+    seed = config.validation.seed if options.seed is None else options.seed
+    return AskedPasses(
+        tables,
+        passages,
+        infeasible,
+        Rehearsal(config, source, options.passes or config.validation.passes, seed, available()),
+        None if options.log is None else AskedLog(options.log, options.log_passes, options.gauge_std_kpa),
+    )
+
+
+def head(asked: AskedPasses) -> Head:
+    """What is said of the configuration, with a word about tables that another one made."""
+    config, source = asked.rehearsal.config, asked.rehearsal.source
+    made = {table.generator.config_sha256 for table in asked.all_tables}
+    other = f"tables were made from another configuration than {source}; the plant may differ"
+    return head_of(config, () if made == {config.sha256} else (other,))
+
+
+def steps(asked: AskedPasses) -> Steps:
+    """A step for each table."""
+    return Steps(len(asked.all_tables), "simulating", "tables")
+
+
+def compute(asked: AskedPasses, work: Work) -> FoundPasses:
+    """The passes of all tables, and the log."""
+    from synth.kernels.cache import guarded
+
+    return guarded(rehearsed, asked, work)
+
+
+def rehearsed(asked: AskedPasses, work: Work) -> FoundPasses:
+    """The same, where kernels are loaded."""
+    from synth.retarder.validation.revalidated_passages import revalidated_passages
+    from synth.retarder.validation.revalidation import revalidated
+
+    rehearsal, tell = asked.rehearsal, work.progress.done
+    if asked.passages:
+        found = revalidated_passages(asked.passages, rehearsal, asked.infeasible, tell)
+    else:
+        found = revalidated(asked.tables, rehearsal, asked.infeasible, tell)
+    log = None if asked.log is None else log_file(asked, asked.log)
+    logged = 0 if asked.log is None else asked.log.passes
+    return FoundPasses(rehearsal.config.title, rehearsal.seed, tuple(found), log, logged)
+
+
+def log_file(asked: AskedPasses, log: AskedLog) -> File:
+    """Passes of the tables, simulated once more, as cuts come, as a controller logs them."""
+    from plant_models.pressure_gauge import PressureGauge
+    from synth.retarder.validation.rehearsed_log import rehearsed_log
+    from tuning_tables.pass_log.log_files import write_log
+
+    gauge = None if log.gauge_std_kpa is None else PressureGauge(log.gauge_std_kpa)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / log.name
+        write_log(rehearsed_log(asked.tables, asked.rehearsal, log.passes, gauge), path)
+        return File(log.name, path.read_bytes())
+
+
+def limits(found: FoundPasses) -> Iterator[Limit]:
+    """Those of [acceptance], for tables that are not known to be infeasible."""
+    from synth.retarder.validation.shown import limits_of
+
+    return limits_of(found.tables)
+
+
+def show(found: FoundPasses) -> Iterator[Chapter]:
+    """What is shown of it."""
+    from synth.retarder.validation.shown import tables
+
+    yield Chapter("Tables", tuple(tables(found.title, found.seed, found.tables)))
+    if found.log is not None:
+        sentence = f"{found.logged} passes of each table, as a controller logs them: {found.log.name}"
+        yield Chapter("Log", (Sentence(sentence, brief=True), found.log))
+
+
+COMMAND = Command(
+    name="validate",
+    read=read,
+    options=ValidateOptions,
+    resolve=resolve,
+    head=head,
+    steps=steps,
+    compute=compute,
+    show=show,
+    limits=limits,
+    limits_of_use=LIMITS_OF_USE,
+)

@@ -1,1 +1,0 @@
-"""What exit-speed accuracy is worth on the track: cuts that roll to the standing cars, and the speeds that aim them."""

@@ -1,0 +1,110 @@
+"""Random trains with random faults on random humps: what must never happen, and what the counters find.
+
+Every example is a hump, a train and faults of its own. `many_trains` humps 100 000 of them by hand.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from synth.hump.control.axle_counters import AxleCounters
+from synth.hump.control.cut_record import Mark
+from synth.hump.control.event import Kind
+from synth.hump.control.misrouting import Misrouting
+from synth.hump.control.reference_faults import LateSwitch
+from tests.synth.hump.control.judged_trains import Humping, Scene, judgement, random_humping
+from tests.synth.hump.control.many_trains import SCENES
+from tests.synth.hump.control.queue_of_cuts import APART_M
+
+SEEDS = st.integers(0, 2**32 - 1)
+NEVER = ("thrown under", "thrown beside", "lost", "silent counters", "other states")
+CATCH_UPS = ("catch-ups missed", "catch-ups false")
+UNCOUPLINGS = ("wrong uncouplings missed", "wrong uncouplings false")
+
+
+@pytest.mark.parametrize("name", SCENES)
+@settings(max_examples=40)
+@given(seed=SEEDS)
+def test_what_must_never_happen_does_not_and_right_sensors_find_all(name: str, seed: int) -> None:
+    """No points under or beside a cut, none lost, no silent counter, and the log replays. With right sensors none is
+    missed and none is false; a gap in which a cut stalls tells nothing, so there uncouplings are not judged."""
+    scene = SCENES[name]
+    judged = judgement(random_humping(seed, scene))
+    none: tuple[str, ...] = NEVER
+    if scene.faults == 0 or scene.points_alone:
+        none += CATCH_UPS if scene.stalled_share else CATCH_UPS + UNCOUPLINGS
+    assert {key: judged[key] for key in none} == dict.fromkeys(none, 0)
+    assert judged["cuts"] > 0
+
+
+@pytest.mark.parametrize(("name", "seed"), [("all", 49094), ("stalled, all", 24757)])
+def test_cars_that_rolled_with_the_cut_ahead_past_late_points_are_not_lost(name: str, seed: int) -> None:
+    """These trains had a cut of which some cars ended on another track without a record."""
+    humping = random_humping(seed, SCENES[name])
+    assert [type(fault) for fault in humping.faults] == [LateSwitch]
+    assert {key: judgement(humping)[key] for key in NEVER} == dict.fromkeys(NEVER, 0)
+
+
+def total(scene: Scene, trains: int = 40) -> dict[str, int]:
+    """Sums over some trains."""
+    judged = [judgement(random_humping(seed, scene)) for seed in range(trains)]
+    return {key: sum(each[key] for each in judged) for key in judged[0]}
+
+
+def test_the_trains_are_no_easy_ones() -> None:
+    """There are catch-ups, wrong uncouplings, misrouted cuts, long cars and faults among them."""
+    counted = total(Scene(faults=3, wrong_share=0.15))
+    least = {"catch-ups": 100, "wrong uncouplings": 10, "misrouted": 30, "faults": 30}
+    assert all(counted[key] >= number for key, number in least.items()), counted
+    humpings = [random_humping(seed, Scene()) for seed in range(20)]
+    assert any(Mark.LONG_BASE in humping.cuts[0].marks for humping in humpings)
+    assert any(len({cut.lead for cut in humping.cuts}) == 2 for humping in humpings)
+
+
+def test_without_counters_points_are_thrown_under_cuts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(AxleCounters, "is_clear", lambda self, element: True)
+    assert total(Scene(faults=3))["thrown under"] > 0
+
+
+def test_without_the_fouling_rule_points_are_thrown_beside_cuts() -> None:
+    scene = SCENES["stalled, published model, points"]
+    assert sum(len(list(random_humping(seed, scene).thrown_beside())) for seed in range(120)) > 0
+    assert total(scene)["thrown beside"] == 0  # it is not asked for there
+
+
+def test_cuts_stall_in_the_trains_and_objects_never_overlap() -> None:
+    stalled = stood = 0
+    for seed in range(40):
+        humping = random_humping(seed, SCENES["stalled"])
+        stalled += humping.stalled
+        for ahead, behind in pairwise(humping.objects):
+            if ahead.lead != behind.lead:
+                continue
+            times = np.union1d(ahead.times_s, behind.times_s)
+            gaps = np.array([ahead.place_m(t) - ahead.axles_m[-1] - behind.place_m(t) for t in times])
+            # A table begins at the crest, and ends behind all joints or where its object stands.
+            assert np.all(gaps[(times >= behind.times_s[0]) & (times <= ahead.times_s[-1])] > 0.0)
+            if ahead.places_m[-1] < max(each.places_m[-1] for each in humping.objects if each.lead == ahead.lead):
+                stood += 1
+                assert behind.places_m[-1] <= ahead.places_m[-1] - ahead.axles_m[-1] - APART_M + 1e-9
+    assert (stalled > 20, stood > 5) == (True, True), (stalled, stood)
+
+
+def test_cuts_whose_misrouting_is_not_recorded_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Misrouting, "send", lambda self, cut, element, why, reachable, leader=0: ())
+    monkeypatch.setattr(AxleCounters, "off_route", lambda self: {})
+    assert total(Scene(faults=3, points_alone=True))["lost"] > 0
+
+
+def test_a_missed_and_an_invented_catch_up_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    humping = random_humping(4, Scene())
+    true, told = humping.catch_ups()
+    assert true == told != set()
+    monkeypatch.setattr(Humping, "told", frozenset({(Kind.CATCH_UP, 9, 9, 0.0)}))
+    judged = judgement(humping)
+    assert (judged["catch-ups missed"], judged["catch-ups false"]) == (len(true), 1)

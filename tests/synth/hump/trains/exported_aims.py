@@ -1,0 +1,64 @@
+"""Aim tables in files for trials on the medium hump, in closed form or exported by an aim of the same cuts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+
+from plant_models.library import load_hump, load_weight_categories
+from synth.hump.trains.aim_design import positions_m
+from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
+from tests.tuning_tables.aim.made_tables import category_table, measured_table
+from tuning_tables.aim import AimTable, MeasuredResistance, ParkPosition, write_aim_json
+
+CATEGORIES = load_weight_categories()
+EXIT_M = 295.0
+STRETCH_M = 250.0, 280.0
+
+
+def medium() -> HumpRoutes:
+    """The routes of the medium hump, whose park positions end at `EXIT_M`."""
+    return hump_routes(load_hump("medium").graph, 201)
+
+
+def made_tables(grade: float, measured: bool = True) -> list[AimTable]:
+    """A table of each category and kind; steeper `grade`, slower exit speeds."""
+    found = []
+    for member in CATEGORIES.members:
+        named = member.number, member.name
+        found.append(category_table(grade, *named))
+        if measured:
+            found.append(replace(measured_table(grade, *named), knowledge=MeasuredResistance(*STRETCH_M, 0.1)))
+    return [replace(each, position=ParkPosition("rnz-2m-park", EXIT_M)) for each in found]
+
+
+def written(folder: Path, tables: Iterable[AimTable]) -> Path:
+    """The tables as files of `folder`."""
+    folder.mkdir(parents=True)
+    for table in tables:
+        write_aim_json(table, folder / f"{table.id}.json")
+    return folder
+
+
+def aim_text(hump: HumpRoutes, row: int, passes: int) -> str:
+    """An aim configuration for the last position of the route `row`, by category Л, with the nodes of a trial's own
+    aim."""
+    route = hump.routes[row]
+    track, (entrance, leave) = route.roll_track, positions_m(route)[-1]
+    pieces = zip(track.breaks_m[:-1], track.breaks_m[1:], track.profile.grades_permille, strict=True)
+    elements = ", ".join(f"{{ from_m = {a}, to_m = {b}, grade_permille = {float(i)} }}" for a, b, i in pieces)
+    bends = ", ".join(
+        f"{{ from_m = {b.from_m}, to_m = {b.to_m}, switches = {b.switches}, turn_deg = {float(b.turn_deg)} }}"
+        for b in track.bends
+    )
+    room = route.length_m - leave - 60.0
+    distances = [round(max(room * (place / 15) ** 2, 0.5), 3) for place in range(16)]
+    return (
+        f"[track]\nelements = [{elements}]\nbends = [{bends}]\n"
+        f'[position]\nname = "rnz-2m-park"\nentrance_m = {entrance}\nexit_m = {leave}\n'
+        f"[stretch]\nfrom_m = 200.0\nto_m = {entrance}\n"
+        f'[cuts]\ncategories = ["Л"]\ncars = [1, 2, 3]\n'
+        f'[aim]\nfree_distances_m = {distances}\nexit_std_m_s = 0.15\nknowledge = ["category"]\n'
+        f"[simulation]\npasses = {passes}\n"
+    )

@@ -1,0 +1,167 @@
+"""What a control expects of cuts, beside numpy, and beside the simulation of cuts that roll just as expected."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from plant_models.rolling.weather import Weather
+from synth.hump.trains.asked import Asked
+from synth.hump.trains.forecast import Expected, Given, SpeedRange, Ways, from_crest
+from synth.hump.trains.hump_routes import HumpRoutes, Mark
+from synth.hump.trains.humping import Hump, humped
+from synth.hump.trains.motion import Cars, Moving, Push
+from synth.hump.trains.normal_hump_position import NormalHumpPosition
+from synth.hump.trains.route_rolling import rolling_on
+from synth.hump.trains.train_cuts import TrainCuts, expected
+from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.trains.trial import HumpTrial
+from tests.synth.hump.trains.made_trials import Day, GivenHead
+
+Floats = NDArray[np.float64]
+
+LONG = Day(cuts=1, cars_mean=8.0, most_cars=24)
+SHORT = Day(cuts=1, cars_mean=1.8, most_cars=4)
+STALLING = Day(cuts=1, weather=Weather(-20.0, 15.0, 0.0))
+COUNT = 60
+BRAKED_M2_S2 = 34.0
+MOST_ENTRY_M_S = (6.6, 6.0, 5.0)
+
+
+def single_cuts(trial: HumpTrial) -> tuple[TrainCuts, Expected, Moving, Push]:
+    """One cut a train, as it is expected, let go at the crest."""
+    made = trial.source.trains(0, COUNT)
+    known = expected(made)
+    rolls = rolling_on(trial.ways, made.population, known, 1)
+    cars = Cars(rolls, np.arange(COUNT), made.route, known.resistance_n_per_kn)
+    braked = np.full((COUNT, trial.routes.positions), BRAKED_M2_S2)
+    axles = made.first_axle_m, made.last_axle_m
+    own = Expected(cars, *axles, braked)
+    start = Moving(0.5 * made.length_m, np.linspace(1.4, 3.0, COUNT), np.linspace(5.0, 9.0, COUNT))
+    return made, own, start, Push(start.speed_m_s, made.length_m)
+
+
+def choices_for(routes: HumpRoutes) -> tuple[SpeedRange, ...]:
+    """Three exit speeds of each position, with limits of entry."""
+    return tuple(SpeedRange(2.0 + 0.1 * q, 6.0 - q, 3, MOST_ENTRY_M_S[q], 1.0) for q in range(routes.positions))
+
+
+def margins(ways: Ways, column: int, free_from_s: Floats, free_by_s: Floats) -> tuple[Floats, Floats, Floats]:
+    """Margins ahead and behind and the arrival, worked out from the times of one combination."""
+    count = len(free_from_s)
+    told = ways.followed(np.full(count, column))
+    with np.errstate(invalid="ignore"):
+        ahead = np.where(np.isnan(told.first_in_s), np.inf, told.first_in_s - free_from_s)
+        behind = np.where(np.isnan(told.last_out_s), np.inf, free_by_s - told.last_out_s)
+    ahead, behind = (np.where(np.isnan(each), np.inf, each).min(axis=1) for each in (ahead, behind))
+    return ahead, behind, told.exit_m_s.sum(axis=1)
+
+
+@pytest.mark.parametrize("day", [SHORT, LONG, STALLING], ids=["short", "long", "stalling"])
+@pytest.mark.parametrize("hump", ["large", "medium", "dumper"])
+def test_every_combination_is_compared_by_its_own_times(day: Day, hump: str) -> None:
+    trial = day.on(hump)
+    routes, random = trial.routes, np.random.default_rng(3)
+    _, own, start, push = single_cuts(trial)
+    ways = from_crest(routes, own, start, push, choices_for(routes))
+    shape = COUNT, routes.elements
+    free_from, free_by = random.uniform(0.0, 60.0, shape), random.uniform(20.0, 90.0, shape)
+    free_from[random.random(shape) < 0.3] = -np.inf
+    found = ways.compared(free_from, free_by)
+    assert found.ahead_s.shape == (COUNT, 3**routes.positions)
+    for column in range(3**routes.positions):
+        ahead, behind, total = margins(ways, column, free_from, free_by)
+        np.testing.assert_allclose(found.ahead_s[:, column], ahead, atol=1e-9)
+        np.testing.assert_allclose(found.behind_s[:, column], behind, atol=1e-9)
+        np.testing.assert_allclose(found.speeds_m_s[:, column], total, atol=1e-12)
+
+
+@pytest.mark.parametrize("hump", ["large", "medium"])
+def test_the_last_choice_runs_fastest_and_entries_are_limited(hump: str) -> None:
+    """`able` from speeds at the entrances, rolled one leg after the other."""
+    trial = SHORT.on(hump)
+    routes = trial.routes
+    _, own, start, push = single_cuts(trial)
+    of_all = choices_for(routes)
+    found = from_crest(routes, own, start, push, of_all).compared(
+        np.full((COUNT, routes.elements), -np.inf), np.full((COUNT, routes.elements), np.inf)
+    )
+    rolls, rows, way = own.cars.rolls, own.cars.rows, own.cars.routes
+    resistance = own.cars.resistance_n_per_kn
+    for column, places in enumerate(itertools.product(range(3), repeat=routes.positions)):
+        head, speed, able, beyond = start.head_m, start.speed_m_s, np.ones(COUNT, bool), np.zeros(COUNT)
+        fastest = start.speed_m_s
+        for q, place in enumerate(places):
+            to = routes.entrance_m[way, q] + own.first_axle_m
+            comes = rolls.roll_on(rows, way, head, speed, to[:, None], resistance).speed_m_s[:, 0]
+            most = rolls.roll_on(rows, way, head, fastest, to[:, None], resistance).speed_m_s[:, 0]
+            leaves = routes.exit_m[way, q] + own.last_axle_m
+            unbraked = rolls.roll_on(rows, way, to, most, leaves[:, None], resistance).speed_m_s[:, 0]
+            speeds = of_all[q].speeds(np.maximum(unbraked, 0.1))
+            beyond = np.maximum(beyond, of_all[q].least_entry_m_s - comes)
+            beyond = np.maximum(beyond, comes - of_all[q].most_entry_m_s)
+            without, leave = comes**2 + unbraked**2 - most**2 + 1e-6, speeds[:, place] ** 2
+            able &= (leave <= without) & (leave >= without - BRAKED_M2_S2)
+            head, speed, fastest = leaves, speeds[:, place], speeds[:, -1]
+        assert (found.able[:, column] == able).mean() > 0.99, column
+        np.testing.assert_allclose(found.beyond_m_s[:, column], beyond, atol=0.01)
+    assert 0.02 < found.able.mean() < 0.995
+    assert 0.1 < (found.beyond_m_s > 0.1).mean() < 0.95
+
+
+def test_a_pass_takes_the_integral_of_its_slowness() -> None:
+    """One position: v² falls evenly along all of the path."""
+    trial = SHORT.on("dumper")
+    routes = trial.routes
+    _, own, start, push = single_cuts(trial)
+    way = own.cars.routes
+    to, leaves = routes.entrance_m[way, 0] + own.first_axle_m, routes.exit_m[way, 0] + own.last_axle_m
+    resistance = own.cars.resistance_n_per_kn
+    rolled = own.cars.rolls.roll_on(
+        own.cars.rows, way, start.head_m, start.speed_m_s, np.stack((to, leaves), axis=1), resistance
+    )
+    comes = rolled.speed_m_s[:, 0]
+    told = from_crest(routes, own, start, push, (Given(np.full(COUNT, 2.5)),)).followed()
+    share = (np.arange(4000) + 0.5) / 4000
+    squares = comes[:, None] ** 2 + (2.5**2 - comes[:, None] ** 2) * share
+    path = leaves - to
+    takes = path * (1.0 / np.sqrt(squares)).mean(axis=1)
+    np.testing.assert_allclose(told.ended_s[:, 0], start.time_s + rolled.time_s[:, 0] + takes, atol=1e-2)
+
+
+class AsTold:
+    """Commands as a forecast chose them; errors of the positions are none."""
+
+    def __init__(self, exit_m_s: Floats) -> None:
+        self.exit_m_s = exit_m_s
+
+    def command(self, asked: Asked) -> Floats:
+        """(n,)."""
+        return np.asarray(self.exit_m_s[asked.lanes, asked.position])
+
+    def speed(self, cut: int, memory: TrainMemory) -> Floats:
+        """At the crest."""
+        return np.linspace(1.4, 3.0, COUNT)
+
+
+@pytest.mark.parametrize("day", [SHORT, LONG], ids=["short", "long"])
+@pytest.mark.parametrize("hump", ["large", "medium", "dumper"])
+def test_cuts_that_roll_as_expected_pass_when_forecast(day: Day, hump: str) -> None:
+    """A train of one cut in the simulation: all times of both marks, long cuts that are in two positions included."""
+    trial = day.on(hump)
+    routes = trial.routes
+    made, own, start, push = single_cuts(trial)
+    speeds = tuple(Given(np.full(COUNT, 3.0 - 0.5 * q)) for q in range(routes.positions))
+    told = from_crest(routes, own, start, push, speeds).followed()
+    positions = tuple(NormalHumpPosition(0.0, GivenHead(9.0)) for _ in range(routes.positions))
+    hump_of = Hump(routes, positions, rolling_on(trial.ways, made.population, expected(made), 1))
+    control = AsTold(told.exit_m_s)
+    free = np.tile(routes.length_m, (COUNT, 1))
+    memory = humped(hump_of, made, free, control, control)
+    for mark, times in ((Mark.FIRST_IN, told.first_in_s), (Mark.LAST_OUT, told.last_out_s)):
+        assert np.isfinite(times).all()
+        simulated = memory.time_s[:, 0, :, mark] + start.time_s[:, None]
+        np.testing.assert_allclose(simulated, times, atol=1e-2)

@@ -1,0 +1,168 @@
+"""From a configuration to the trial: models, limits and sources are what the file says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from synth.frame.exhibits import Table
+from synth.frame.input_error import InputError
+from synth.frame.results_directory import results_directory
+from synth.frame.sheet import to_csv
+from synth.hump.configuration.trial_file import parse_trial_file
+from synth.hump.hump_file import hump_text
+from synth.hump.trains.hump_position import Arrivals
+from synth.hump.trains.hump_speed import PairByPair
+from synth.hump.trains.made_trial import kinds_of_cuts, made_trial
+from synth.hump.trains.resolved_trial import load_trial, resolve_trial
+from synth.hump.trains.shown.program import program_exhibits
+from synth.hump.trains.speed_program import speed_program
+from synth.hump.trains.trial import HumpTrial
+from synth.hump.trains.trial_inputs import write_inputs
+from tests.synth.hump.trains.coarse_book import PARK, coarse_tables
+from tests.system.conftest import changed
+from tuning_tables import write_book
+
+SMALL = """\
+hump = "medium"
+[trains]
+number = 4
+cuts = 5
+most_cars = 3
+[aim]
+design_cuts = 200
+"""
+
+
+def made(text: str = "") -> HumpTrial:
+    """A small trial with what `text` says besides."""
+    return made_trial(resolve_trial(parse_trial_file(SMALL + text, "trial.toml")))
+
+
+def test_steps_end_where_signal_or_uncoupling_ends() -> None:
+    for text, last in (("highest_m_s = 2.0", 2.0), ("uncoupling_m_s = 2.55", 2.5), ("", 3.4)):
+        steps = made(f"[hump_speed]\nlowest_m_s = 1.0\n{text}\n").planner.limits.steps_m_s
+        np.testing.assert_allclose(steps, np.arange(1.0, last + 0.05, 0.1), atol=1e-9)
+    trial = made('[hump_speed]\nmethod = "pair-by-pair"\nworst_pair = true\nleast_s = 0.8\nacceleration_m_s2 = 0.1\n')
+    assert isinstance(trial.planner.method, PairByPair)
+    assert (trial.planner.worst_pair, trial.planner.least_s) == (True, 0.8)
+    assert trial.planner.limits.acceleration_m_s2 == 0.1
+
+
+def test_a_position_out_of_service_brakes_nothing(arrivals: Callable[..., Arrivals]) -> None:
+    """The free roll from the position before it is all that is left; in service the command is kept."""
+    coming = arrivals(50)
+    serving, idle = made().positions[1], made("[[position]]\nnumber = 2\nout_of_service = true\n")
+    np.testing.assert_array_equal(idle.positions[1].passed(coming).exit_m_s, coming.unbraked_exit_m_s)
+    assert abs(serving.passed(coming).exit_m_s - coming.commanded_m_s).max() < 1.0
+    assert idle.planner.ranges[1].speeds(np.array([5.5])).tolist() == [[5.5]]
+    trains, _, memory = idle.humped(0, 2)
+    assert len(trains) == 10
+    rolls = np.isfinite(memory.exit_m_s[:, :, 1])
+    assert rolls.sum() >= 8
+    assert (memory.exit_m_s[:, :, 1][rolls] > memory.entry_m_s[:, :, 1][rolls]).all()  # 8 permille fall
+
+
+def test_supply_is_a_share_of_the_work_of_the_brake(arrivals: Callable[..., Arrivals]) -> None:
+    """A heavy cut under full brake loses half of the energy by half of the supply."""
+    coming = arrivals(8, mass_t=80.0, commanded_m_s=0.0, category=4)
+    ends = []
+    for share in (0.3, 0.15):
+        text = f"[[position]]\nnumber = 2\nexit_std_m_s = 0.0\nsupply_share = {share}\n"
+        ends.append(made(text).positions[1].passed(coming).exit_m_s)
+    more, half = (coming.unbraked_exit_m_s**2 - exits**2 for exits in ends)
+    assert (ends[0] > 0.35).all()
+    np.testing.assert_allclose(half, 0.5 * more, rtol=1e-12)
+
+
+def test_the_program_is_that_of_an_even_push() -> None:
+    """Between two cuts the train is pushed at an even rate: t = 2·apart/(v1 + v2), summed up anew here."""
+    program = speed_program(made(), 3)
+    time, place = 0.0, 0.0
+    for before, row in zip(program.rows, program.rows[1:], strict=False):
+        apart = 0.5 * (before.length_m + row.length_m)
+        time, place = time + 2.0 * apart / (before.hump_speed_m_s + row.hump_speed_m_s), place + apart
+        assert row.time_s == pytest.approx(time)
+        assert row.pushed_m == pytest.approx(place)
+    (table,) = (each for each in program_exhibits(program, brief=True) if isinstance(each, Table))
+    head, *sheet = (line.split(",") for line in to_csv(table).decode("utf-8-sig").splitlines())
+    assert head[-3:] == ["exit_1_m_s", "exit_2_m_s", "exit_3_m_s"]
+    rows = [dict(zip(head, cells, strict=True)) for cells in sheet]
+    assert [int(row["track"]) for row in rows] == [row.track for row in program.rows]
+    last = {key: float(rows[-1][key]) for key in ("time_s", "pushed_m", "hump_speed_m_s")}
+    assert last == {"time_s": time, "pushed_m": place, "hump_speed_m_s": program.rows[-1].hump_speed_m_s}
+
+
+def test_the_program_is_the_one_that_is_humped() -> None:
+    trial = made()
+    program, (_, plan, memory) = speed_program(trial, 2), trial.humped(0, 4)
+    np.testing.assert_array_equal([row.hump_speed_m_s for row in program.rows], memory.hump_speed_m_s[2])
+    np.testing.assert_array_equal([row.exit_m_s[:2] for row in program.rows], plan.exit_m_s[2])
+    np.testing.assert_allclose([row.time_s for row in program.rows], memory.crest_s[2] - memory.crest_s[2, 0])
+
+
+def test_a_constant_speed_is_kept() -> None:
+    program = speed_program(made("[hump_speed]\nconstant_m_s = 1.7\n"), 0)
+    assert {row.hump_speed_m_s for row in program.rows} == {1.7}
+    assert program.mean_m_s == pytest.approx(1.7)
+
+
+def test_books_must_have_a_class_for_every_kind_of_cut() -> None:
+    config = resolve_trial(parse_trial_file(SMALL, "trial.toml"))
+    places = range(len(config.categories.members))
+    assert kinds_of_cuts(config) == {(place, axles) for place in places for axles in (4, 8, 12)}
+
+
+BOOKED = """\
+category_shares = { L = 1.0 }
+[[position]]
+number = 3
+tables = "park.h5"
+tables_config = "park.toml"
+"""
+
+
+def test_a_position_with_a_book_runs_its_tables(tmp_path: Path) -> None:
+    """Its errors are those of tables, and the folder of inputs gives the same trains without the files."""
+    write_book(coarse_tables(), tmp_path / "park.h5")
+    (tmp_path / "park.toml").write_text(PARK, encoding="utf-8")
+    text = changed(SMALL, ("most_cars = 3\n", "most_cars = 2\n"), ("[aim]\ndesign_cuts = 200\n", ""))
+    file = parse_trial_file(text + BOOKED, str(tmp_path / "trial.toml"))
+    config = resolve_trial(file)
+    assert (config.positions[2].top_target_m_s, config.positions[2].exit_std_m_s) == (3.0, None)
+    trial = made_trial(config)
+    found = trial.batch(0, 4)
+    assert (found.strokes[:, :2] == 0).all()
+    assert (found.strokes[:, 2] > 0).all()
+    with results_directory(tmp_path / "out", "hump simulate") as out:
+        write_inputs(file, config, out)
+    for name in ("park.h5", "park.toml"):
+        (tmp_path / name).unlink()
+    again = load_trial(tmp_path / "out" / "inputs" / "config.toml")
+    assert (again.sha256, again.trains_sha256) == (config.sha256, config.trains_sha256)
+    np.testing.assert_array_equal(made_trial(again).batch(0, 4).strokes, found.strokes)
+
+
+def test_books_that_lack_a_class_or_targets_are_refused(tmp_path: Path) -> None:
+    write_book(coarse_tables(), tmp_path / "park.h5")
+    (tmp_path / "park.toml").write_text(PARK, encoding="utf-8")
+    place = str(tmp_path / "trial.toml")
+    heavy = changed(SMALL, ("[aim]\ndesign_cuts = 200\n", "")) + changed(BOOKED, ("L = 1.0", "T = 1.0"))
+    with pytest.raises(InputError, match=r"position 3 names .*park.h5, which does not fit: tables: none for cuts of"):
+        made_trial(resolve_trial(parse_trial_file(heavy, place)))
+    ahead = "[exit_speeds]\nhighest_m_s = [7.0, 6.5]\n[[position]]\nnumber = 2\ntables = 'park.h5'\n"
+    with pytest.raises(InputError, match=r"highest_m_s\[1\] is 6.5; the book of position 2 has tables .* up to 3:"):
+        resolve_trial(parse_trial_file(SMALL + ahead, place))
+
+
+def test_a_position_that_no_library_has_is_refused(tmp_path: Path) -> None:
+    text = hump_text(Path("dumper")).replace(
+        'position = "rnz-2m-park"', 'position = "ours"\nzones_m = [[0.0, 12.0]]', 1
+    )
+    (tmp_path / "ours.toml").write_text(text, encoding="utf-8")
+    config = resolve_trial(parse_trial_file('hump = "ours.toml"\n', str(tmp_path / "trial.toml")))
+    with pytest.raises(InputError, match=r"position 1: .*'ours' is not in the library.*from a folder of library"):
+        made_trial(config)

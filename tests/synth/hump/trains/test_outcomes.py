@@ -1,0 +1,143 @@
+"""What trains came to, counted by hand on a small memory; and how much of the tracks is free before."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from plant_models import PlantError
+from plant_models.library import load_hump
+from synth.hump.trains.free_tracks import AsInFile, DrawnFree
+from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
+from synth.hump.trains.outcomes import GAP_BINS_M, SPEED_BINS_M_S, TrainOutcomes, histograms, joined, outcomes
+from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.trains.trial import SPARE_M, with_room
+from tests.synth.hump.trains.bare_cuts import LEAD, BareTrains, one_switch
+from tests.synth.hump.trains.made_trials import Day
+
+Floats = NDArray[np.float64]
+
+LENGTH_M = np.array([[14.0, 28.0, 14.0, 14.0, 42.0, 14.0]])
+NONE, SWITCH, BRAKE = 2, 0, 1
+
+
+class CountedTrains(BareTrains):
+    """With numbers of cars."""
+
+    cars = np.array([1, 2, 1, 1, 3, 1])
+
+
+def memory_of_six(routes: HumpRoutes) -> TrainMemory:
+    """Six cuts: coupled at 1.6 m/s; left a gap of 25 m; misrouted; in contact in the last position; stopped in it;
+    caught the one ahead at 0 m/s while that rolled."""
+    memory = TrainMemory(1, 6, routes)
+    memory.route[:] = [0, 1, 0, 1, 0, 1]
+    memory.crest_s[:] = [0.0, 8.0, 16.0, 22.0, 34.0, 46.0]
+    memory.hump_speed_m_s[:] = 2.5
+    memory.misrouted_at[0, 2] = SWITCH
+    memory.contact_at[0, 3] = BRAKE
+    memory.unseparated[0, 2, SWITCH] = memory.unseparated[0, 3, BRAKE] = memory.foul[0, 2, SWITCH] = True
+    memory.free_m[:] = [500.0, 480.0, 400.0, np.nan, 450.0, 440.0]
+    memory.end_m[:] = [500.0, 455.0, 400.0, np.nan, 90.0, 430.0]
+    memory.end_speed_m_s[:] = [1.6, 0.0, 3.0, np.nan, 0.0, 0.0]
+    memory.caught_on_track[0, 5] = True
+    memory.command_m_s[0, :, 0] = [2.0, 2.0, 2.0, np.nan, 1.0, 2.0]
+    memory.exit_m_s[0, :, 0] = [2.5, 1.5, 2.0, np.nan, np.nan, 2.0]
+    memory.strokes[0, :, 0] = [4, 3, 2, 0, 0, 1]
+    return memory
+
+
+def test_six_cuts_are_counted_by_hand() -> None:
+    routes = hump_routes(one_switch(), LEAD)
+    trains = CountedTrains(routes, np.array([[1, 2, 1, 2, 1, 2]]), LENGTH_M, first=7)
+    found = outcomes(routes, trains, memory_of_six(routes))  # type: ignore[arg-type]  # bare trains
+    counts = {f.name: getattr(found, f.name).tolist()[0] for f in fields(TrainOutcomes) if "bins" not in f.name}
+    assert counts == {
+        "train": 7,
+        "cuts": 6,
+        "cars": 9,
+        "span_s": 46.0,
+        "span_m": 126.0 - 14.0,
+        "span_cars": 8.0,
+        "misrouted": [1, 0, 0],
+        "contact": [0, 0, 1],
+        "unseparated": [1, 0, 1],
+        "foul": [1, 0, 0],
+        "caught": 1,
+        "caught_in_last": 1,
+        "caught_on_track": 1,
+        "stopped": 1,
+        "judged": 3,
+        "overspeed": [0, 1, 0],
+        "gap_m": 25.0,
+        "passes": [4],
+        "strokes": [10],
+        "error2_m2_s2": [0.5],
+    }
+    assert routes.numbers == (1, 401, 402)
+    assert np.flatnonzero(found.speed_bins[0]).tolist() == [16]
+    assert np.flatnonzero(found.gap_bins[0]).tolist() == [2]
+    twice = joined([found, found])
+    assert twice.train.tolist() == [7, 7]
+    assert twice.overspeed.shape == (2, 3)
+
+
+@pytest.mark.parametrize(
+    ("speed", "place"), [(1.38, None), (1.39, 0), (1.5, 0), (1.51, 1), (2.0, 1), (2.01, 2), (9.0, 2)]
+)
+def test_classes_of_over_speeds(speed: float, place: int | None) -> None:
+    routes = hump_routes(one_switch(), LEAD)
+    memory = memory_of_six(routes)
+    memory.end_speed_m_s[0, 0] = speed
+    trains = CountedTrains(routes, np.array([[1, 2, 1, 2, 1, 2]]), LENGTH_M)
+    found = outcomes(routes, trains, memory).overspeed[0]  # type: ignore[arg-type]  # bare trains
+    assert found.tolist() == [int(each == place) for each in range(3)]
+
+
+def test_histograms_are_those_of_numpy_with_all_beyond_in_the_last_bin() -> None:
+    random = np.random.default_rng(2)
+    values = random.uniform(0.0, 6.0, (3, 50))
+    values[random.random(values.shape) < 0.3] = np.nan
+    found = histograms(values, SPEED_BINS_M_S)
+    for row, own in zip(found, values, strict=True):
+        np.testing.assert_array_equal(row, np.histogram(own[~np.isnan(own)], SPEED_BINS_M_S)[0])
+    assert histograms(np.array([[601.0, 600.0, 595.0]]), GAP_BINS_M)[0, -1] == 3
+
+
+def test_free_tracks_are_drawn_evenly_and_are_the_same_in_any_batch() -> None:
+    routes = hump_routes(load_hump("large").graph, 201)
+    begins = np.array([route.yard_from_m for route in routes.routes])
+    drawn = DrawnFree(0.3, 0.7).free_m(routes, 5, 0, 400)
+    share = (drawn - begins) / (routes.length_m - begins)
+    assert share.min() > 0.3
+    assert share.max() < 0.7
+    assert abs(share.mean() - 0.5) < 4.0 * 0.4 / np.sqrt(12 * share.size)
+    assert abs(share.std() - 0.4 / np.sqrt(12)) < 0.002
+    np.testing.assert_array_equal(DrawnFree(0.3, 0.7).free_m(routes, 5, 37, 3), drawn[37:40])
+    np.testing.assert_array_equal(AsInFile().free_m(routes, 5, 0, 2), np.tile(routes.length_m, (2, 1)))
+
+
+@pytest.mark.parametrize(("low", "high"), [(-0.1, 0.5), (0.5, 1.1), (0.6, 0.5)])
+def test_shares_of_free_track_are_checked(low: float, high: float) -> None:
+    with pytest.raises(PlantError, match="tracks: free_"):
+        DrawnFree(low, high)
+
+
+def test_a_track_has_room_for_all_that_go_there_as_far_as_it_is_long_enough() -> None:
+    trial = Day(cuts=30, cars_mean=3.0, most_cars=10, tracks={1: 1.0, 2: 1.0, 5: 1.0}).on()
+    trains, routes = trial.source.trains(0, 8), trial.routes
+    begins = np.array([route.yard_from_m for route in routes.routes])
+    given = np.tile(begins + 100.0, (8, 1))
+    given[:, 3] = routes.length_m[3]
+    found = with_room(routes, trains, given)
+    for train in range(8):
+        for route in range(len(routes.routes)):
+            own = slice(train * 30, train * 30 + 30)
+            needs = sum(trains.length_m[own][trains.route[own] == route] + SPARE_M)
+            wanted = max(begins[route] + needs, given[train, route])
+            assert found[train, route] == pytest.approx(min(wanted, routes.length_m[route]))
+    assert (found > given).any()
+    assert (found == routes.length_m).any()

@@ -1,0 +1,253 @@
+"""Hump trial configurations: the template, what a file may change, and every fault in one sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from plant_models.library.hump_entry import hump_names
+from plant_models.rolling.resistance_law import Tb10062Law
+from synth.frame.input_error import InputError
+from synth.hump.configuration.template import default_trial_toml
+from synth.hump.configuration.trial_file import parse_trial_file, read_trial_file
+from synth.hump.control.sorting_list import SortingList
+from synth.hump.control.train_population import TrainPopulation
+from synth.hump.hump_file import hump_text
+from synth.hump.trains.resolved_trial import ResolvedTrial, load_trial, resolve_trial
+
+
+def resolved(text: str, place: str = "trial.toml") -> ResolvedTrial:
+    """The trial that `text` asks for."""
+    return resolve_trial(parse_trial_file(text, place))
+
+
+def sentence(text: str, place: str = "trial.toml") -> str:
+    """What is said of the faulty configuration `text`."""
+    with pytest.raises(InputError) as caught:
+        resolved(text, place)
+    (said,) = caught.value.sentences
+    assert said.startswith(f"{place}: ")
+    return said.removeprefix(f"{place}: ")
+
+
+def test_the_template_is_the_built_in_trial_to_the_last_origin() -> None:
+    told, built_in = resolved(default_trial_toml()), load_trial(None)
+    assert told.parameters == built_in.parameters
+    assert told.sha256 == built_in.sha256
+    assert (told.trains, told.ranges_m_s, told.positions) == (built_in.trains, built_in.ranges_m_s, built_in.positions)
+    assert not built_in.warnings
+
+
+def test_every_number_of_the_template_has_an_origin() -> None:
+    """Line by line: above each number stands its unit, and ASSUMED or where it is from."""
+    lines = default_trial_toml().splitlines()
+    numbers = [k for k, line in enumerate(lines) if " = " in line and line[0].isalpha() and line[-1] in "0123456789]}"]
+    assert len(numbers) > 25
+    for k in numbers:
+        assert lines[k - 1].startswith("# "), lines[k]
+        assert "ASSUMED" in lines[k - 1] or "default of the tool" in lines[k - 1] or "[kozach" in lines[k - 1], lines[k]
+
+
+def test_what_changes_no_train_changes_only_the_hash_of_the_figures() -> None:
+    built_in = load_trial(None)
+    same = resolved('title = "x"\n[output]\nplots = false\n[sensors]\nspeed_std_m_s = 0.2\n')
+    assert (same.sha256, same.trains_sha256) == (built_in.sha256, built_in.trains_sha256)
+    for text in ("[trains]\nnumber = 5\n", "[acceptance]\ncatch_ups = 0.01\n"):
+        other = resolved(text)
+        assert other.trains_sha256 == built_in.trains_sha256
+        assert other.sha256 != built_in.sha256
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'hump = "medium"',
+        "[trains]\nseed = 1",
+        "[trains]\ncuts = 41",
+        "[trains]\none_wind_a_train = true",
+        "[trains]\ntrack_shares = { 1 = 1.0, 2 = 1.0 }",
+        "[trains]\ncategory_shares = { T = 1.0 }",
+        "[cars]\nfollowing_share = 0.3",
+        '[resistance]\nlaw = "tb-10062"',
+        "[weather]\nhead_wind_mean_m_s = 1.0",
+        '[tracks]\nstanding = "file"',
+        "[tracks]\nfree_low = 0.3",
+        "[hump_speed]\nconstant_m_s = 1.7",
+        "[hump_speed]\nuncoupling_m_s = 2.5",
+        '[hump_speed]\nmethod = "pair-by-pair"',
+        "[hump_speed]\nworst_pair = true",
+        "[hump_speed]\nslow_down_s = 0.0",
+        "[exit_speeds]\nfeedback = false",
+        '[exit_speeds]\nknowledge = "measured"',
+        "[exit_speeds]\nlowest_m_s = [4.0, 3.0]",
+        "[exit_speeds]\nmost_entry_m_s = [8.0, 7.0]",
+        '[aim]\nknowledge = "measured"',
+        "[aim]\np_overspeed = 0.05",
+        "[[position]]\nnumber = 2\nexit_std_m_s = 0.35",
+        "[[position]]\nnumber = 2\nout_of_service = true",
+        "[[position]]\nnumber = 2\nsupply_share = 0.8",
+    ],
+)
+def test_what_changes_trains_changes_their_hash(text: str) -> None:
+    assert resolved(text).trains_sha256 != load_trial(None).trains_sha256
+
+
+def test_the_same_hump_by_name_path_and_in_a_configuration(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(hump_text(Path("medium")), encoding="utf-8")
+    config = tmp_path / "trial.toml"
+    config.write_text('hump = "mine.toml"\n', encoding="utf-8")
+    hashes = {load_trial(source).sha256 for source in (Path("medium"), path, config)}
+    assert len(hashes) == 1
+    assert hashes != {load_trial(None).sha256}
+
+
+@pytest.mark.parametrize("name", hump_names())
+def test_the_built_in_trial_goes_on_every_hump_of_the_library(name: str) -> None:
+    trial = load_trial(Path(name))
+    assert len(trial.positions) == trial.routes.positions
+    assert len(trial.ranges_m_s) == len(trial.positions) - 1
+
+
+def test_the_values_of_a_file_reach_the_trial() -> None:
+    trial = resolved(
+        'hump = "large-two-leads"\nlead = 202\n[resistance]\nlaw = "tb-10062"\n[weather]\ntemperature_c = -20.0\n'
+        '[trains]\ncategory_shares = { "Л" = 3.0, T = 1.0 }\ntrack_shares = { 4 = 2.0, 5 = 1.0 }\ncars_mean = 1.3\n'
+        "[exit_speeds]\nlowest_m_s = [3.5, 3.0]\nhighest_m_s = [6.0, 6.5]\nmost_entry_m_s = [7.5, 7.0]\n"
+        "[[position]]\nnumber = 3\nexit_std_m_s = 0.05\n[[position]]\nnumber = 1\nsupply_share = 0.7\n"
+    )
+    assert isinstance(trial.people.law, Tb10062Law)
+    assert trial.people.weather.temperature_c == -20.0
+    assert trial.routes.lead == 202
+    assert isinstance(trial.trains, TrainPopulation)
+    assert (dict(trial.trains.category_shares), dict(trial.trains.track_shares)) == ({1: 3.0, 5: 1.0}, {4: 2.0, 5: 1.0})
+    assert trial.trains.cars_mean == 1.3
+    assert trial.ranges_m_s == ((3.5, 6.0, 7.5), (3.0, 6.5, 7.0))
+    assert [(each.exit_std_m_s, each.supply_share) for each in trial.positions] == [
+        (0.15, 0.7),
+        (0.15, 1.0),
+        (0.05, 1.0),
+    ]
+    values = {value.key: value for value in trial.parameters}
+    assert values["position.3.exit_std_m_s"].source == "configuration"
+    assert values["position.2.exit_std_m_s"].assumed
+    assert values["trains.category_shares.L"].value == 3.0
+
+
+def test_retarders_of_one_position_that_differ_need_a_word(tmp_path: Path) -> None:
+    text = hump_text(Path("large")).replace("{ number = 411,", "{ number = 411, exit_std_m_s = 0.2,", 1)
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    config = str(tmp_path / "trial.toml")
+    said = sentence('hump = "mine.toml"', config)
+    assert said.startswith("hump: position 2: its retarders differ in exit_std_m_s or book")
+    trial = resolved('hump = "mine.toml"\n[[position]]\nnumber = 2\nexit_std_m_s = 0.2\n', config)
+    assert trial.positions[1].exit_std_m_s == 0.2
+
+
+def test_long_cuts_are_left_out_where_the_first_position_is_near(tmp_path: Path) -> None:
+    far = "length_m = 26.0\ngrade_permille = [[0.0, 22.0], [24.0, 12.0]]"
+    assert far in hump_text(Path("large"))
+    near = hump_text(Path("large")).replace(far, "length_m = 12.0\ngrade_permille = 22.0", 1)
+    (tmp_path / "near.toml").write_text(near, encoding="utf-8")
+    config = str(tmp_path / "trial.toml")
+    trial = resolved('hump = "near.toml"', config)
+    assert isinstance(trial.trains, TrainPopulation)
+    assert trial.trains.most_cars == int(2.0 * trial.routes.entrance_m.min() / 14.73) == 7
+    said = sentence('hump = "near.toml"\n[trains]\nmost_cars = 8\n', config)
+    assert said.startswith("trains.most_cars is 8: such a cut is 117.8")
+    assert said.endswith("set it to 7 or less")
+
+
+LIST = "cut,cars,axles,mass_t,category,track,length_m,lead,marks\n"
+
+
+def listed(tmp_path: Path, *rows: str) -> Path:
+    """A sorting list."""
+    path = tmp_path / "train.csv"
+    path.write_text(LIST + "".join(f"{row}\n" for row in rows), encoding="utf-8")
+    return path
+
+
+def test_a_list_takes_the_place_of_the_population(tmp_path: Path) -> None:
+    listed(tmp_path, "1,1,4,23,L,3,13.9,0,", "2,2,8,100,S,4,28,0,do-not-hump", "3,1,4,80,T,5,14,0,")
+    trial = resolved('[trains]\nlist = "train.csv"\ncuts = 77\n', str(tmp_path / "trial.toml"))
+    assert isinstance(trial.trains, SortingList)
+    assert [cut.serial for cut in trial.trains.cuts] == [1, 3]
+    assert not any(value.key == "trains.cuts" for value in trial.parameters)
+    named = resolve_trial(read_trial_file(None).with_trains(None, None, tmp_path / "train.csv"))
+    assert named.trains_sha256 == trial.trains_sha256
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("2,1,4,23,L,77,13.9,0,", "row 3: cut 2 goes to track 77; signal 201 leads to tracks 1 to 32"),
+        ("2,1,5,23,L,7,13.9,0,", "row 3: cut 2 has 5 axles on 1 cars"),
+        ("2,1,4,23,L,7,13.9,1,", "row 3: cut 2 comes over lead 1, and the trial has lead 0, with signal 201"),
+        ("2,50,200,2300,L,7,700,0,", "row 3: cut 2 is 700 m long; behind the last position of track 7 there are 643 m"),
+        ("2,15,60,600,L,7,200,0,", "row 3: cut 2 is 200 m long; let go with its middle over the crest"),
+        ("2,1,4,23,L,7,13.9,0,do-not-hump", "cuts of it that go over the hump: 1; a train must have two or more"),
+        ("2,1,4,23,Q,7,13.9,0,", "row 3: category: weight category 'Q' is not in the library"),
+    ],
+)
+def test_a_list_that_does_not_fit_is_refused_with_row_and_reason(row: str, said: str, tmp_path: Path) -> None:
+    path = listed(tmp_path, "1,1,4,23,L,3,13.9,0,", row)
+    with pytest.raises(InputError) as caught:
+        resolve_trial(read_trial_file(None).with_trains(None, None, path))
+    (sentence_of_list,) = caught.value.sentences
+    assert sentence_of_list.startswith(f"{path}: {said}")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('hump = "larg"', "hump: larg: there is no such file, and no such hump in the library; did you mean large?"),
+        ("lead = 7", "lead is 7; the signals at the crests of the hump are 201"),
+        ("[trains]\nnumbr = 3", "trains.numbr = 3 is an unknown key; did you mean number?"),
+        ("[trains]\ncuts = 1", "trains.cuts is 1; it must be from 2 to 999"),
+        ("[trains]\ncuts = 40.0", "trains.cuts is 40.0; it must be a whole number"),
+        ("[trains]\nmost_cars = 30", "trains.most_cars is 30: such a cut is 441.9 m long; let go with its middle over"),
+        ("[trains]\ntrack_shares = { 99 = 1.0 }", "trains.track_shares names '99'; signal 201 leads to tracks 1 to 32"),
+        ("[trains]\ntrack_shares = { 1 = 0.0 }", "trains.track_shares has no share above 0"),
+        ("[trains]\ntrack_shares = { 1 = -1.0 }", "trains.track_shares.1 is -1.0; it must be a finite number from 0"),
+        (
+            "[trains]\ncategory_shares = { X = 1.0 }",
+            "trains.category_shares: weight category 'X' is not in the library",
+        ),
+        (
+            '[trains]\ncategory_shares = { L = 1.0, "Л" = 2.0 }',
+            "trains.category_shares: Л is there twice; leave one out",
+        ),
+        ("[trains]\ncategory_shares = {}", "trains.category_shares is {}; it must be a table of 1 to 31 shares"),
+        ('[cars]\nmix = "usul"', "cars.mix is 'usul', which the library does not hold; did you mean usual?"),
+        ("[cars]\nfollowing_share = 3.0", "cars.following_share is 3.0; it must be a finite number from 0 to 1"),
+        ("[tracks]\nfree_low = 0.95", "tracks.free_low is 0.95; it must not be above free_high, 0.9"),
+        (
+            "[hump_speed]\nconstant_m_s = 9.0",
+            "hump_speed.constant_m_s is 9.0; it must be a finite number from 0.3 to 4",
+        ),
+        (
+            "[hump_speed]\nuncoupling_m_s = 0.9",
+            "hump_speed.lowest_m_s is 1; it must not be above highest_m_s, 3.4, nor",
+        ),
+        (
+            "[exit_speeds]\nlowest_m_s = [4.0]",
+            "exit_speeds.lowest_m_s is [4.0]; positions of the hump ahead of the last",
+        ),
+        ("[exit_speeds]\nlowest_m_s = [8.0, 4.0]", "exit_speeds.lowest_m_s[0] is 8; it must be less than highest_m_s"),
+        ("[aim]\nhighest_m_s = 0.5", "aim.lowest_m_s is 0.5; it must be less than highest_m_s, 0.5"),
+        ("[hump_speed]\nslow_down_s = 0.0\n[exit_speeds]\nfeedback = false", "hump_speed.slow_down_s is 0, but exit"),
+        ("[[position]]\nnumber = 4", "position[0].number is 4; the hump has the positions 1 to 3"),
+        ("[[position]]\nnumber = 1\n[[position]]\nnumber = 1", "position[1].number is 1, which is there before"),
+        ("[[position]]\nnumber = 1\nexit_std_m_s = 2.0", "position[0].exit_std_m_s is 2.0; it must be a finite number"),
+        ('[[position]]\nnumber = 1\nexit_std_m_s = 0.2\ntables = "b.h5"', "position[0].exit_std_m_s is 0.2 and"),
+        ('[[position]]\nnumber = 1\ntables = "b.h5"', "position 1: there is no file 'b.h5'"),
+        ('[[position]]\nnumber = 1\ntables_config = "b.toml"', "position[0].tables_config is 'b.toml', but no book"),
+        ("[[position]]\nnumber = 1\nsupply_share = 0.0", "position[0].supply_share is 0.0; it must be a finite number"),
+        ("[position]\nnumber = 1", "position is {'number': 1}; it must be a list of tables: write [[position]]"),
+        ("[acceptance]\ncatch_ups = 3.0", "acceptance.catch_ups is 3.0; it must be a finite number from 0 to 1"),
+    ],
+)
+def test_each_fault_is_one_sentence(text: str, said: str) -> None:
+    assert sentence(text).startswith(said)
