@@ -180,6 +180,14 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "scripts.studies.robustness.study",
     ),
     Study(
+        "rooms",
+        "Which room of the house is for what, and which rooms does it stand on?",
+        2.0,
+        "architecture.md",
+        "scripts.studies.rooms",
+        "scripts.studies.rooms_picture",
+    ),
+    Study(
         "software-in-the-loop",
         "Does the compiled controller, as a process of its own, control a pass to the same bits as the simulator's?",
         41.0,

@@ -1,1 +1,1 @@
-"""What every command stands on: what can go wrong, and the directory of its results, which nobody else changes."""
+"""What every command stands on: declared settings, its run, what it shows in every medium, its directory, workers."""

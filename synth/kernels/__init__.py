@@ -1,4 +1,7 @@
-"""The compiled kernels. Importing any of them first points numba at the cache of exactly these sources."""
+"""The inner loops, compiled.
+
+Importing any of them first points numba at the cache of exactly these sources.
+"""
 
 from synth.kernels.cache import use_kernel_cache
 
