@@ -47,7 +47,7 @@ def picture(rooms: tuple[Room, ...]) -> Figure:
 
 
 def on_floor(rooms: tuple[Room, ...], floor: int) -> list[tuple[Room, tuple[float, float]]]:
-    """The rooms of a floor with the middle of their boxes, in inches, side by side; a lone one left or right in turn."""
+    """The rooms of a floor with the middle of their boxes, in inches; a lone one left or right by turns."""
     here = [room for room in rooms if room.floor == floor]
     middle = 0.5 * WIDTH_IN
     shift = 0.45 * (1 if floor % 2 else -1) if len(here) == 1 else 0.0
