@@ -34,8 +34,8 @@ KNOWN_MEAN = "[friction]\nmean_cv = 0.0\n"
 ENTRANCE = "[regulator]\napproach_m = 0.0\n"
 AHEAD = "[regulator]\napproach_m = 4.0\n"
 MEASURED = "estimator = false\n"
+POSITIONS = {name: f'{FEW}{ENTRANCE}[position]\nname = "{name}"\n' for name in position_names()}
 CONFIGURATIONS = {
-    **{name: f'{FEW}{ENTRANCE}[retarder]\nname = "{name}"\n' for name in position_names()},
     "estimator": f"{FEW}{ENTRANCE}estimator = true\n{KNOWN_MEAN}{GONDOLA}",
     "approach": f"{FEW}{AHEAD}",
     "approach, measured speed": f"{FEW}{AHEAD}{MEASURED}",
@@ -55,11 +55,18 @@ CONFIGURATIONS = {
 }
 
 
-def tuned(config: ResolvedConfig) -> Iterator[ControllerTable]:
-    """The tables of the first and the last class of a configuration, not simulated."""
+def ends_of(config: ResolvedConfig) -> Iterator[ControllerTable]:
+    """The tables of the first and the last class of a configuration."""
+    labels = [label for label, _ in config.plants()]
+    return (table for label in dict.fromkeys((labels[0], labels[-1])) for table in tuned(config, label))
+
+
+def tuned(config: ResolvedConfig, chosen: str) -> Iterator[ControllerTable]:
+    """The tables of the class `chosen` of a configuration, not simulated."""
     passes, origin = validation_passes(config), origin_of(config.sha256, CREATED)
-    classes = config.plants()
-    for label, plant in (classes[0], classes[-1]) if len(classes) > 1 else classes:
+    for label, plant in config.plants():
+        if label != chosen:
+            continue
         setup = class_setup(config, label, plant, passes, origin)
         aims = [Aim(target, config.criterion) for target in config.targets_m_s]
         for solution in solutions(setup.design, aims):
@@ -81,7 +88,12 @@ def coefficients_sha256(table: ControllerTable) -> str:
 @one_blas_thread()
 def hashes() -> dict[str, dict[str, str]]:
     """By configuration and table."""
-    tables = {name: tuned(parse_config(text, name)) for name, text in CONFIGURATIONS.items()} | {"sweep": swept()}
+    positions = {name: parse_config(text, name) for name, text in POSITIONS.items()}
+    tables = {
+        **{name: tuned(config, config.cuts[0].label) for name, config in positions.items()},
+        **{name: ends_of(parse_config(text, name)) for name, text in CONFIGURATIONS.items()},
+        "sweep": swept(),
+    }
     return {name: {table.id: coefficients_sha256(table) for table in each} for name, each in tables.items()}
 
 
