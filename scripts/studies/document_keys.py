@@ -5,52 +5,64 @@ Between <!-- keys NAME --> and <!-- end --> stands that of the configuration NAM
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from enum import Enum
-from typing import Any, Final
+from collections.abc import Callable, Iterator
+from typing import Final
 
 from pydantic.fields import FieldInfo
 
+from plant_models.library import load_wheel_sensor
 from scripts.studies.markdown_table import table
+from synth.aim.configuration.settings import AimFileSettings
+from synth.aim.configuration.template import usual_aim
 from synth.computer.settings import ComputerSettings
-from synth.frame.settings.numbers import holds_sections
-from synth.frame.settings.section import Section, setting_limits, setting_source, setting_unit
-from synth.frame.settings.template import words_of
+from synth.frame.settings.section import Section, sections_in
+from synth.frame.settings.template import NOTHING
+from synth.frame.settings.told import Told, Usual, told_key, told_numbers, words_of
 from synth.frame.settings.toml_text import value_text
+from synth.hump.configuration.settings import HumpTrialSettings
+from synth.hump.configuration.template import usual_trial
+from synth.retarder.configuration.point_sensors.settings import DEFAULT_WHEEL_SENSOR, PointSensorSettings
 
-DECLARED: Final[dict[str, Section]] = {"computer": ComputerSettings()}
-"""The configurations whose every key is declared."""
+DECLARED: Final[dict[str, Callable[[], tuple[Section, Usual]]]] = {
+    "aim": lambda: (AimFileSettings(), usual_aim()),
+    "computer": lambda: (ComputerSettings(), NOTHING),
+    "hump": lambda: (HumpTrialSettings(), usual_trial()),
+    "sensors": lambda: (
+        PointSensorSettings.model_construct(path_m=()),
+        told_numbers(load_wheel_sensor(DEFAULT_WHEEL_SENSOR).provenance),
+    ),
+}
+"""Configurations, or a section of one, and what the library has for keys that are left out."""
 
 HEAD = ("key", "unless given", "unit", "allowed", "is", "from")
 
 
 def keys_of(name: str) -> str:
     """The table of the keys of the configuration `name` as Markdown."""
-    return table(f"keys {name}", HEAD, rows_of(DECLARED[name], "")).markdown()
+    return table(f"keys {name}", HEAD, rows_of(*DECLARED[name](), "")).markdown()
 
 
-def rows_of(section: Section, path: str) -> Iterator[tuple[str, ...]]:
+def rows_of(section: Section, usual: Usual, path: str) -> Iterator[tuple[str, ...]]:
     """A row for each table of the file, then one for each of its keys."""
-    inner: list[tuple[str, Any]] = []
+    inner: list[tuple[str, Section | None, type[Section]]] = []
     for key, field in type(section).model_fields.items():
-        value = getattr(section, key)
-        if isinstance(value, Section) or holds_sections(value):
-            inner.append((f"{path}.{key}".lstrip("."), value))
+        value, name = getattr(section, key), f"{path}.{key}".lstrip(".")
+        tables = sections_in(field)
+        if tables and name not in usual:
+            inner.append((name, value if isinstance(value, Section) else None, tables[0]))
         else:
-            yield key_row(key, value, field)
-    for name, value in inner:
-        first = value if isinstance(value, Section) else value[0]
-        heading = f"[{name}]" if value is first else f"[[{name}]]"
-        yield f"**`{heading}`**", "", "", "", " ".join((type(first).__doc__ or "").split()), ""
-        if value is first:
-            yield from rows_of(first, name)
+            yield key_row(key, told_key(value, field, usual.get(name)), field)
+    for name, held, model in inner:
+        heading = f"[[{name}]]" if held is None else f"[{name}]"
+        yield f"**`{heading}`**", "", "", "", " ".join((model.__doc__ or "").split()), ""
+        if held is None:
+            yield from (key_row(key, told_key(None, field, None), field) for key, field in model.model_fields.items())
         else:
-            yield from (key_row(key, None, field) for key, field in type(first).model_fields.items())
+            yield from rows_of(held, usual, name)
 
 
-def key_row(key: str, value: Any, field: FieldInfo) -> tuple[str, ...]:
-    """What is declared of one key."""
-    limits, words = setting_limits(field), words_of(field)
-    allowed = f"{limits[0]:g} to {limits[1]:g}" if limits else " or ".join(f"`{word}`" for word in words)
-    told = "–" if value is None else f"`{value_text(value.value if isinstance(value, Enum) else value)}`"
-    return f"`{key}`", told, setting_unit(field), allowed, field.description or "", setting_source(field)
+def key_row(key: str, told: Told, field: FieldInfo) -> tuple[str, ...]:
+    """What is told of one key."""
+    allowed = told.range or " or ".join(f"`{word}`" for word in words_of(field))
+    value = "–" if told.value in (None, (), {}) or sections_in(field) else f"`{value_text(told.value)}`"
+    return f"`{key}`", value, told.unit, allowed, field.description or "", told.source

@@ -26,8 +26,8 @@ from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
 from synth.aim.configuration.aim_file import AimFile
-from synth.aim.configuration.asked_cuts import members_of, require_cars
-from synth.aim.configuration.parameters import aim_numbers, exit_std_of
+from synth.aim.configuration.asked_cuts import members_of
+from synth.aim.configuration.parameters import aim_numbers
 from synth.aim.configuration.settings import (
     AimAcceptanceSettings,
     AimedSettings,
@@ -118,7 +118,7 @@ def resolve_aim(file: AimFile) -> ResolvedAim:
     require_held(f"{place}: weight_categories", WEIGHT_CATEGORIES, settings.weight_categories, file.library)
     with in_file(place, lambda sentence: keyed(sentence, KEY_OF_PLANT_MESSAGE)):
         track = track_with_settings(load_track(settings.track.name, file.library), settings)
-        mix = mix_of(load_car_mix(settings.cuts.mix, file.library), settings)
+        mix = settings.cuts.applied_to(load_car_mix(settings.cuts.mix, file.library))
         categories = load_weight_categories(settings.weight_categories, file.library)
         position = settings.position.name or track.position
         require_held(f"{place}: position.name", POSITIONS, position, file.library)
@@ -126,9 +126,7 @@ def resolve_aim(file: AimFile) -> ResolvedAim:
         members = members_of(categories, settings)
         for member in members:
             mix.mix.of(categories, member)
-        require_cars(settings)
         require_distances(settings, scene)
-        exit_std = exit_std_of(settings)
         book = book_of(file)
     parameters = tuple(aim_numbers(settings, track, mix, members))
     return ResolvedAim(
@@ -140,7 +138,7 @@ def resolve_aim(file: AimFile) -> ResolvedAim:
         members=members,
         cars=settings.cuts.cars,
         aim=settings.aim,
-        exit_std_m_s=exit_std,
+        exit_std_m_s=settings.aim.exit_std_m_s if book is None else None,
         book=book,
         simulation=settings.simulation,
         acceptance=settings.acceptance,
@@ -159,13 +157,6 @@ def resolve_aim(file: AimFile) -> ResolvedAim:
     )
 
 
-def mix_of(entry: CarMixEntry, settings: AimFileSettings) -> CarMixEntry:
-    """The mix with the values that the file sets."""
-    keys = ("following_share", "underload_mean_t")
-    given = {key: getattr(settings.cuts, key) for key in keys}
-    return entry.with_values({key: float(value) for key, value in given.items() if value is not None})
-
-
 def scene_of(track: TrackEntry, mix: CarMixEntry, categories: WeightCategories, settings: AimFileSettings) -> AimScene:
     """The scene that track, mix and settings make; `PlantError` if they make none."""
     law: ResistanceLaw = Tb10062Law()
@@ -182,19 +173,8 @@ def scene_of(track: TrackEntry, mix: CarMixEntry, categories: WeightCategories, 
 
 
 def require_distances(settings: AimFileSettings, scene: AimScene) -> None:
-    """`PlantError` unless the free distances increase from above 0 on and end before the track does."""
+    """`PlantError` unless the free distances end before the track does."""
     distances = settings.aim.free_distances_m
-    for place, distance in enumerate(distances):
-        require(
-            distance > 0.0,
-            f"aim.free_distances_m[{place}] is {distance:g}; it must be more than 0, for it is what the head of the "
-            "cut has still to roll when its last axle leaves the position",
-        )
-        require(
-            place == 0 or distance > distances[place - 1],
-            f"aim.free_distances_m[{place}] is {distance:g} after {distances[place - 1]:g}; give them in increasing "
-            "order",
-        )
     most, track = max(settings.cuts.cars), scene.track
     longest = max(car.car.length_m for car in scene.population.mix.cars)
     room = track.end_m - scene.exit_m - most * longest

@@ -3,12 +3,53 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from plant_models.library import Kind
-    from synth.frame.settings.section import Section
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A configuration that is printed: its title, and as "module:NAME" its model and the function that makes its
+    text."""
+
+    title: str
+    model: str
+    text: str
+
+
+CONFIGURATIONS: Final = {
+    "": Printed(
+        "Configuration",
+        "synth.retarder.configuration.settings:Settings",
+        "synth.retarder.configuration.config_template:default_config_toml",
+    ),
+    "point sensors": Printed(
+        "Configuration with point sensors",
+        "synth.retarder.configuration.settings:Settings",
+        "synth.retarder.configuration.point_sensors.template:default_sensors_toml",
+    ),
+    "aim": Printed(
+        "Aim configuration",
+        "synth.aim.configuration.settings:AimFileSettings",
+        "synth.aim.configuration.template:default_aim_toml",
+    ),
+    "hump": Printed(
+        "Hump trial configuration",
+        "synth.hump.configuration.settings:HumpTrialSettings",
+        "synth.hump.configuration.template:default_trial_toml",
+    ),
+    "computer": Printed(
+        "Configuration of a control computer",
+        "synth.computer.settings:ComputerSettings",
+        "synth.computer.template:default_computer_toml",
+    ),
+}
+"""The configurations by what asks for them, as `init_command` calls it."""
 
 
 def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -> int:
@@ -35,82 +76,48 @@ def schema_command(types: dict[str, str | None]) -> int:
     asked = [folder for folder, name in types.items() if name is not None]
     if len(asked) > 1 or (asked and (asked[0] not in CONFIGURATIONS or types[asked[0]])):
         raise InputError(
-            "init --schema: there are schemas of configurations; give it alone, or with --aim, --hump or --computer"
+            "init --schema: there are schemas of configurations; give it alone, or with --sensors, --aim, --hump or "
+            "--computer"
         )
-    kind = asked[0] if asked else ""
-    print(schema_of(model_of(kind), f"{CONFIGURATIONS[kind]} of retarder-synth"), end="")
+    asked_of = CONFIGURATIONS[asked[0] if asked else ""]
+    print(schema_of(resolve_name(asked_of.model), f"{asked_of.title} of retarder-synth"), end="")
     return 0
-
-
-CONFIGURATIONS = {
-    "": "Configuration",
-    "aim": "Aim configuration",
-    "hump": "Hump trial configuration",
-    "computer": "Configuration of a control computer",
-}
-"""What has a schema, by what asks for it."""
-
-
-def model_of(kind: str) -> type[Section]:
-    """The declared model of a kind of configuration."""
-    if kind == "aim":
-        from synth.aim.configuration.settings import AimFileSettings
-
-        return AimFileSettings
-    if kind == "hump":
-        from synth.hump.configuration.settings import HumpTrialSettings
-
-        return HumpTrialSettings
-    if kind == "computer":
-        from synth.computer.settings import ComputerSettings
-
-        return ComputerSettings
-    from synth.retarder.configuration.settings import Settings
-
-    return Settings
 
 
 def asked_for(types: dict[str, str | None]) -> tuple[str, str]:
     """(key in JSON, text) of what is to be printed; `InputError` where two files are asked for at once."""
+    from synth.frame.input_error import InputError
+
+    asked = [(kind, name) for kind, name in types.items() if name is not None]
+    if len(asked) > 1:
+        raise InputError("init prints one file at a time; give one of its options")
+    kind, name = asked[0] if asked else ("", "")
+    if kind in CONFIGURATIONS and not name:
+        return "configuration", resolve_name(CONFIGURATIONS[kind].text)()
+    return NAMED[kind](name) if kind in NAMED else type_file(kind, name)
+
+
+def type_file(folder: str, name: str) -> tuple[str, str]:
+    """As `asked_for`: the file of the type `name`, or of a usual one; of a position its configuration."""
     from plant_models.library import BUILT_IN, KINDS, POSITIONS, RETARDERS
     from synth.cli.type_template import type_toml
-    from synth.frame.input_error import InputError
     from synth.retarder.configuration.config_template import default_config_toml
     from synth.retarder.configuration.position_choice import require_held
 
-    asked = [kind for kind in KINDS if types.get(kind.folder) is not None]
-    aim, hump, computer = types.get("aim"), types.get("hump"), types.get("computer")
-    sensors = types.get("point sensors")
-    if len(asked) + sum(each is not None for each in (aim, hump, computer, sensors)) > 1:
-        raise InputError("init prints one file at a time; give one of its options")
-    if aim is not None:
-        return aim_file(aim)
-    if hump is not None:
-        return hump_file(hump)
-    if computer is not None:
-        return computer_file(computer)
-    if sensors is not None:
-        return sensors_file(sensors)
-    if not asked:
-        return "configuration", default_config_toml()
-    (kind,) = asked
-    name = types[kind.folder]
+    (kind,) = (kind for kind in KINDS if kind.folder == folder)
     if kind == RETARDERS and name and name not in BUILT_IN.names(RETARDERS):
         require_held("retarder-synth init: --retarder", POSITIONS, name, BUILT_IN)
         return "configuration", default_config_toml(name)
     return "type", type_toml(kind, name or None)
 
 
-def aim_file(name: str) -> tuple[str, str]:
-    """As `asked_for`: an aim configuration, or the file of the track or car mix `name`."""
+def aim_type(name: str) -> tuple[str, str]:
+    """As `asked_for`: the file of the track or car mix `name`."""
     from plant_models.library import BUILT_IN, CAR_MIXES, TRACKS
     from plant_models.library.near_miss import near_miss
-    from synth.aim.configuration.template import default_aim_toml
     from synth.cli.type_template import type_toml
     from synth.frame.input_error import InputError
 
-    if not name:
-        return "configuration", default_aim_toml()
     for kind in (TRACKS, CAR_MIXES):
         if name in BUILT_IN.names(kind):
             return "type", type_toml(kind, name)
@@ -118,40 +125,37 @@ def aim_file(name: str) -> tuple[str, str]:
     raise InputError(f"init --aim {name}: the library has no such track or car mix; {near_miss(name, known)}")
 
 
-def hump_file(name: str) -> tuple[str, str]:
-    """As `asked_for`: a hump trial configuration, or the file of the hump `name`."""
+def hump_type(name: str) -> tuple[str, str]:
+    """As `asked_for`: the file of the hump `name`."""
     from plant_models.library.hump_entry import hump_names
     from plant_models.library.near_miss import near_miss
     from synth.frame.input_error import InputError
-    from synth.hump.configuration.template import default_trial_toml
     from synth.hump.hump_file import hump_text
 
-    if not name:
-        return "configuration", default_trial_toml()
     if name not in hump_names():
         raise InputError(f"init --hump {name}: the library has no such hump; {near_miss(name, hump_names())}")
     return "type", hump_text(Path(name))
 
 
-def computer_file(name: str) -> tuple[str, str]:
-    """As `asked_for`: the configuration of a control computer, which has no types to be named."""
-    from synth.computer.settings import ComputerSettings
+def no_computer(name: str) -> tuple[str, str]:
+    """As `asked_for`: refused, for there are no types of control computers."""
     from synth.frame.input_error import InputError
-    from synth.frame.settings.template import template
 
-    if name:
-        raise InputError(f"init --computer {name}: the library has no control computers; leave the name out")
-    return "configuration", template(ComputerSettings(), "Control computer of a hump", "computer")
+    raise InputError(f"init --computer {name}: the library has no control computers; leave the name out")
 
 
 def sensors_file(name: str) -> tuple[str, str]:
     """As `asked_for`: a configuration with point sensors, of the position `name`."""
     from plant_models.library import BUILT_IN, POSITIONS
-    from synth.retarder.configuration.point_sensors.template import DUMPER_POSITION, default_sensors_toml
+    from synth.retarder.configuration.point_sensors.template import default_sensors_toml
     from synth.retarder.configuration.position_choice import require_held
 
-    require_held("retarder-synth init: --sensors", POSITIONS, name or DUMPER_POSITION, BUILT_IN)
-    return "configuration", default_sensors_toml(name or DUMPER_POSITION)
+    require_held("retarder-synth init: --sensors", POSITIONS, name, BUILT_IN)
+    return "configuration", default_sensors_toml(name)
+
+
+NAMED: Final = {"aim": aim_type, "hump": hump_type, "computer": no_computer, "point sensors": sensors_file}
+"""What an option for a configuration asks for by a name, by what `init_command` calls it."""
 
 
 def print_list(as_json: bool) -> int:

@@ -27,9 +27,10 @@ DOCUMENT = "loops.json"
 def loop_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw and tell the loops of the tables in `source`; 1 if python-control and the simulator do not agree on one."""
     from synth.frame.results_directory import results_directory
+    from synth.frame.settings.settings_file import BUILT_IN
     from synth.frame.terminal.interrupt import interruptible
     from synth.kernels.cache import guarded
-    from synth.retarder.configuration.config_file import BUILT_IN, load_config
+    from synth.retarder.configuration.config_file import load_config
     from synth.retarder.forms.table_file import file_stem, files_at
 
     config = load_config(config_path)

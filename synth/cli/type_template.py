@@ -17,9 +17,10 @@ from plant_models.library import (
     WHEEL_SENSORS,
     YARD_CATEGORIES,
     Kind,
-    sources_cited_in,
 )
-from synth.aim.configuration.settings import DEFAULT_MIX, DEFAULT_TRACK
+from synth.aim.configuration.mix_settings import DEFAULT_MIX
+from synth.aim.configuration.track_settings import DEFAULT_TRACK
+from synth.frame.settings.template import source_lines
 from synth.retarder.configuration.plant_settings import DEFAULT_POSITION
 from synth.retarder.configuration.point_sensors.settings import DEFAULT_WHEEL_SENSOR
 from synth.retarder.configuration.position_choice import require_held
@@ -98,7 +99,7 @@ def type_toml(kind: Kind, name: str | None) -> str:
     chosen = START_FROM[kind] if name is None else name
     require_held(f"retarder-synth init: the {kind.noun}", kind, chosen, BUILT_IN)
     text = BUILT_IN.file(kind, chosen).text
-    return "\n".join((*head(kind, chosen), "", text.rstrip("\n"), *source_lines(text))) + "\n"
+    return "\n".join((*head(kind, chosen), "", text.rstrip("\n"), *source_lines([text]))) + "\n"
 
 
 def head(kind: Kind, name: str) -> Iterator[str]:
@@ -112,11 +113,3 @@ def head(kind: Kind, name: str) -> Iterator[str]:
     yield "# Each number has a value, a sensible range that holds it, a source in your words and a confidence (H, M-H,"
     yield '# M, L-M, L). A source that begins with "engineering judgement" marks the number as assumed.'
     yield FORM[kind]
-
-
-def source_lines(text: str) -> Iterator[str]:
-    """What the file cites, as comments."""
-    cited = sources_cited_in([text])
-    if cited:
-        yield from ("", "# Sources, by the names in [brackets]:")
-        yield from (f"# [{source.name}] {source.reference}" for source in cited)

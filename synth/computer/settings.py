@@ -51,8 +51,8 @@ class RatesSettings(Section):
     Told by figures, or by two runs of 'hump simulate'; differences are paired where both humped the same trains.
     """
 
-    today_trial: str | None = Field(None, description="directory of the run with the control of today")
-    new_trial: str | None = Field(None, description="directory of the run with the new control")
+    today_trial: str | None = choice(None, "directory of the run with the control of today", "out/today")
+    new_trial: str | None = choice(None, "directory of the run with the new control", "out/new")
     today: HumpRates = USUAL_TODAY
     change: HumpChange = USUAL_CHANGE
 
@@ -75,7 +75,7 @@ class AcceptanceSettings(Section):
 class ComputerSettings(Section):
     """A whole configuration of a control computer; an empty one is the built-in default."""
 
-    title: Title | None = Field(None, description="of the page")
+    title: Title | None = choice(None, "of the page", "…")
     hump: str = choice(
         "large", f"whose elements are counted: {', '.join(hump_names())}, or the path of your own hump file"
     )

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from plant_models.library import BUILT_IN, Library
+from synth.frame.settings.settings_file import BUILT_IN as BUILT_IN_PLACE
 from synth.frame.settings.toml_file import Tree, read_text, toml_tree
-from synth.retarder.configuration.config_file import BUILT_IN as BUILT_IN_PLACE
 from synth.retarder.configuration.config_file import valid_settings
 from synth.retarder.configuration.own_types import with_own_types
 from synth.retarder.configuration.resolved_config import ResolvedConfig, resolve

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from plant_models import PlantError
 from synth.frame.input_error import InputError
-from synth.retarder.configuration.config_file import BUILT_IN, load_config
+from synth.frame.settings.settings_file import BUILT_IN
+from synth.retarder.configuration.config_file import load_config
 from synth.retarder.forms.table_file import read_tables
 from synth.retarder.table_class import TableClass, table_classes
 

@@ -16,7 +16,8 @@ def configuration_for(path: Path | None, passages: Sequence[PassageTable]) -> tu
 
     Without a path that of `sensors tune` where all of `passages` are for its position, else that of `tune`.
     """
-    from synth.retarder.configuration.config_file import BUILT_IN, load_config
+    from synth.frame.settings.settings_file import BUILT_IN
+    from synth.retarder.configuration.config_file import load_config
     from synth.retarder.configuration.point_sensors.template import BUILT_IN_SENSORS, DUMPER_POSITION, built_in_sensors
 
     if path is None and passages and all(table.retarder.name == DUMPER_POSITION for table in passages):

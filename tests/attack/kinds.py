@@ -18,9 +18,8 @@ from synth.aim.command import COMMAND as AIM
 from synth.aim.configuration.template import default_aim_toml
 from synth.cli.hump import check_command
 from synth.computer.command import COMMAND as COMPUTER
-from synth.computer.settings import ComputerSettings
+from synth.computer.template import default_computer_toml
 from synth.frame.asked_file import asked_of
-from synth.frame.settings.template import template
 from synth.frame.terminal.telling import say
 from synth.hump.configuration.template import default_trial_toml
 from synth.hump.hump_file import parse_hump
@@ -179,9 +178,7 @@ KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "railml": lambda: file_kind("hump.railml", railml(), partial(read_hump_file, name="hump.railml")),
     "trial": lambda: file_kind("trial.toml", plain(default_trial_toml()), read_trial),
     "aim": lambda: file_kind("aim.toml", plain(default_aim_toml()), read_aim),
-    "computer": lambda: file_kind(
-        "computer.toml", plain(template(ComputerSettings(), "Control computer of a hump", "computer")), read_computer
-    ),
+    "computer": lambda: file_kind("computer.toml", plain(default_computer_toml()), read_computer),
     "sensors": lambda: file_kind("sensors.toml", plain(default_sensors_toml()), read_sensors),
     "mapping": mapping_kind,
     "list": list_kind,

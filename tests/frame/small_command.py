@@ -34,7 +34,7 @@ class CoinSettings(Section):
 class CoinFile(Section):
     """A file about coins."""
 
-    title: str | None = Field(None, description="of the page")
+    title: str | None = choice(None, "of the page", "Coins")
     players: tuple[str, ...] = Field(("Anna", "Bohdan"), strict=False, description="who throws")
     coin: CoinSettings = CoinSettings()
     least_share: float | None = optional("1", 0.0, 1.0, "every player must win so often", 0.4)

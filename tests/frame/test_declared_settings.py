@@ -3,28 +3,39 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import jsonschema
 import pytest
+from annotated_types import Ge
+from pydantic import ValidationError
 from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
 
 from plant_models import PlantError
 from plant_models.library.sourced_value import SET_BY_USER
+from synth.aim.configuration.settings import AimFileSettings
 from synth.cli import main
 from synth.computer.settings import ComputerSettings
 from synth.frame.input_error import InputError
 from synth.frame.settings.changed import changed, with_inputs
 from synth.frame.settings.numbers import numbers_of
-from synth.frame.settings.section import Section, setting_limits, setting_unit
+from synth.frame.settings.section import Section, sections_in, setting_limits, setting_unit
 from synth.frame.settings.settings_file import parse_settings
 from synth.frame.settings.template import template
 from synth.frame.settings.toml_text import toml_text
+from synth.hump.configuration.settings import HumpTrialSettings
+from synth.retarder.configuration.settings import Settings
 from tests.frame.small_command import CoinFile
 
-FILES: tuple[Section, ...] = (CoinFile(), ComputerSettings())
+FILES: tuple[Section, ...] = (CoinFile(), ComputerSettings(), Settings(), AimFileSettings(), HumpTrialSettings())
+
+CONFIGURATIONS = [(), ("--sensors",), ("--aim",), ("--hump",), ("--computer",)]
+"""What `init` prints configurations for."""
 
 
 def declared(section: Section, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any, FieldInfo]]:
@@ -54,18 +65,20 @@ LIMITED = [
     pytest.param(file, path, field, id=f"{type(file).__name__}-{'.'.join(path)}")
     for file in FILES
     for path, _, field in declared(file, ())
-    if setting_limits(field)
+    if any(isinstance(limit, Ge) for limit in field.metadata)
 ]
+"""Numbers with limits; lists of them are faulty in their own ways."""
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: type(file).__name__)
 def test_a_template_reads_back_to_the_defaults_and_says_every_unit(file: Section) -> None:
     text = template(file, "A thing", "do")
     assert parse_settings(type(file), text, "t.toml") == file
-    for path, _, field in declared(file, ()):
-        assert path[-1] in text
-        assert (field.description or "") in text
-        assert setting_unit(field) in text
+    for path, value, field in declared(file, ()):
+        if value not in (None, (), {}) or field.examples:
+            assert path[-1] in text
+            assert (field.description or "") in text
+            assert setting_unit(field) in text
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: type(file).__name__)
@@ -108,6 +121,27 @@ def test_a_word_for_a_number_and_a_mistyped_key_are_one_sentence(
         assert word in said
 
 
+@pytest.mark.parametrize("file", FILES, ids=lambda file: type(file).__name__)
+def test_what_stands_as_an_example_may_be_set(file: Section) -> None:
+    for path, _, field in declared(file, ()):
+        for example in field.examples or ():
+            tree: Any = example if not sections_in(field) else [each.model_dump(exclude_none=True) for each in example]
+            for key in reversed(path):
+                tree = {key: tree}
+            for fault in faults_of(type(file), tomllib.loads(toml_text(tree))):
+                assert fault["type"] == "value_error", path  # a rule may want another key beside it
+                assert fault["loc"] != path
+
+
+def faults_of(model: type[Section], tree: dict[str, Any]) -> list[ErrorDetails]:
+    """What is at fault in the settings of `tree`."""
+    try:
+        model.model_validate(tree)
+    except ValidationError as error:
+        return error.errors()
+    return []
+
+
 def test_what_the_user_sets_is_his() -> None:
     told = parse_settings(CoinFile, "[coin]\nheads = 0.25\n", "c.toml")
     sources = {value.key: value.source for value in numbers_of(told)}
@@ -139,7 +173,24 @@ def test_templates_are_toml_whatever_they_say() -> None:
         assert tomllib.loads(template(file, "", ""))
 
 
-@pytest.mark.parametrize("words", [(), ("--aim",), ("--hump",), ("--computer",)])
+@pytest.mark.parametrize("words", CONFIGURATIONS)
+def test_every_key_that_init_prints_is_explained_above_it(
+    words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["init", *words]) == 0
+    lines, listed, numbers = capsys.readouterr().out.splitlines(), False, 0
+    for above, line in pairwise(lines):
+        listed = line.startswith("[[") if line.startswith("[") else listed  # the keys of a list are explained once
+        if listed or " = " not in line or line.startswith("#"):
+            continue
+        assert above.startswith("# "), line
+        if re.search(r"= \[*-?\d", line):
+            assert re.match(r"# [^;]+; (any|fixed|\S+ to \S+); \S", above), line
+            numbers += 1
+    assert numbers > 20
+
+
+@pytest.mark.parametrize("words", CONFIGURATIONS)
 def test_what_init_prints_is_what_its_schema_allows(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["init", *words, "--schema"]) == 0
     schema = json.loads(capsys.readouterr().out)

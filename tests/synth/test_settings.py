@@ -40,14 +40,10 @@ def test_an_empty_file_is_the_default_book() -> None:
 
 @pytest.mark.parametrize("name", position_names())
 def test_template_reads_back_to_the_defaults(name: str) -> None:
-    text = default_config_toml(name)
-    config = parse_config(text, "template")
+    config = parse_config(default_config_toml(name), "template")
     assert config == parse_config(f'retarder.name = "{name}"', "short")
     assert config.warnings == ()
     assert all(p.source != "configuration" for p in config.parameters)
-    for number, line in enumerate(text.splitlines()):
-        if " = " in line and not line.startswith(("#", "title")):
-            assert text.splitlines()[number - 1].startswith("#"), line
 
 
 def test_only_what_is_set_replaces_the_library() -> None:
@@ -193,10 +189,7 @@ def test_unusual_values_are_warned_of_not_refused() -> None:
         ("[targets]\nexit_speeds_m_s = [0.1]", "targets.exit_speeds_m_s", "0.1", "at least 0.3 m/s"),
         ("[targets]\nexit_speeds_m_s = [2, 2]", "targets.exit_speeds_m_s", "2.0", "once"),
         ("[targets]\nexit_speeds_m_s = []", "targets.exit_speeds_m_s", "[]", "at least one"),
-        ("[grid]\npath_step_m = 0", "grid.path_step_m", "0", "from 0.02 to 5"),
         ("[grid]\nfriction_scenarios = 2.5", "grid.friction_scenarios", "2.5", "a whole number"),
-        ("[fit]\ndegree = 7", "fit.degree", "7", "from 1 to 6"),
-        ("[validation]\nseed = -1", "validation.seed", "-1", "from 0 to"),
         ("[output]\nplots = 1", "output.plots", "1", "true or false"),
         ("sensor = 5", "sensor", "5", "a table"),
         ("cut = []", "cut", "[]", "1 to 1000 [[cut]]"),

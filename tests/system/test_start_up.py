@@ -63,7 +63,7 @@ def test_installed_command_and_closed_pipe() -> None:
     done = subprocess.run(
         f"{command} init | head -n 1", shell=True, capture_output=True, text=True, timeout=60, check=True
     )
-    assert done.stdout.startswith("# Configuration of retarder-synth")
+    assert done.stdout.startswith("# Configuration (retarder-synth tune)")
     assert done.stderr == ""
 
 

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from pydantic import ValidationError
-
 from plant_models.library import Library
 from synth.aim.configuration.settings import AimFileSettings
-from synth.frame.input_error import InputError
-from synth.frame.settings.file_fault import faults_in
+from synth.frame.settings.settings_file import settings_in
 from synth.frame.settings.toml_file import toml_tree
 from synth.retarder.configuration.own_types import with_own_types
 
@@ -32,8 +29,4 @@ class AimFile:
 def parse_aim_file(text: str, place: str) -> AimFile:
     """The file with this `text`; paths in it begin at the folder of `place`."""
     tree, library = with_own_types(toml_tree(text, place), place)
-    try:
-        settings = AimFileSettings.model_validate(tree)
-    except ValidationError as error:
-        raise InputError(*(f"{place}: {sentence}" for sentence in faults_in(error, AimFileSettings))) from None
-    return AimFile(settings, library, place)
+    return AimFile(settings_in(AimFileSettings, tree, place), library, place)

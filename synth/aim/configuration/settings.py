@@ -5,70 +5,44 @@ Values that stand in the library (track, position, stretch, mix of cars) are rep
 
 from __future__ import annotations
 
-from typing import Literal
+from itertools import pairwise
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from plant_models.library import YARD_CATEGORIES
+from plant_models.errors import require
+from plant_models.library import POSITIONS
 from plant_models.library.sourced_value import JUDGEMENT
+from synth.aim.configuration.mix_settings import MixSettings
 from synth.aim.configuration.simulation_settings import SimulationSettings
+from synth.aim.configuration.track_settings import AimTrackSettings
 from synth.frame.settings.output import OutputSettings
-from synth.frame.settings.section import Section, many, setting
-from synth.frame.settings.value_forms import Title
+from synth.frame.settings.section import TOOL_DEFAULT, Section, choice, many, of_library, setting
+from synth.retarder.configuration.named_type import named_type
+from synth.retarder.configuration.top_keys import TopKeys
 
-DEFAULT_TRACK = "large-hump"
-DEFAULT_MIX = "usual"
-MOST_PIECES = 200
-"""Elements, or bends, of a track."""
+Count = Annotated[int, Field(ge=1, le=60)]
+"""A number of cars."""
 
 MOST_TABLES = 64
 """Numbers of cars of an aim table."""
 
 
-class ElementSettings(Section):
-    """A piece of the track with one grade, downhill positive; metres from the crest."""
-
-    from_m: float
-    to_m: float
-    grade_permille: float = Field(ge=-60.0, le=60.0)
-
-
-class BendSettings(Section):
-    """Switches and degrees of turn within a piece of the track; metres from the crest."""
-
-    from_m: float
-    to_m: float
-    switches: int = Field(0, ge=0, le=20)
-    turn_deg: float = Field(0.0, ge=0.0, le=360.0)
-
-
-class AimTrackSettings(Section):
-    """A track of the library; `elements` and `bends`, where given, stand in place of its own."""
-
-    name: str = DEFAULT_TRACK
-    elements: tuple[ElementSettings, ...] | None = many(
-        None, 1, MOST_PIECES, "tables {from_m = …, to_m = …, grade_permille = …}"
-    )
-    bends: tuple[BendSettings, ...] | None = many(
-        None, 0, MOST_PIECES, "tables {from_m = …, to_m = …, switches = …, turn_deg = …}"
-    )
-
-
 class AimPositionSettings(Section):
-    """Replaces values of the track's park position."""
+    """The park position of the track."""
 
-    name: str | None = None
-    entrance_m: float | None = None
-    exit_m: float | None = None
+    name: str | None = named_type(None, POSITIONS, "the park position")
+    entrance_m: float | None = of_library("its entrance, from the crest")
+    exit_m: float | None = of_library("its exit; cuts are let go when their last axle is there")
 
 
 class StretchSettings(Section):
-    """Replaces values of the track's measured stretch."""
+    """Where cuts roll freely between the bunch position and the park position, and are measured."""
 
-    from_m: float | None = None
-    to_m: float | None = None
-    speed_mean_m_s: float | None = None
-    speed_std_m_s: float | None = None
+    from_m: float | None = of_library("where it begins, from the crest")
+    to_m: float | None = of_library("where it ends")
+    speed_mean_m_s: float | None = of_library("mean speed of cuts where it begins")
+    speed_std_m_s: float | None = of_library("its standard deviation: the error of the bunch position")
 
 
 class WeatherSettings(Section):
@@ -96,29 +70,35 @@ class WeatherSettings(Section):
 class ResistanceSettings(Section):
     """The norm that basic resistance and bends follow."""
 
-    law: Literal["hump-norm", "tb-10062"] = "hump-norm"
+    law: Literal["hump-norm", "tb-10062"] = choice(
+        "hump-norm",
+        "gamma law by weight category, or, from the Chinese norm, normal law by mass and temperature",
+    )
     erlang_order: int = setting(
         3, "1", 1, 50, "order of the Erlang law of switches and curves; of hump-norm alone",
         f"{JUDGEMENT}: [kozachenko-aimed] has the law; its order was found nowhere",
     )  # fmt: skip
 
 
-class CutsSettings(Section):
-    """Which cuts tables are made for; a number of the mix is replaced where it is set. No categories: all of them."""
+class CutsSettings(MixSettings):
+    """Which cuts tables are made for."""
 
-    mix: str = DEFAULT_MIX
-    following_share: float | None = None
-    underload_mean_t: float | None = None
-    categories: tuple[str, ...] | None = many(None, 1, 31, "weight categories")
-    cars: tuple[int, ...] = many((1, 2, 3, 5, 8, 15), 1, MOST_TABLES, "numbers of cars")
+    categories: tuple[str, ...] | None = many(None, 1, 31, "weight categories", "weight categories that get tables")
+    cars: tuple[Count, ...] = many(
+        (1, 2, 3, 5, 8, 15), 1, MOST_TABLES, "numbers of cars", "numbers of cars in a cut, rising", "1", TOOL_DEFAULT
+    )
+
+    @model_validator(mode="after")
+    def _cars_rise(self) -> CutsSettings:
+        for place, (before, count) in enumerate(pairwise(self.cars), start=1):
+            require(
+                count > before, f"cars[{place}] is {count} after {before}; give the numbers of cars in increasing order"
+            )
+        return self
 
 
 class AimedSettings(Section):
-    """What is required, and what the control knows.
-
-    In place of `exit_std_m_s`: `tables`, a book of the position's controller tables, and `tables_config`, the
-    configuration that it was tuned with.
-    """
+    """What is required, and what the control knows."""
 
     p_overspeed: float = setting(
         0.1, "1", 0.005, 0.9, "required probability of a coupling above coupling_speed_m_s",
@@ -128,18 +108,56 @@ class AimedSettings(Section):
         1.39, "m/s", 0.1, 5.0, "highest speed at which cars may couple", "[braking-position]: 5 km/h"
     )
     free_distances_m: tuple[float, ...] = many(
-        (20.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0, 400.0), 1, 100, "distances"
-    )
+        (20.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0, 400.0), 1, 100, "distances",
+        "what the head of a cut has still to roll when its last axle leaves the position, rising", "m", TOOL_DEFAULT,
+    )  # fmt: skip
     knowledge: tuple[Literal["category", "measured"], ...] = many(
-        ("category", "measured"), 1, 2, "of 'category' and 'measured'"
-    )
+        ("category", "measured"), 1, 2, "of 'category' and 'measured'",
+        "what is known of a cut beside its cars: its weight category, or besides its resistance",
+    )  # fmt: skip
     speed_std_m_s: float = setting(
         0.03, "m/s", 1e-4, 1.0, "error of each speed that is measured at the ends of the stretch",
         f"{JUDGEMENT}: point sensors; 0.02 to 0.1 are usual",
     )  # fmt: skip
-    exit_std_m_s: float | None = None
-    tables: str | None = None
-    tables_config: str | None = None
+    exit_std_m_s: float = setting(
+        0.1, "m/s", 0.0, 2.0, "standard deviation of the exit speed about the commanded one",
+        f"{JUDGEMENT}: [hump-computer-1970s] asks for 0.15, tables of this tool have less",
+    )  # fmt: skip
+    tables: str | None = choice(
+        None, "in its place, a book of the position's controller tables: closed loops say how exact they are",
+        "out/book.h5",
+    )  # fmt: skip
+    tables_config: str | None = choice(
+        None, "the configuration that it was tuned with; left out: the built-in one", "my.toml"
+    )
+
+    @model_validator(mode="after")
+    def _one_word_on_the_position(self) -> AimedSettings:
+        require(
+            self.tables is None or "exit_std_m_s" not in self.model_fields_set,
+            f"exit_std_m_s is {self.exit_std_m_s} and aim.tables is {self.tables!r}; both say how exactly the position "
+            "works: leave out one of the two",
+        )
+        require(
+            self.tables is not None or self.tables_config is None,
+            f"tables_config is {self.tables_config!r}, but aim.tables names no book; add it",
+        )
+        return self
+
+    @model_validator(mode="after")
+    def _distances_rise(self) -> AimedSettings:
+        for place, distance in enumerate(self.free_distances_m):
+            require(
+                distance > 0.0,
+                f"free_distances_m[{place}] is {distance:g}; it must be more than 0, for it is what the head of the "
+                "cut has still to roll when its last axle leaves the position",
+            )
+        for place, (before, distance) in enumerate(pairwise(self.free_distances_m), start=1):
+            require(
+                distance > before,
+                f"free_distances_m[{place}] is {distance:g} after {before:g}; give them in increasing order",
+            )
+        return self
 
 
 class AimAcceptanceSettings(Section):
@@ -150,12 +168,9 @@ class AimAcceptanceSettings(Section):
     )
 
 
-class AimFileSettings(Section):
+class AimFileSettings(TopKeys):
     """A whole aim configuration; an empty one is the built-in default."""
 
-    title: Title | None = None
-    library: tuple[str, ...] = many((), 0, 20, "folders")
-    weight_categories: str = YARD_CATEGORIES
     track: AimTrackSettings = AimTrackSettings()
     position: AimPositionSettings = AimPositionSettings()
     stretch: StretchSettings = StretchSettings()

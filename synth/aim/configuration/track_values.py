@@ -1,13 +1,13 @@
-"""What a file says of track, position and stretch, as values of the library's track."""
+"""What a file says of track, position and stretch, as values of the library's track, and the other way round."""
 
 from __future__ import annotations
 
-from itertools import pairwise
+from typing import Any
 
-from plant_models import PlantError
-from plant_models.errors import require
 from plant_models.library import TrackEntry, Value
-from synth.aim.configuration.settings import AimFileSettings, BendSettings, ElementSettings
+from plant_models.rolling.roll_track import RollTrack
+from synth.aim.configuration.settings import AimFileSettings
+from synth.frame.settings.numbers import library_values
 
 
 def track_with_settings(entry: TrackEntry, settings: AimFileSettings) -> TrackEntry:
@@ -15,53 +15,28 @@ def track_with_settings(entry: TrackEntry, settings: AimFileSettings) -> TrackEn
     elements, bends = settings.track.elements, settings.track.bends
     overrides: dict[str, Value] = {}
     if elements is not None:
-        overrides |= element_values(elements)
+        overrides["track.grade_permille"] = tuple((each.from_m, each.grade_permille) for each in elements)
+        overrides["track.end_m"] = elements[-1].to_m
     if bends is not None and not bends:
         entry = entry.without_bends()
     elif bends is not None:
-        overrides |= bend_values(bends)
-    sections = {"position": settings.position, "stretch": settings.stretch}
-    for section, below in sections.items():
-        for key, value in below.model_dump(exclude_none=True, exclude={"name"}).items():
-            overrides[f"{section}.{key}"] = float(value)
+        overrides["bends.zones_m"] = tuple((bend.from_m, bend.to_m) for bend in bends)
+        overrides["bends.switches"] = tuple(float(bend.switches) for bend in bends)
+        overrides["bends.turn_deg"] = tuple(bend.turn_deg for bend in bends)
+    overrides |= dict(library_values(settings.position, "position"))
+    overrides |= dict(library_values(settings.stretch, "stretch"))
     return entry.with_values(overrides)
 
 
-def element_values(elements: tuple[ElementSettings, ...]) -> dict[str, Value]:
-    """The profile and its end; `PlantError` where there is a gap, an overlap or no length."""
-    first = elements[0].from_m
-    require(first == 0.0, f"track.elements[0].from_m is {first:g}; the track begins at the crest: set it to 0")
-    for place, element in enumerate(elements):
-        require(
-            element.to_m > element.from_m,
-            f"track.elements[{place}].to_m is {element.to_m:g}; it must be more than its from_m, {element.from_m:g}",
-        )
-    for place, (ahead, behind) in enumerate(pairwise(elements), start=1):
-        require(
-            behind.from_m == ahead.to_m,
-            f"track.elements[{place}].from_m is {behind.from_m:g}, but the element before ends at {ahead.to_m:g} m; "
-            f"elements must follow one another without gap and overlap: set it to {ahead.to_m:g}",
-        )
-    pieces = tuple((element.from_m, element.grade_permille) for element in elements)
-    return {"track.grade_permille": pieces, "track.end_m": elements[-1].to_m}
+def elements_of(track: RollTrack) -> list[dict[str, Any]]:
+    """The elements of a track as a file has them."""
+    pieces = zip(track.breaks_m[:-1], track.breaks_m[1:], track.profile.grades_permille, strict=True)
+    return [{"from_m": begins, "to_m": ends, "grade_permille": grade} for begins, ends, grade in pieces]
 
 
-def bend_values(bends: tuple[BendSettings, ...]) -> dict[str, Value]:
-    """The three lists of bends; `PlantError` where one has no length or two overlap."""
-    for place, bend in enumerate(bends):
-        if bend.from_m < 0.0 or bend.to_m <= bend.from_m:
-            raise PlantError(
-                f"track.bends[{place}] is from {bend.from_m:g} to {bend.to_m:g} m; it must begin at 0 m or more and "
-                "have a length"
-            )
-    for place, (ahead, behind) in enumerate(pairwise(bends), start=1):
-        require(
-            behind.from_m >= ahead.to_m,
-            f"track.bends[{place}].from_m is {behind.from_m:g}, but the bend before ends at {ahead.to_m:g} m; list "
-            "them in order, without overlap",
-        )
-    return {
-        "bends.zones_m": tuple((bend.from_m, bend.to_m) for bend in bends),
-        "bends.switches": tuple(float(bend.switches) for bend in bends),
-        "bends.turn_deg": tuple(bend.turn_deg for bend in bends),
-    }
+def bends_of(track: RollTrack) -> list[dict[str, Any]]:
+    """The bends of a track as a file has them."""
+    return [
+        {"from_m": bend.from_m, "to_m": bend.to_m, "switches": bend.switches, "turn_deg": bend.turn_deg}
+        for bend in track.bends
+    ]

@@ -11,6 +11,7 @@ ALLOWED = {
     "bool_type": "true or false",
     "finite_number": "a finite number",
     "model_type": "a table",
+    "dict_type": "a table",
     "tuple_type": "a list",
     "string_pattern_mismatch": "made of at most 61 letters, digits, dots, hyphens and underscores",
 }

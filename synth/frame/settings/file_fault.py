@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, Final, get_args
+from typing import Final
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -14,7 +15,7 @@ from plant_models.errors import PlantError
 from plant_models.library.near_miss import near_miss
 from synth.frame.input_error import InputError
 from synth.frame.settings.fault_words import ALLOWED, shown
-from synth.frame.settings.section import Section, extra_of, length_limits, setting_limits
+from synth.frame.settings.section import Section, extra_of, length_limits, sections_in, setting_limits
 from tuning_tables.excerpt import excerpt
 
 Location = Sequence[str | int]
@@ -56,7 +57,8 @@ def rule_sentence(key: str, sentence: str, section: type[BaseModel]) -> str:
     """A sentence about the table at `key`; where it begins with one of its keys, that is told in full."""
     if not key:
         return sentence
-    return f"{key}.{sentence}" if sentence.partition(" ")[0] in section.model_fields else f"{key}: {sentence}"
+    first = re.match(r"\w*", sentence)
+    return f"{key}.{sentence}" if first and first[0] in section.model_fields else f"{key}: {sentence}"
 
 
 def allowed(fault: ErrorDetails, root: type[Section]) -> str:
@@ -103,20 +105,16 @@ def section_at(location: Location, root: type[Section]) -> type[BaseModel]:
 
 
 def field_at(location: Location, root: type[Section]) -> FieldInfo:
-    """The field that a location ends at."""
-    return section_at(location[:-1], root).model_fields[str(location[-1])]
-
-
-def sections_in(field: FieldInfo) -> list[type[Section]]:
-    """The section that a field holds, or a list of; empty for a plain value."""
-    return [c for c in parts_of(field.annotation) if isinstance(c, type) and issubclass(c, Section)]
-
-
-def parts_of(annotation: Any) -> Iterator[Any]:
-    """A type, and all that it is made of."""
-    yield annotation
-    for part in get_args(annotation):
-        yield from parts_of(part)
+    """The field that a location ends at, or in: it may go on to an entry of a list or of a table by name."""
+    section: type[BaseModel] = root
+    keys = [part for part in location if isinstance(part, str)]
+    for key in keys:
+        field = section.model_fields[key]
+        inner = sections_in(field)
+        if not inner:
+            break
+        section = inner[0]
+    return field
 
 
 def dotted_keys(section: type[BaseModel], prefix: str) -> list[str]:

@@ -6,13 +6,15 @@ of parameters, the options of the command line and the JSON Schema follow from t
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, get_args
 
 from annotated_types import Ge, Le, MaxLen, MinLen
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.fields import FieldInfo
 
 TOOL_DEFAULT = "default of the tool"
+OF_LIBRARY = "the type in the library"
 
 
 def setting(default: float, unit: str, low: float, high: float, meaning: str, source: str = TOOL_DEFAULT) -> Any:
@@ -32,14 +34,35 @@ def optional(unit: str, low: float, high: float, meaning: str, example: float) -
     )
 
 
-def choice(default: object, meaning: str) -> Any:
-    """A word, a switch, a name or a path."""
-    return Field(default, description=meaning)
+def of_library(meaning: str, example: object = None) -> Any:
+    """What a type of the library has, unless the file says otherwise: value, unit, range and source are those of the
+    type; the template shows `example` as a comment where the type has no such value."""
+    examples = None if example is None else [example]
+    return Field(None, description=meaning, examples=examples, json_schema_extra={"source": OF_LIBRARY})
 
 
-def many(default: object, low: int, high: int, entries: str, strict: bool = False) -> Any:
-    """A list of `low` to `high` `entries`, as sentences call them; `strict`: a table of them by name."""
-    return Field(default, min_length=low, max_length=high, strict=strict, json_schema_extra={"entries": entries})
+def choice(default: object, meaning: str, example: object = None) -> Any:
+    """A word, a switch, a name or a path; the template shows `example` as a comment where `default` is None."""
+    return Field(default, description=meaning, examples=None if example is None else [example])
+
+
+def many(
+    default: object, low: int, high: int, entries: str, meaning: str = "", unit: str = "", source: str = "",
+    example: object = None,
+) -> Any:  # fmt: skip
+    """A list, or a table by name, of `low` to `high` `entries`, as sentences call them.
+
+    Numbers have a `unit`, the `source` of the default, and their limits in the annotation, as in `tuple[Share, ...]`.
+    """
+    return Field(
+        default,
+        min_length=low,
+        max_length=high,
+        strict=False,
+        description=meaning or None,
+        examples=None if example is None else [example],
+        json_schema_extra={"entries": entries, "unit": unit, "source": source},
+    )
 
 
 class Section(BaseModel):
@@ -49,17 +72,17 @@ class Section(BaseModel):
 
 
 def setting_unit(field: FieldInfo) -> str:
-    """Unit of a field made by `setting`, '' of another one."""
+    """Unit of a declared number, or of those of a list; '' of another field."""
     return extra_of(field, "unit")
 
 
 def setting_source(field: FieldInfo) -> str:
-    """Where the default of a field made by `setting` is from."""
+    """Where the default of a declared number is from."""
     return extra_of(field, "source")
 
 
 def extra_of(field: FieldInfo, key: str) -> str:
-    """What `setting` has noted of a field under `key`."""
+    """What a declaration has noted of a field under `key`."""
     extra = field.json_schema_extra
     return str(extra[key]) if isinstance(extra, dict) and key in extra else ""
 
@@ -72,7 +95,21 @@ def length_limits(field: FieldInfo) -> tuple[int, int]:
 
 
 def setting_limits(field: FieldInfo) -> tuple[float, float] | None:
-    """Lowest and highest allowed value of a field, or None."""
-    low = [float(m.ge) for m in field.metadata if isinstance(m, Ge)]  # type: ignore[arg-type]  # ge is a number here
-    high = [float(m.le) for m in field.metadata if isinstance(m, Le)]  # type: ignore[arg-type]
+    """Lowest and highest allowed value of a field, or of each number of a list; None where there are no limits."""
+    of_each = (part for part in parts_of(field.annotation) if isinstance(part, FieldInfo))
+    held = [*field.metadata, *(limit for each in of_each for limit in each.metadata)]
+    low = [float(m.ge) for m in held if isinstance(m, Ge)]  # type: ignore[arg-type]  # ge is a number here
+    high = [float(m.le) for m in held if isinstance(m, Le)]  # type: ignore[arg-type]
     return (low[0], high[0]) if low and high else None
+
+
+def sections_in(field: FieldInfo) -> list[type[Section]]:
+    """The section that a field holds, or a list of; empty for a plain value."""
+    return [c for c in parts_of(field.annotation) if isinstance(c, type) and issubclass(c, Section)]
+
+
+def parts_of(annotation: Any) -> Iterator[Any]:
+    """A type, and all that it is made of."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from parts_of(part)

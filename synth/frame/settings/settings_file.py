@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from synth.frame.input_error import InputError
 from synth.frame.settings.file_fault import faults_in
 from synth.frame.settings.section import Section
-from synth.frame.settings.toml_file import toml_tree
+from synth.frame.settings.toml_file import Tree, toml_tree
 
 S = TypeVar("S", bound=Section)
 
@@ -18,7 +18,12 @@ BUILT_IN = "built-in configuration"
 
 def parse_settings(model: type[S], text: str, place: str) -> S:
     """The settings that `text` holds; `InputError`."""
+    return settings_in(model, toml_tree(text, place), place)
+
+
+def settings_in(model: type[S], tree: Tree, place: str) -> S:
+    """The settings in `tree`; `InputError` with a sentence for each fault, which begins with `place`."""
     try:
-        return model.model_validate(toml_tree(text, place))
+        return model.model_validate(tree)
     except ValidationError as error:
         raise InputError(*(f"{place}: {sentence}" for sentence in faults_in(error, model))) from None

@@ -1,103 +1,127 @@
 """A commented configuration: every declared setting with its value, unit, range, meaning and origin.
 
-It reads back to the defaults, and follows from the declarations alone.
+It reads back to the defaults, and follows from the declarations, and from what the library has in place of keys that
+are left out.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from enum import Enum
-from typing import Any, Literal, get_args, get_origin
+from types import MappingProxyType
+from typing import Any, Final
 
 from pydantic.fields import FieldInfo
 
 from plant_models.library import sources_cited_in
-from plant_models.library.sourced_value import JUDGEMENT
-from synth.frame.settings.numbers import holds_sections
-from synth.frame.settings.section import Section, setting_limits, setting_source, setting_unit
+from synth.frame.settings.file_fault import dotted_keys, field_at
+from synth.frame.settings.section import Section, sections_in
+from synth.frame.settings.told import Told, Usual, told_key, whole, words_of
 from synth.frame.settings.toml_text import value_text
 
 HEAD = """\
 # {title} (retarder-synth {command}). Every line shows its default and may be left out.
-# A comment says: meaning; then unit; limits; origin. Sources stand at the end.
-# ASSUMED: no citable source stands behind the number; replace it by that of your yard."""
+# A comment says: meaning; then unit; limits, or of a number of the library its sensible range; origin. Sources stand
+# at the end. ASSUMED: no citable source stands behind the number; replace it by that of your yard."""
+
+NOTHING: Final[Usual] = MappingProxyType({})
 
 
-def template(section: Section, title: str, command: str) -> str:
-    """The file; `title`: of what it is a configuration, `command`: what reads it."""
-    text = (HEAD.format(title=title, command=command), *section_lines(section, ""))
+def template(section: Section, title: str, command: str, usual: Usual = NOTHING, notes: Iterable[str] = ()) -> str:
+    """The file; `title`: of what it is a configuration, `command`: what reads it, `usual`: what the library has in
+    place of keys that are left out, `notes`: on what it has."""
+    noted = (f"# Note: {note}" for note in notes)
+    text = (HEAD.format(title=title, command=command), *noted, *section_lines(section, "", usual))
     return "\n".join((*text, *source_lines(text))) + "\n"
 
 
-def section_lines(section: Section, path: str) -> Iterator[str]:
+def section_lines(section: Section, path: str, usual: Usual) -> Iterator[str]:
     """The lines of a table: its own keys first, for what follows a header belongs to it."""
-    inner: list[tuple[str, Any]] = []
+    tables: list[tuple[str, Any, FieldInfo]] = []
     for key, field in type(section).model_fields.items():
-        value = getattr(section, key)
-        if isinstance(value, Section) or holds_sections(value):
-            inner.append((f"{path}.{key}".lstrip("."), value))
+        value, name = getattr(section, key), f"{path}.{key}".lstrip(".")
+        if sections_in(field) and name not in usual:
+            tables.append((name, value, field))
         else:
-            yield from key_lines(key, value, field)
-    for name, value in inner:
+            yield from key_lines(key, told_key(value, field, usual.get(name)), field)
+    for name, value, field in tables:
         if isinstance(value, Section):
-            yield from ("", *notes_of(value), f"[{name}]", *section_lines(value, name))
-        else:
-            yield from ("", *notes_of(value[0]), *declared_lines(value[0]))
-            for each in value:
-                yield from (f"[[{name}]]", *given_lines(each))
+            yield from ("", *notes_of(type(value)), f"[{name}]", *section_lines(value, name, usual))
+        elif value is None:
+            yield from ("", f"# [{name}]: {field.description}")
+        elif value:
+            yield from list_lines(name, value, usual, "")
+        elif field.examples:
+            yield from list_lines(name, field.examples[0], usual, "# ")
 
 
-def notes_of(section: Section) -> Iterator[str]:
+def list_lines(name: str, tables: tuple[Section, ...], usual: Usual, mark: str) -> Iterator[str]:
+    """A list of tables: what it is for, what each key is, and behind `mark` the tables."""
+    yield from ("", *notes_of(type(tables[0])), *declared_lines(type(tables[0])))
+    for place, each in enumerate(tables):
+        if place:
+            yield ""
+        yield f"{mark}[[{name}]]"
+        yield from (f"{mark}{line}" for line in given_lines(each, f"{name}[{place}].", usual))
+
+
+def notes_of(section: type[Section]) -> Iterator[str]:
     """What a table is for, as comments."""
-    return (f"# {line.strip()}".rstrip() for line in (type(section).__doc__ or "").strip().splitlines())
+    return (f"# {line.strip()}".rstrip() for line in (section.__doc__ or "").strip().splitlines())
 
 
-def key_lines(key: str, value: Any, field: FieldInfo) -> Iterator[str]:
-    """A key with its comments; one without a value stands as a comment."""
-    yield from (f"# {said}" for said in said_of(field))
-    if value is None:
-        example = field.examples[0] if field.examples else "…"
-        yield f"# {key} = {value_text(example)}"
+def key_lines(key: str, told: Told, field: FieldInfo) -> Iterator[str]:
+    """A key with its comments; with an example in place of a value it stands as a comment, with neither not at all."""
+    if told.value not in (None, (), {}):
+        yield from (f"# {said}" for said in said_of(field, told))
+        yield from assigned_lines(key, told.value, "# " if sections_in(field) else "")
+    elif field.examples:
+        yield from (f"# {said}" for said in said_of(field, told))
+        yield f"# {key} = {value_text(field.examples[0])}"
+
+
+def assigned_lines(key: str, value: Any, mark: str) -> Iterator[str]:
+    """`key = value`, each line behind `mark`; rows of a table in a line each."""
+    if isinstance(value, list):
+        yield from (f"{mark}{key} = [", *(f"{mark}    {value_text(row)}," for row in value), f"{mark}]")
     else:
-        yield f"{key} = {value_text(value.value if isinstance(value, Enum) else value)}"
+        yield f"{mark}{key} = {value_text(value)}"
 
 
-def said_of(field: FieldInfo) -> Iterator[str]:
-    """The meaning of a key; unit, limits and origin; the words that it may be."""
+def said_of(field: FieldInfo, told: Told) -> Iterator[str]:
+    """The meaning of a key; the words that it may be; unit, range and origin."""
     if field.description:
         yield field.description
     words = words_of(field)
     if words:
         yield "; ".join(value_text(word) for word in words)
-    if setting_unit(field):
-        limits, source = setting_limits(field), setting_source(field)
-        span = f"{limits[0]:g} to {limits[1]:g}" if limits else "any"
-        origin = f"ASSUMED, {source}" if source.startswith(JUDGEMENT) else source
-        yield "; ".join(part for part in (setting_unit(field), span, origin) if part)
+    if told.origin:
+        yield told.origin
 
 
-def words_of(field: FieldInfo) -> tuple[str, ...]:
-    """The words that a field may be, if it takes one of a few."""
-    kind = field.annotation
-    if get_origin(kind) is Literal:
-        return get_args(kind)
-    if isinstance(kind, type) and issubclass(kind, Enum):
-        return tuple(each.value for each in kind)
-    return ()
-
-
-def declared_lines(section: Section) -> Iterator[str]:
+def declared_lines(section: type[Section]) -> Iterator[str]:
     """Of the tables of a list, what each key is; their values stand below."""
-    for key, field in type(section).model_fields.items():
-        said = tuple(said_of(field))
+    for key, field in section.model_fields.items():
+        said = tuple(said_of(field, told_key(None, field, None)))
         if said:
             yield f"# {key}: {'; '.join(said)}"
 
 
-def given_lines(section: Section) -> Iterator[str]:
-    """The keys of a table of a list that have a value."""
-    for key, value in section.model_dump(exclude_none=True, mode="json").items():
-        yield f"{key} = {value_text(value)}"
+def given_lines(section: Section, path: str, usual: Usual) -> Iterator[str]:
+    """The keys of a table of a list that have a value; then, as comments, those that follow from them."""
+    given = section.model_dump(exclude_none=True, mode="json")
+    for key, value in given.items():
+        if value != {}:
+            yield f"{key} = {value_text(value)}" + behind(usual.get(path + key))
+    for key in dotted_keys(type(section), ""):
+        told = usual.get(path + key)
+        if told is not None and given.get(key.partition(".")[0]) in (None, {}):
+            value = whole(told.value, field_at(key.split("."), type(section)))
+            yield f"# {key} = {value_text(value)}" + behind(told)
+
+
+def behind(told: Told | None) -> str:
+    """The origin of a number, behind it in its line."""
+    return f"  # {told.origin}" if told is not None and told.origin else ""
 
 
 def source_lines(text: Iterable[str]) -> Iterator[str]:

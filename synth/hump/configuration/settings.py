@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
-from plant_models.library import YARD_CATEGORIES
+from pydantic import Field, model_validator
+
+from plant_models.errors import PlantError, require
+from plant_models.library.hump_entry import hump_names
 from plant_models.library.sourced_value import JUDGEMENT
-from synth.aim.configuration.settings import DEFAULT_MIX, ResistanceSettings, WeatherSettings
+from synth.aim.configuration.mix_settings import MixSettings
+from synth.aim.configuration.settings import ResistanceSettings, WeatherSettings
 from synth.frame.settings.output import OutputSettings
-from synth.frame.settings.section import Section, many, setting
-from synth.frame.settings.value_forms import Title
+from synth.frame.settings.section import Section, choice, many, needed, optional, setting
 from synth.hump.configuration.counted_trains import CountedTrains
+from synth.retarder.configuration.top_keys import TopKeys
 
 DEFAULT_HUMP = "large"
 
@@ -20,14 +24,24 @@ CATEGORY_SHARES = {"L": 0.3, "LS": 0.1, "S": 0.2, "ST": 0.1, "T": 0.3}
 EXIT_RANGE_M_S = (4.0, 7.0)
 """Exit speeds of a position for intervals, where a file gives none: assumed."""
 
+USUAL_RANGE = f"{JUDGEMENT}: {EXIT_RANGE_M_S[0]:g} to {EXIT_RANGE_M_S[1]:g} m/s are usual of bunch positions"
+
+Share = Annotated[float, Field(ge=0.0, le=1e6)]
+"""Shares count by their ratio."""
+
+Speed = Annotated[float, Field(ge=0.3, le=12.0)]
+"""At a position, m/s."""
+
 KNOWN = Literal["category", "measured"]
 
 
 class TrainSettings(CountedTrains):
-    """Trains of a population, or one sorting list again and again (`list`). Shares count by their ratio."""
+    """Trains of a population, or one sorting list again and again."""
 
-    one_wind_a_train: bool = False
-    list: str | None = None
+    one_wind_a_train: bool = choice(False, "one draw of the wind a train; false: one a cut")
+    list: str | None = choice(
+        None, "in place of cuts, cars and shares one sorting list again and again (docs/hump-trials.md)", "train.csv"
+    )
     cuts: int = setting(40, "1", 2, 999, "cuts of a train", f"{JUDGEMENT}: a train of 70 cars or so")
     cars_mean: float = setting(
         1.8,
@@ -45,22 +59,22 @@ class TrainSettings(CountedTrains):
         "most cars of a cut",
         f"{JUDGEMENT}: longer ones are rare, and half of them would be in the first position",
     )
-    category_shares: dict[str, float] | None = many(None, 1, 31, "shares, {L = 0.3, T = 0.7}", strict=True)
-    track_shares: dict[str, float] | None = many(None, 1, 199, "shares, {1 = 2.0, 2 = 1.0}", strict=True)
-
-
-class CarsSettings(Section):
-    """The mix of cars; a number of it is replaced where it is set."""
-
-    mix: str = DEFAULT_MIX
-    following_share: float | None = None
-    underload_mean_t: float | None = None
+    category_shares: dict[str, Share] | None = many(
+        None, 1, 31, "shares, {L = 0.3, T = 0.7}", "shares by weight category, which count by their ratio", "1",
+        f"{JUDGEMENT}: most cars are empty or full", CATEGORY_SHARES,
+    )  # fmt: skip
+    track_shares: dict[str, Share] | None = many(
+        None, 1, 199, "shares, {1 = 2.0, 2 = 1.0}", "shares by track; left out: all alike", "1",
+        example={"1": 2.0, "2": 1.0},
+    )  # fmt: skip
 
 
 class TracksSettings(Section):
-    """Where cars stand before each train: drawn, or as the hump file tells (`standing_m`)."""
+    """Where cars stand before each train."""
 
-    standing: Literal["drawn", "file"] = "drawn"
+    standing: Literal["drawn", "file"] = choice(
+        "drawn", "drawn anew for each train, or as the hump file tells (standing_m)"
+    )
     free_low: float = setting(
         0.2, "1", 0.0, 1.0, "least free share of a track, of its length behind the last position",
         f"{JUDGEMENT}: nothing was found on how full tracks are",
@@ -70,14 +84,19 @@ class TracksSettings(Section):
         f"{JUDGEMENT}: nothing was found on how full tracks are",
     )  # fmt: skip
 
+    @model_validator(mode="after")
+    def _low_before_high(self) -> TracksSettings:
+        require(
+            self.free_low <= self.free_high,
+            f"free_low is {self.free_low:g}; it must not be above free_high, {self.free_high:g}",
+        )
+        return self
+
 
 class HumpSpeedSettings(Section):
-    """A program of speeds from simulated pairs of cuts, or one speed for all (`constant_m_s`).
+    """A program of speeds from simulated pairs of cuts, or one speed for all."""
 
-    `slow_down_s`: with feedback, the train is slowed down for a cut that would come closer than this; None: never.
-    """
-
-    constant_m_s: float | None = None
+    constant_m_s: float | None = optional("m/s", 0.3, 4.0, "one speed for all cuts, in place of a program", 1.7)
     lowest_m_s: float = setting(
         1.0, "m/s", 0.3, 4.0, "lowest step of the hump signal", f"{JUDGEMENT}: slower humping is not worth it"
     )
@@ -94,28 +113,48 @@ class HumpSpeedSettings(Section):
     acceleration_m_s2: float = setting(
         0.05, "m/s2", 0.005, 1.0, "of the locomotive with its train, either way", f"{JUDGEMENT}: 0.02 to 0.1 are usual"
     )
-    method: Literal["whole-train", "pair-by-pair"] = "whole-train"
+    method: Literal["whole-train", "pair-by-pair"] = choice(
+        "whole-train", "soonest over the crest with all its cuts, or cut by cut"
+    )
     least_s: float = setting(
         0.5, "s", -5.0, 20.0, "interval that the cut behind keeps at the worst element", f"{JUDGEMENT}: found by trial"
     )
     early_s: float = setting(
         0.2, "s", -5.0, 20.0, "of it, what a cut keeps where those behind wait for it", f"{JUDGEMENT}: found by trial"
     )
-    worst_pair: bool = False
-    slow_down_s: float | None = None
+    worst_pair: bool = choice(False, "intervals of a bad runner ahead of a good one; false: of two mean ones")
+    slow_down_s: float | None = optional(
+        "s", -5.0, 20.0,
+        "with feedback, the train is slowed down for a cut that would come closer than this; left out: never", 0.0,
+    )  # fmt: skip
+
+    @model_validator(mode="after")
+    def _low_before_high(self) -> HumpSpeedSettings:
+        require(
+            self.lowest_m_s <= min(self.highest_m_s, self.uncoupling_m_s),
+            f"lowest_m_s is {self.lowest_m_s:g}; it must not be above highest_m_s, {self.highest_m_s:g}, nor "
+            f"uncoupling_m_s, {self.uncoupling_m_s:g}",
+        )
+        return self
 
 
 class ExitSpeedSettings(Section):
-    """Exit speeds of all positions but the last: chosen when a cut comes (`feedback`), or planned before the train.
+    """Exit speeds of all positions but the last. A list has a number for each of these, from the crest on."""
 
-    A list has a number for each of these positions, from the crest on; None: `EXIT_RANGE_M_S`, and no limit of entry.
-    """
-
-    feedback: bool = True
-    knowledge: KNOWN = "category"
-    lowest_m_s: tuple[float, ...] | None = many(None, 0, 10, "speeds")
-    highest_m_s: tuple[float, ...] | None = many(None, 0, 10, "speeds")
-    most_entry_m_s: tuple[float, ...] | None = many(None, 0, 10, "speeds")
+    feedback: bool = choice(True, "chosen when a cut comes; false: planned before the train")
+    knowledge: KNOWN = choice(
+        "category", "resistance that cuts are expected to have: of their weight category, or as measured on the way"
+    )
+    lowest_m_s: tuple[Speed, ...] | None = many(
+        None, 0, 10, "speeds", "lowest exit speeds", "m/s", USUAL_RANGE, [EXIT_RANGE_M_S[0]] * 2
+    )
+    highest_m_s: tuple[Speed, ...] | None = many(
+        None, 0, 10, "speeds", "highest exit speeds", "m/s", USUAL_RANGE, [EXIT_RANGE_M_S[1]] * 2
+    )
+    most_entry_m_s: tuple[Speed, ...] | None = many(
+        None, 0, 10, "speeds", "fastest that cuts may come to these positions; left out: no limit", "m/s",
+        example=[7.5, 7.5],
+    )  # fmt: skip
     choices: int = setting(7, "1", 2, 30, "exit speeds that are compared in each position")
     usable_share: float = setting(
         0.85, "1", 0.1, 1.0, "of the full brake of each position, what the control counts upon",
@@ -126,13 +165,20 @@ class ExitSpeedSettings(Section):
 class TrialAimSettings(Section):
     """Exit speeds of the last position, which aim at the standing cars: chosen for the trial, or from exported tables.
 
-    `tables`: a file or directory of aim tables for all routes; `tables_of`: for retarders, by number. Both count before
-    those of the hump file.
+    Tables given here count before those of the hump file.
     """
 
-    knowledge: KNOWN = "category"
-    tables: str | None = None
-    tables_of: dict[str, str] | None = None
+    knowledge: KNOWN = choice(
+        "category", "what they are chosen by beside the free distance: weight category, or resistance as it is measured"
+    )
+    tables: str | None = choice(
+        None,
+        "in place of the numbers, aim tables (retarder-synth aim) for all tracks: a file or a directory",
+        "out/aim",
+    )
+    tables_of: dict[str, str] | None = choice(
+        None, "or those behind single retarders, by number", {"421": "out/aim-1", "422": "out/aim-2"}
+    )
     p_overspeed: float = setting(
         0.1, "1", 0.005, 0.9, "required probability of a coupling above 1.39 m/s (5 km/h)",
         "[kozachenko-aimed]: the share that its figures are drawn for",
@@ -143,9 +189,17 @@ class TrialAimSettings(Section):
     highest_m_s: float = setting(7.0, "m/s", 0.5, 10.0, "highest exit speed", f"{JUDGEMENT}: no limit")
     design_cuts: int = setting(2000, "1", 200, 200_000, "drawn cuts that exit speeds are chosen on")
 
+    @model_validator(mode="after")
+    def _low_before_high(self) -> TrialAimSettings:
+        require(
+            self.lowest_m_s < self.highest_m_s,
+            f"lowest_m_s is {self.lowest_m_s:g}; it must be less than highest_m_s, {self.highest_m_s:g}",
+        )
+        return self
+
 
 class SensorSettings(Section):
-    """What is measured of cuts, where something is `measured`."""
+    """What is measured of cuts; where nothing is, it counts nothing."""
 
     speed_std_m_s: float = setting(
         0.1, "m/s", 1e-4, 2.0, "error of each speed at the entrance and the exit of a position",
@@ -154,37 +208,52 @@ class SensorSettings(Section):
 
 
 class HumpPositionSettings(Section):
-    """What is otherwise than the hump file tells, of the position `number`, 1 being the first behind the crest.
+    """What is otherwise than the hump file tells, of one position on every route that has so many."""
 
-    `tables`: a book of controller tables, tuned with `tables_config`. `supply_share`: of the full brake power.
-    """
+    number: int = needed("1", 1, 10, "which position, 1 being the first behind the crest", "")
+    exit_std_m_s: float | None = optional(
+        "m/s", 0.0, 1.0, "standard deviation of the exit speed about the commanded one", 0.35
+    )
+    tables: str | None = choice(
+        None, "in its place, a book of controller tables, which runs in its closed loop", "out/book.h5"
+    )
+    tables_config: str | None = choice(
+        None, "the configuration that it was tuned with; left out: the built-in one", "my.toml"
+    )
+    out_of_service: bool = choice(False, "whether it brakes nothing")
+    supply_share: float | None = optional(
+        "1", 0.05, 1.0, "of the full brake power, where the supply pressure is low", 0.8
+    )
 
-    number: int
-    exit_std_m_s: float | None = None
-    tables: str | None = None
-    tables_config: str | None = None
-    out_of_service: bool = False
-    supply_share: float | None = None
+    @model_validator(mode="after")
+    def _one_word_on_its_accuracy(self) -> HumpPositionSettings:
+        require(
+            self.exit_std_m_s is None or self.tables is None,
+            f"exit_std_m_s is {self.exit_std_m_s} and tables is {self.tables!r}; both say how exactly the position "
+            "works: leave out one of the two",
+        )
+        return self
 
 
 class TrialAcceptanceSettings(Section):
-    """Shares of cuts that must not be passed, interval included; exit code 1 if one is. None: no limit."""
+    """Shares of cuts that must not be passed, interval included; exit code 1 if one is."""
 
-    catch_ups: float | None = None
-    overspeed: float | None = None
-    overspeed_above_2: float | None = None
+    catch_ups: float | None = optional("1", 0.0, 1.0, "of all cuts: those that catch up", 0.001)
+    overspeed: float | None = optional("1", 0.0, 1.0, "of the cuts on their track: couplings above 1.39 m/s", 0.1)
+    overspeed_above_2: float | None = optional("1", 0.0, 1.0, "of these: couplings above 2 m/s", 0.002)
 
 
-class HumpTrialSettings(Section):
+class HumpTrialSettings(TopKeys):
     """A whole hump trial configuration; an empty one is the built-in default."""
 
-    title: Title | None = None
-    library: tuple[str, ...] = many((), 0, 20, "folders")
-    weight_categories: str = YARD_CATEGORIES
-    hump: str = DEFAULT_HUMP
-    lead: int | None = None
+    hump: str = choice(
+        DEFAULT_HUMP, f"the hump; one of {', '.join(hump_names())}, or the path of your own file (docs/hump-file.md)"
+    )
+    lead: int | None = choice(
+        None, "signal at the crest that trains come over; left out: the first of the hump file", 201
+    )
     trains: TrainSettings = TrainSettings()
-    cars: CarsSettings = CarsSettings()
+    cars: MixSettings = MixSettings()
     weather: WeatherSettings = WeatherSettings()
     resistance: ResistanceSettings = ResistanceSettings()
     tracks: TracksSettings = TracksSettings()
@@ -192,6 +261,18 @@ class HumpTrialSettings(Section):
     exit_speeds: ExitSpeedSettings = ExitSpeedSettings()
     aim: TrialAimSettings = TrialAimSettings()
     sensors: SensorSettings = SensorSettings()
-    position: tuple[HumpPositionSettings, ...] = many((), 0, 10, "tables [[position]]")
+    position: tuple[HumpPositionSettings, ...] = many(
+        (), 0, 10, "tables [[position]]", example=(HumpPositionSettings(number=2, exit_std_m_s=0.35, supply_share=0.8),)
+    )
     acceptance: TrialAcceptanceSettings = TrialAcceptanceSettings()
     output: OutputSettings = OutputSettings()
+
+    @model_validator(mode="after")
+    def _slowed_down_with_feedback(self) -> HumpTrialSettings:
+        slow = self.hump_speed.slow_down_s
+        if slow is not None and not self.exit_speeds.feedback:
+            raise PlantError(
+                f"hump_speed.slow_down_s is {slow:g}, but exit_speeds.feedback is false, and without feedback nobody "
+                "sees that a cut comes too close: take one of the two out"
+            )
+        return self

@@ -8,13 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pydantic import ValidationError
-
 from plant_models.library import Library
 from plant_models.library.hump_entry import HumpEntry, hump_names
 from synth.frame.input_error import InputError
-from synth.frame.settings.file_fault import faults_in
-from synth.frame.settings.settings_file import BUILT_IN as BUILT_IN_FILE
+from synth.frame.settings.settings_file import BUILT_IN, settings_in
 from synth.frame.settings.toml_file import read_text, toml_tree
 from synth.frame.settings.toml_text import toml_text
 from synth.hump.configuration.settings import HumpTrialSettings
@@ -50,7 +47,7 @@ class TrialFile:
 
 def read_trial_file(source: Path | None) -> TrialFile:
     """The configuration or hump `source`, or the built-in default; `InputError` on any fault of form."""
-    return parse_trial_file("", BUILT_IN_FILE) if source is None else parse_trial_file(trial_text(source), str(source))
+    return parse_trial_file("", BUILT_IN) if source is None else parse_trial_file(trial_text(source), str(source))
 
 
 def trial_text(source: Path, template: str = "init --hump") -> str:
@@ -75,10 +72,7 @@ def text_on(hump: Path) -> str:
 def parse_trial_file(text: str, place: str) -> TrialFile:
     """The file with this `text`; paths in it begin at the folder of `place`."""
     tree, library = with_own_types(toml_tree(text, place), place)
-    try:
-        settings = HumpTrialSettings.model_validate(tree)
-    except ValidationError as error:
-        raise InputError(*(f"{place}: {sentence}" for sentence in faults_in(error, HumpTrialSettings))) from None
+    settings = settings_in(HumpTrialSettings, tree, place)
     folder = Path(place).parent
     source = hump_source(settings.hump, folder)
     try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from plant_models.errors import PlantError, require, require_between
+from plant_models.errors import PlantError, require
 from plant_models.library import WeightCategories
 from plant_models.library.car_mix_entry import CarMixEntry
 from plant_models.library.weight_category import WeightCategory
@@ -12,7 +12,7 @@ from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
 from synth.frame.input_error import InputError
-from synth.hump.configuration.settings import CATEGORY_SHARES, HumpTrialSettings
+from synth.hump.configuration.settings import CATEGORY_SHARES, HumpTrialSettings, TrainSettings
 from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.sorting_list_file import load_sorting_list
 from synth.hump.control.train_population import TrainPopulation
@@ -20,13 +20,16 @@ from synth.hump.trains.fitting_list import fitting_list, too_long
 from synth.hump.trains.hump_routes import HumpRoutes
 
 
-def with_room(settings: HumpTrialSettings, mix: CarMixEntry, routes: HumpRoutes) -> HumpTrialSettings:
-    """`settings` with no longer cuts than the first position leaves room for, unless the file tells how long."""
+def filled_trains(
+    trains: TrainSettings, mix: CarMixEntry, categories: WeightCategories, routes: HumpRoutes
+) -> TrainSettings:
+    """`trains` with what a file may leave out: shares, by second name of the category, and no longer cuts than the
+    first position leaves room for, unless the file tells how long. `PlantError` for a category that is not there."""
     longest = max(each.car.length_m for each in mix.mix.cars)
     room = max(int(2.0 * float(routes.entrance_m.min()) / longest), 1)
-    if "most_cars" in settings.trains.model_fields_set or settings.trains.most_cars <= room:
-        return settings
-    return settings.model_copy(update={"trains": settings.trains.model_copy(update={"most_cars": room})})
+    most = trains.most_cars if "most_cars" in trains.model_fields_set else min(trains.most_cars, room)
+    shares = category_shares(trains.category_shares, categories)
+    return trains.model_copy(update={"most_cars": most, "category_shares": shares})
 
 
 def cars_of_cuts(trains: TrainPopulation | SortingList, categories: WeightCategories) -> dict[WeightCategory, set[int]]:
@@ -41,12 +44,6 @@ def cars_of_cuts(trains: TrainPopulation | SortingList, categories: WeightCatego
     return {member: set(range(1, trains.most_cars + 1)) for member in used}
 
 
-def mix_of(entry: CarMixEntry, settings: HumpTrialSettings) -> CarMixEntry:
-    """The mix with the values that the file sets."""
-    given = {key: getattr(settings.cars, key) for key in ("following_share", "underload_mean_t")}
-    return entry.with_values({key: float(value) for key, value in given.items() if value is not None})
-
-
 def population_of(mix: CarMixEntry, categories: WeightCategories, settings: HumpTrialSettings) -> CutPopulation:
     """Law and weather of the cuts."""
     law: ResistanceLaw = Tb10062Law()
@@ -55,9 +52,8 @@ def population_of(mix: CarMixEntry, categories: WeightCategories, settings: Hump
     return CutPopulation(mix.mix, categories, law, Weather(**settings.weather.model_dump()))
 
 
-def category_shares(settings: HumpTrialSettings, categories: WeightCategories) -> dict[str, float]:
+def category_shares(given: dict[str, float] | None, categories: WeightCategories) -> dict[str, float]:
     """Shares by second name of the category."""
-    given = settings.trains.category_shares
     if given is None:
         known = {member.latin for member in categories.members}
         return {k: v for k, v in CATEGORY_SHARES.items() if k in known} or dict.fromkeys(sorted(known), 1.0)
@@ -68,16 +64,15 @@ def category_shares(settings: HumpTrialSettings, categories: WeightCategories) -
         except PlantError as fault:
             raise PlantError(f"trains.category_shares: {fault}") from None
         require(latin not in shares, f"trains.category_shares: {name} is there twice; leave one out")
-        require_between(f"trains.category_shares.{name}", share, 0.0, 1e6)
         shares[latin] = share
     return shares
 
 
 def trains_of(
-    settings: HumpTrialSettings, folder: Path, people: CutPopulation, shares: dict[str, float], routes: HumpRoutes
+    trains: TrainSettings, folder: Path, people: CutPopulation, routes: HumpRoutes
 ) -> TrainPopulation | SortingList:
-    """The trains that the settings ask for; the path of a list begins at `folder`."""
-    trains, categories = settings.trains, people.categories
+    """The trains that `trains` asks for, with nothing left out; the path of a list begins at `folder`."""
+    categories, shares = people.categories, trains.category_shares or {}
     if trains.list is not None:
         path = folder / trains.list
         try:
@@ -114,6 +109,5 @@ def track_shares(given: dict[str, float] | None, routes: HumpRoutes) -> dict[int
             f"trains.track_shares names {name!r}; signal {routes.lead} leads to tracks {min(known)} to {max(known)}: "
             "give the number of one of them",
         )
-        require_between(f"trains.track_shares.{name}", share, 0.0, 1e6)
         shares[number] = share
     return shares

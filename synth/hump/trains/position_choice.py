@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from plant_models.errors import PlantError, require, require_between
+from plant_models.errors import PlantError, require
 from plant_models.hump import Retarder, Route
 from synth.hump.configuration.settings import HumpPositionSettings
 from synth.retarder.forms.table_file import read_tables
 
 T = TypeVar("T")
-
-SMALLEST_SUPPLY = 0.05
 
 
 @dataclass(frozen=True)
@@ -64,7 +62,7 @@ def position_choices(
     for row, each in enumerate(settings):
         key = f"position[{row}]"
         require(
-            1 <= each.number <= len(places),
+            each.number <= len(places),
             f"{key}.number is {each.number}; the hump has the positions 1 to {len(places)}, 1 being the first behind "
             "the crest",
         )
@@ -80,7 +78,6 @@ def choice_of(
     number: int, held: Sequence[Retarder], key: str, settings: HumpPositionSettings, hump_folder: Path, folder: Path
 ) -> PositionChoice:
     """The choice for one position, whose retarders are `held`."""
-    require_consistent(key, settings)
     site = same_of(number, "position", {r.position for r in held})
     std, book, tuned_with = settings.exit_std_m_s, None, None
     if settings.tables is not None:
@@ -117,19 +114,6 @@ def top_target_m_s(book: Path) -> float:
         key = table.cut.category, table.cut.mass_t, table.cut.axle_offsets_m
         tops[key] = max(tops.get(key, 0.0), table.target_speed_m_s)
     return min(tops.values())
-
-
-def require_consistent(key: str, settings: HumpPositionSettings) -> None:
-    """`PlantError` for values that no position has, and for two words on one thing."""
-    if settings.exit_std_m_s is not None:
-        require_between(f"{key}.exit_std_m_s", settings.exit_std_m_s, 0.0, 1.0)
-        require(
-            settings.tables is None,
-            f"{key}.exit_std_m_s is {settings.exit_std_m_s:g} and {key}.tables is {settings.tables!r}; both say how "
-            "exactly the position works: leave out one of the two",
-        )
-    if settings.supply_share is not None:
-        require_between(f"{key}.supply_share", settings.supply_share, SMALLEST_SUPPLY, 1.0)
 
 
 def same_of(number: int, what: str, found: set[T]) -> T:

@@ -28,14 +28,12 @@ from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.railml.write import to_railml
 from synth.hump.trains.aim_choice import AimChoice, aim_choices
-from synth.hump.trains.asked_speeds import ExitRange, exit_ranges, require_speeds
+from synth.hump.trains.asked_speeds import ExitRange, exit_ranges, filled_speeds
 from synth.hump.trains.asked_trains import (
     cars_of_cuts,
-    category_shares,
-    mix_of,
+    filled_trains,
     population_of,
     trains_of,
-    with_room,
 )
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from synth.hump.trains.position_choice import PositionChoice, position_choices
@@ -44,8 +42,6 @@ from synth.hump.trains.table_aim import aim_warnings, require_fitting
 from synth.hump.trains.trial_parameters import (
     CHANGES_NO_TRAIN,
     position_values,
-    range_values,
-    share_values,
     trial_numbers,
 )
 from synth.retarder.configuration.config_file import load_config
@@ -144,23 +140,19 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
     require_held(f"{place}: weight_categories", WEIGHT_CATEGORIES, settings.weight_categories, library)
     with in_file(place, lambda sentence: keyed(sentence, KEY_OF_PLANT_MESSAGE)):
         routes = hump_routes(file.hump.graph, lead_of(file))
-        mix = mix_of(load_car_mix(settings.cars.mix, library), settings)
-        settings = with_room(settings, mix, routes)
+        mix = settings.cars.applied_to(load_car_mix(settings.cars.mix, library))
         categories = load_weight_categories(settings.weight_categories, library)
         positions = position_choices(routes.routes, settings.position, file.hump_source.parent, file.folder)
-        ranges = exit_ranges(settings, positions[:-1])
+        settings, usual = (filled(each, mix, categories, routes, positions) for each in (settings, HumpTrialSettings()))
+        ranges = exit_ranges(settings.exit_speeds, positions[:-1])
         people = population_of(mix, categories, settings)
-        shares = category_shares(settings, categories)
-        trains = trains_of(settings, file.folder, people, shares, routes)
-        require_speeds(settings)
+        trains = trains_of(settings.trains, file.folder, people, routes)
         require_falling(routes, settings)
         aims = aim_choices(routes.routes, settings.aim, file.hump_source.parent, file.folder)
         for each in aims:
             require_fitting(each, routes, cars_of_cuts(trains, categories), settings.aim.knowledge == "measured")
     parameters = (
-        *trial_numbers(settings, file.hump, mix, categories, designed=len(rows_without(aims, routes)) > 0),
-        *(() if isinstance(trains, SortingList) else share_values(settings, shares)),
-        *range_values(settings.exit_speeds, ranges),
+        *trial_numbers(settings, usual, file.hump, mix, categories, designed=len(rows_without(aims, routes)) > 0),
         *position_values(positions, file.hump),
     )
     return ResolvedTrial(
@@ -179,6 +171,17 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         notes=(*file.hump.notes, *mix.notes),
         warnings=(*range_warnings(parameters), *aim_warnings(aims, routes, settings)),
         names=names_of(file, routes.lead, mix, categories, trains, positions) | aim_names(aims),
+    )
+
+
+def filled(
+    settings: HumpTrialSettings, mix: CarMixEntry, categories: WeightCategories, routes: HumpRoutes,
+    positions: tuple[PositionChoice, ...],
+) -> HumpTrialSettings:  # fmt: skip
+    """`settings` with what follows from hump, mix and categories where the file leaves it out."""
+    trains = filled_trains(settings.trains, mix, categories, routes)
+    return settings.model_copy(
+        update={"trains": trains, "exit_speeds": filled_speeds(settings.exit_speeds, positions[:-1])}
     )
 
 

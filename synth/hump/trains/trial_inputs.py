@@ -43,7 +43,7 @@ def files_read(file: TrialFile, config: ResolvedTrial) -> Iterator[Path]:
 
 def write_inputs(file: TrialFile, config: ResolvedTrial, directory: ResultsDirectory) -> None:
     """Write the inputs of `config`, which was resolved from `file`, into the folder of `directory`."""
-    tree: dict[str, Any] = config.settings.model_dump(mode="json", exclude_none=True, exclude_unset=True)
+    tree: dict[str, Any] = file.settings.model_dump(mode="json", exclude_none=True, exclude_unset=True)
     own: dict[str, TypeFile] = {str(each): each for each in file.library.own}
     contents: dict[str, bytes] = {}
     suffix = file.hump_source.suffix if file.hump_source.suffix in RAILML_SUFFIXES else ".toml"

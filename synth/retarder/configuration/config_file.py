@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pydantic import ValidationError
-
-from synth.frame.input_error import InputError
-from synth.frame.settings.file_fault import faults_in
+from synth.frame.settings.settings_file import BUILT_IN, settings_in
 from synth.frame.settings.toml_file import Tree, read_text, toml_tree
 from synth.retarder.configuration.own_types import with_own_types
 from synth.retarder.configuration.resolved_config import ResolvedConfig, resolve
 from synth.retarder.configuration.settings import Settings
-
-BUILT_IN = "built-in configuration"
 
 
 def load_config(path: Path | None) -> ResolvedConfig:
@@ -31,7 +26,4 @@ def parse_config(text: str, file: str) -> ResolvedConfig:
 
 def valid_settings(tree: Tree, where: str) -> Settings:
     """The settings in `tree`; `InputError` with a sentence for each fault, which begins with `where`."""
-    try:
-        return Settings.model_validate(tree)
-    except ValidationError as error:
-        raise InputError(*(f"{where}: {sentence}" for sentence in faults_in(error, Settings))) from None
+    return settings_in(Settings, tree, where)

@@ -38,9 +38,9 @@ from synth.retarder.configuration.settings import (
     CriterionSettings,
     FitSettings,
     GridSettings,
-    OutputSettings,
     RegulatorSettings,
     Settings,
+    TuneOutputSettings,
     ValidationSettings,
 )
 from synth.retarder.configuration.targets import resolve_targets
@@ -70,7 +70,7 @@ class ResolvedConfig:
     regulator: RegulatorSettings
     validation: ValidationSettings
     acceptance: AcceptanceSettings
-    output: OutputSettings
+    output: TuneOutputSettings
     parameters: tuple[SourcedValue, ...]
     warnings: tuple[str, ...]
 

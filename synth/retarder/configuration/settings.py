@@ -7,15 +7,17 @@ What it says of the plant is in `plant_settings`; limits of the numerical settin
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from plant_models import Plant
 from plant_models.errors import require
-from plant_models.library import YARD_CATEGORIES, Value
-from synth.frame.settings.section import Section, many, setting
-from synth.frame.settings.value_forms import Source, Title
+from plant_models.library import Value
+from synth.frame.settings.numbers import library_values
+from synth.frame.settings.output import OutputSettings
+from synth.frame.settings.section import Section, choice, many, of_library, setting
+from synth.frame.settings.value_forms import Source
 from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange, OverspeedLimit, Requirement
 from synth.problem.resolution import LONG_PASS_M, Resolution
@@ -32,6 +34,7 @@ from synth.retarder.configuration.plant_settings import (
     TrackSettings,
 )
 from synth.retarder.configuration.point_sensors.settings import PointSensorSettings
+from synth.retarder.configuration.top_keys import TopKeys
 
 
 class GridSettings(Section):
@@ -74,21 +77,16 @@ class FitSettings(Section):
 
 
 class RegulatorSettings(Section):
-    """Where the regulator on the track acts, and what it computes besides the rule.
+    """Where the regulator on the track acts, and what it computes besides the rule."""
 
-    `approach_m`, `initial_stage` replace values of the library's position.
-    """
-
-    approach_m: float | None = None
-    initial_stage: int | None = None
-    estimator: bool = Field(
-        True, description="compare an estimated speed with the lines; false for the smallest controllers"
+    approach_m: float | None = of_library("from how far before the entrance it acts")
+    initial_stage: int | None = of_library("stage that is left from the cut ahead")
+    estimator: bool = choice(True, "compare an estimated speed with the lines; false for the smallest controllers")
+    commands: Literal["at_rest", "any_time"] = choice(
+        "at_rest", "a command only when the last one is carried out, or at every sample"
     )
-    commands: Literal["at_rest", "any_time"] = Field(
-        "at_rest", description='"at_rest": a command only when the last one is carried out; "any_time": at every sample'
-    )
-    pressure: Literal["gauge", "none"] = Field(
-        "gauge", description='with commands = "any_time": "gauge" if the regulator measures the pressure, else "none"'
+    pressure: Literal["gauge", "none"] = choice(
+        "gauge", "with commands at any time: whether the regulator measures the pressure"
     )
 
     @property
@@ -126,27 +124,35 @@ class CriterionSettings(Section):
     )
     worst_friction_high: float = setting(1.0, "1", 0.05, 5.0, "worst case: highest friction factor of that range")
 
-    def criterion(self) -> Criterion:
-        """The same for the solver; `PlantError` where two of the three other criteria are asked for at once."""
-        worst = (self.worst_friction_low, self.worst_friction_high) != (1.0, 1.0)
+    @model_validator(mode="after")
+    def _one_of_three(self) -> CriterionSettings:
         asked = [
             name
             for name, wanted in (
                 (f"overspeed_factor is {self.overspeed_factor:g}", self.overspeed_factor != 1.0),
                 (f"p_overspeed is {self.p_overspeed:g}", self.p_overspeed != 1.0),
-                (f"worst_friction_low is {self.worst_friction_low:g}", worst),
+                (f"worst_friction_low is {self.worst_friction_low:g}", self.has_worst_case),
             )
             if wanted
         ]
         require(
             len(asked) <= 1,
-            f"criterion: {' and '.join(asked)}, but only one of asymmetric cost, chance constraint and worst case can "
-            "be in force: set the others back to 1",
+            f"{' and '.join(asked)}, but only one of asymmetric cost, chance constraint and worst case can be in "
+            "force: set the others back to 1",
         )
+        return self
+
+    @property
+    def has_worst_case(self) -> bool:
+        """Whether the worst friction of a range counts."""
+        return (self.worst_friction_low, self.worst_friction_high) != (1.0, 1.0)
+
+    def criterion(self) -> Criterion:
+        """The same for the solver; `PlantError` for a range of friction that is none."""
         requirement: Requirement | None = None
         if self.p_overspeed != 1.0:
             requirement = OverspeedLimit(self.overspeed_margin_m_s, self.p_overspeed)
-        elif worst:
+        elif self.has_worst_case:
             requirement = FrictionRange(self.worst_friction_low, self.worst_friction_high)
         return Criterion(
             stall_cost_m2_s2=self.stall_cost_m2_s2,
@@ -179,28 +185,27 @@ class AcceptanceSettings(Section):
     honesty_high: float = setting(1.1, "1", 1.0, 100.0, "highest predicted rms / simulated rms")
 
 
-class OutputSettings(Section):
+class TuneOutputSettings(OutputSettings):
     """What is written besides the book and the JSON tables; changes no result and no hash."""
 
-    csv: bool = Field(False, description="also write the tables as CSV")
-    plots: bool = Field(True, description="draw the pictures")
-    report: bool = Field(True, description="write report.html")
+    csv: bool = choice(False, "also write the tables as CSV")
 
 
-class Settings(Section):
+class Settings(TopKeys):
     """A whole configuration file; an empty one is the built-in default."""
 
-    title: Title | None = None
-    library: tuple[str, ...] = many((), 0, 20, "folders")
-    sources: dict[str, Source] = Field(default_factory=dict)
-    weight_categories: str = YARD_CATEGORIES
+    sources: dict[str, Source] = Field(
+        default_factory=dict,
+        description="where numbers that this file changes are from, by their keys",
+        examples=[{"sensor.noise_m_s": "measured in our yard, 2026"}],
+    )
     position: PositionSettings = PositionSettings()
     retarder: RetarderSettings = RetarderSettings()
     track: TrackSettings = TrackSettings()
     entry: EntrySettings = EntrySettings()
     friction: FrictionSettings = FrictionSettings()
     sensor: SensorSettings = SensorSettings()
-    sensors: PointSensorSettings | None = None
+    sensors: PointSensorSettings | None = choice(None, "point sensors in place of the radar; 'init --sensors' has them")
     targets: TargetSettings = TargetSettings()
     cut: tuple[CutSettings, ...] = many(DEFAULT_CUTS, 1, 1000, "[[cut]] tables")
     grid: GridSettings = GridSettings()
@@ -209,26 +214,13 @@ class Settings(Section):
     criterion: CriterionSettings = CriterionSettings()
     validation: ValidationSettings = ValidationSettings()
     acceptance: AcceptanceSettings = AcceptanceSettings()
-    output: OutputSettings = OutputSettings()
+    output: TuneOutputSettings = TuneOutputSettings()
 
     def library_overrides(self) -> dict[str, Value]:
         """Set values by the dotted keys of the library's positions."""
-        sections = {"retarder", "track", "entry", "friction", "sensor", "regulator", "targets"}
-        not_of_the_plant = {"retarder": {"name", "type"}, "sensor": {"type"}, "regulator": set(SWITCHES)}
-        tree = self.model_dump(include=sections, exclude=not_of_the_plant, exclude_none=True)
-        return {key: float(value) if isinstance(value, int) else value for key, value in dotted(tree, "")}
+        sections = ("retarder", "track", "entry", "friction", "sensor", "regulator", "targets")
+        return {key: value for name in sections for key, value in library_values(getattr(self, name), name)}
 
-
-SWITCHES = ("estimator", "commands", "pressure")
-"""Of [regulator]: what is no number of the plant."""
 
 NUMERICAL_SECTIONS = ("grid", "fit", "criterion", "validation", "acceptance")
 """Sections made of `setting`s alone."""
-
-
-def dotted(tree: dict[str, Any], prefix: str) -> list[tuple[str, Any]]:
-    """(dotted key, value) of every leaf of nested tables."""
-    flat: list[tuple[str, Any]] = []
-    for name, item in tree.items():
-        flat += dotted(item, f"{prefix}{name}.") if isinstance(item, dict) else [(prefix + name, item)]
-    return flat

@@ -11,9 +11,9 @@ from synth.computer.computer_results import computer_results
 from synth.computer.economics.hump_rates import RATES
 from synth.computer.resolved_computer import ResolvedComputer, resolve_computer
 from synth.computer.settings import ComputerSettings
+from synth.computer.template import default_computer_toml
 from synth.frame.input_error import InputError
 from synth.frame.settings.settings_file import parse_settings
-from synth.frame.settings.template import template
 from synth.retarder.configuration.plant_fault import in_file
 
 ROOT = Path(__file__).parents[3]
@@ -29,7 +29,7 @@ def resolved(text: str) -> ResolvedComputer:
 
 
 def test_the_template_is_the_built_in_configuration_to_the_last_origin() -> None:
-    told, built_in = resolved(template(ComputerSettings(), "", "")), resolved("")
+    told, built_in = resolved(default_computer_toml()), resolved("")
     assert told.settings == built_in.settings
     assert told.head == built_in.head
     assert not built_in.head.warnings

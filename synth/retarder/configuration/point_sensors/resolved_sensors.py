@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from plant_models import Plant, PlantError, PointSensors, every_axle, first_axle
 from plant_models.library import WHEEL_SENSORS, Library, SourcedValue, load_wheel_sensor
-from plant_models.library.sourced_value import SET_BY_USER
 from plant_models.point_sensors import Axles
+from synth.frame.settings.numbers import library_values, numbers_of
 from synth.retarder.configuration.plant_fault import in_file
 from synth.retarder.configuration.point_sensors.settings import PointSensorSettings
 from synth.retarder.configuration.position_choice import require_held
@@ -56,11 +56,11 @@ def resolve_sensors(settings: PointSensorSettings, file: str, library: Library) 
     """The sensors of the section [sensors]; `InputError` names `file`, key and value of what does not fit."""
     require_held(f"{file}: sensors.type", WHEEL_SENSORS, settings.type, library)
     with in_file(file):
-        entry = load_wheel_sensor(settings.type, library).with_values(settings.replaced_numbers())
+        entry = load_wheel_sensor(settings.type, library).with_values(dict(library_values(settings)))
         sensors = entry.at(settings.path_m, AXLES[settings.decides_on])
-    places = SourcedValue(f"{SECTION}path_m", settings.path_m, "m", None, SET_BY_USER, "")
-    numbers = tuple(replace(value, key=SECTION + value.key) for value in entry.provenance)
-    return ResolvedSensors(settings.type, sensors, settings.decides_on, (places, *numbers))
+    numbers = (*numbers_of(settings), *entry.provenance)
+    origins = tuple(replace(value, key=SECTION + value.key) for value in numbers)
+    return ResolvedSensors(settings.type, sensors, settings.decides_on, origins)
 
 
 def require_served(resolved: ResolvedSensors, plants: Iterable[tuple[str, Plant]], file: str) -> None:

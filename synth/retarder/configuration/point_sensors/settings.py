@@ -7,30 +7,30 @@ from __future__ import annotations
 
 from typing import Final, Literal
 
-from synth.frame.settings.section import Section
+from pydantic import Field
+
+from plant_models.library import WHEEL_SENSORS
+from synth.frame.settings.section import Section, choice, of_library
 from synth.frame.settings.value_forms import Numbers
+from synth.retarder.configuration.named_type import named_type
 
 DEFAULT_WHEEL_SENSOR: Final = "ds-2"
 
 
 class PointSensorSettings(Section):
-    """Sensors of a `type` of the library at `path_m`; the other numbers replace values of that type.
+    """Point sensors ('sensors tune'); they stand in place of [sensor] and [regulator] approach_m."""
 
-    `decides_on`: at whose passages the regulator decides.
-    """
-
-    type: str = DEFAULT_WHEEL_SENSOR
-    path_m: Numbers
-    decides_on: Literal["first_axle", "every_axle"] = "first_axle"
-    base_m: float | None = None
-    base_tolerance: float | None = None
-    timer_noise_s: float | None = None
-    timer_resolution_s: float | None = None
-    computing_delay_s: float | None = None
-    scan_period_s: float | None = None
-    missed_share: float | None = None
-
-    def replaced_numbers(self) -> dict[str, float]:
-        """The values of the type that are replaced, by key."""
-        kept = self.model_dump(exclude={"type", "path_m", "decides_on"}, exclude_none=True)
-        return {key: float(value) for key, value in kept.items()}
+    type: str = named_type(DEFAULT_WHEEL_SENSOR, WHEEL_SENSORS, "type of the sensors")
+    path_m: Numbers = Field(
+        description="from the entrance of the first retarder to the middle of each sensor's base, rising, at least 0.3 "
+        "m apart; the first at the entrance or ahead of it, and one behind the exit may log",
+        json_schema_extra={"unit": "m", "source": "where you put them"},
+    )
+    decides_on: Literal["first_axle", "every_axle"] = choice("first_axle", "at whose passages the regulator decides")
+    base_m: float | None = of_library("distance of the coils")
+    base_tolerance: float | None = of_library("standard deviation of its relative error, lasting for each sensor")
+    timer_noise_s: float | None = of_library("standard deviation of a measured time")
+    timer_resolution_s: float | None = of_library("times are whole multiples of it; 0: not rounded")
+    computing_delay_s: float | None = of_library("from the second pulse to the command on the wires")
+    scan_period_s: float | None = of_library("step of the regulator's clock; changes of stage last whole steps")
+    missed_share: float | None = of_library("share of the passages that a table counts as not heard")

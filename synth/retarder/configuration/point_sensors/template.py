@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Final
 
-from plant_models.library import BUILT_IN, WHEEL_SENSORS, PositionEntry
+from plant_models.library import PositionEntry
+from synth.frame.settings.template import template
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.config_template import lines, origin, quoted, source_lines, toml_value
+from synth.retarder.configuration.config_template import known_of
 from synth.retarder.configuration.plant_settings import DEFAULT_CUTS, CutSettings, PositionSettings
-from synth.retarder.configuration.point_sensors.resolved_sensors import SECTION, ResolvedSensors
 from synth.retarder.configuration.point_sensors.settings import PointSensorSettings
 from synth.retarder.configuration.resolved_config import ResolvedConfig, resolve
 from synth.retarder.configuration.settings import Settings
@@ -43,17 +42,13 @@ def default_sensors_toml(position_name: str = DUMPER_POSITION) -> str:
     """
     position = PositionSettings(name=position_name)
     entry = resolve(Settings(position=position), "retarder-synth init").retarder
-    config = resolve(
-        Settings(
-            position=position,
-            sensors=PointSensorSettings(path_m=usual_places(entry)),
-            cut=EMPTY_CUTS if position_name == DUMPER_POSITION else DEFAULT_CUTS,
-        ),
-        "retarder-synth init",
+    settings = Settings(
+        position=position,
+        sensors=PointSensorSettings(path_m=usual_places(entry)),
+        cut=EMPTY_CUTS if position_name == DUMPER_POSITION else DEFAULT_CUTS,
     )
-    assert config.sensors is not None
-    text = (*lines(config), *section_lines(config.sensors))
-    return "\n".join((*text, *source_lines(text))) + "\n"
+    config = resolve(settings, "retarder-synth init")
+    return template(settings, "Configuration with point sensors", "sensors tune", known_of(config), entry.notes)
 
 
 def usual_places(entry: PositionEntry) -> tuple[float, ...]:
@@ -62,19 +57,3 @@ def usual_places(entry: PositionEntry) -> tuple[float, ...]:
     last = entry.position.zones_m[-1][1] + LONGEST_CAR_M
     step = (last - first) / (USUAL_SENSORS - 1)
     return tuple(round(first + step * number, 1) for number in range(USUAL_SENSORS))
-
-
-def section_lines(resolved: ResolvedSensors) -> Iterator[str]:
-    """The section [sensors]."""
-    yield from ("", "[sensors]")
-    yield "# Point sensors (retarder-synth sensors tune): they stand in place of [sensor] and [regulator] approach_m."
-    yield f"# one of the library: {', '.join(BUILT_IN.names(WHEEL_SENSORS))}; or the path of your own file"
-    yield f"type = {quoted(resolved.type)}"
-    places, *numbers = resolved.provenance
-    yield "# m from the entrance of the first retarder to the middle of each sensor's base, rising, at least 0.3 apart;"
-    yield "# the first at the entrance or ahead of it, and one behind the exit may log. Yours stand where you put them."
-    yield f"path_m = {toml_value(places.value)}"
-    yield '# at whose passages the regulator decides: "first_axle" or "every_axle"'
-    yield f"decides_on = {quoted(resolved.decides_on)}"
-    for value in numbers:
-        yield from (f"# {origin(value)}", f"{value.key.removeprefix(SECTION)} = {toml_value(value.value)}")

@@ -39,16 +39,6 @@ def test_the_template_is_the_built_in_trial_to_the_last_origin() -> None:
     assert not built_in.warnings
 
 
-def test_every_number_of_the_template_has_an_origin() -> None:
-    """Line by line: above each number stands its unit, and ASSUMED or where it is from."""
-    lines = default_trial_toml().splitlines()
-    numbers = [k for k, line in enumerate(lines) if " = " in line and line[0].isalpha() and line[-1] in "0123456789]}"]
-    assert len(numbers) > 25
-    for k in numbers:
-        assert lines[k - 1].startswith("# "), lines[k]
-        assert "ASSUMED" in lines[k - 1] or "default of the tool" in lines[k - 1] or "[kozach" in lines[k - 1], lines[k]
-
-
 def test_what_changes_no_train_changes_only_the_hash_of_the_figures() -> None:
     built_in = load_trial(None)
     same = resolved('title = "x"\n[output]\nplots = false\n[sensors]\nspeed_std_m_s = 0.2\n')
@@ -154,6 +144,7 @@ def test_long_cuts_are_left_out_where_the_first_position_is_near(tmp_path: Path)
     trial = resolved('hump = "near.toml"', config)
     assert isinstance(trial.trains, TrainPopulation)
     assert trial.trains.most_cars == int(2.0 * trial.routes.entrance_m.min() / 14.73) == 7
+    assert next(value for value in trial.parameters if value.key == "trains.most_cars").assumed  # nobody has set it
     said = sentence('hump = "near.toml"\n[trains]\nmost_cars = 8\n', config)
     assert said.startswith("trains.most_cars is 8: such a cut is 117.8")
     assert said.endswith("set it to 7 or less")
@@ -205,12 +196,11 @@ def test_a_list_that_does_not_fit_is_refused_with_row_and_reason(row: str, said:
         ('hump = "larg"', "hump: larg: there is no such file, and no such hump in the library; did you mean large?"),
         ("lead = 7", "lead is 7; the signals at the crests of the hump are 201"),
         ("[trains]\nnumbr = 3", "trains.numbr = 3 is an unknown key; did you mean number?"),
-        ("[trains]\ncuts = 1", "trains.cuts is 1; it must be from 2 to 999"),
         ("[trains]\ncuts = 40.0", "trains.cuts is 40.0; it must be a whole number"),
         ("[trains]\nmost_cars = 30", "trains.most_cars is 30: such a cut is 441.9 m long; let go with its middle over"),
         ("[trains]\ntrack_shares = { 99 = 1.0 }", "trains.track_shares names '99'; signal 201 leads to tracks 1 to 32"),
         ("[trains]\ntrack_shares = { 1 = 0.0 }", "trains.track_shares has no share above 0"),
-        ("[trains]\ntrack_shares = { 1 = -1.0 }", "trains.track_shares.1 is -1.0; it must be a finite number from 0"),
+        ("[trains]\ntrack_shares = { 1 = -1.0 }", "trains.track_shares.1 is -1.0; it must be from 0 to 1e+06"),
         (
             "[trains]\ncategory_shares = { X = 1.0 }",
             "trains.category_shares: weight category 'X' is not in the library",
@@ -224,13 +214,10 @@ def test_a_list_that_does_not_fit_is_refused_with_row_and_reason(row: str, said:
         ("[cars]\nfollowing_share = 3.0", "cars.following_share is 3.0; it must be a finite number from 0 to 1"),
         ("[tracks]\nfree_low = 0.95", "tracks.free_low is 0.95; it must not be above free_high, 0.9"),
         (
-            "[hump_speed]\nconstant_m_s = 9.0",
-            "hump_speed.constant_m_s is 9.0; it must be a finite number from 0.3 to 4",
-        ),
-        (
             "[hump_speed]\nuncoupling_m_s = 0.9",
             "hump_speed.lowest_m_s is 1; it must not be above highest_m_s, 3.4, nor",
         ),
+        ("[exit_speeds]\nlowest_m_s = [4.0, 0.1]", "exit_speeds.lowest_m_s[1] is 0.1; it must be from 0.3 to 12"),
         (
             "[exit_speeds]\nlowest_m_s = [4.0]",
             "exit_speeds.lowest_m_s is [4.0]; positions of the hump ahead of the last",
@@ -240,13 +227,12 @@ def test_a_list_that_does_not_fit_is_refused_with_row_and_reason(row: str, said:
         ("[hump_speed]\nslow_down_s = 0.0\n[exit_speeds]\nfeedback = false", "hump_speed.slow_down_s is 0, but exit"),
         ("[[position]]\nnumber = 4", "position[0].number is 4; the hump has the positions 1 to 3"),
         ("[[position]]\nnumber = 1\n[[position]]\nnumber = 1", "position[1].number is 1, which is there before"),
-        ("[[position]]\nnumber = 1\nexit_std_m_s = 2.0", "position[0].exit_std_m_s is 2.0; it must be a finite number"),
+        ("[[position]]\nnumber = 1\nexit_std_m_s = 2.0", "position[0].exit_std_m_s is 2.0; it must be from 0 to 1"),
         ('[[position]]\nnumber = 1\nexit_std_m_s = 0.2\ntables = "b.h5"', "position[0].exit_std_m_s is 0.2 and"),
         ('[[position]]\nnumber = 1\ntables = "b.h5"', "position 1: there is no file 'b.h5'"),
         ('[[position]]\nnumber = 1\ntables_config = "b.toml"', "position[0].tables_config is 'b.toml', but no book"),
-        ("[[position]]\nnumber = 1\nsupply_share = 0.0", "position[0].supply_share is 0.0; it must be a finite number"),
+        ("[[position]]\nnumber = 1\nsupply_share = 0.0", "position[0].supply_share is 0.0; it must be from 0.05 to 1"),
         ("[position]\nnumber = 1", "position is {'number': 1}; it must be a list of tables: write [[position]]"),
-        ("[acceptance]\ncatch_ups = 3.0", "acceptance.catch_ups is 3.0; it must be a finite number from 0 to 1"),
     ],
 )
 def test_each_fault_is_one_sentence(text: str, said: str) -> None:

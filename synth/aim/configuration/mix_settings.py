@@ -1,0 +1,29 @@
+"""The mix of cars that cuts are drawn from, in an aim and in a hump trial."""
+
+from __future__ import annotations
+
+from plant_models.library import CAR_MIXES
+from plant_models.library.car_mix_entry import CarMixEntry, load_car_mix
+from synth.frame.settings.numbers import library_values
+from synth.frame.settings.section import Section, of_library
+from synth.frame.settings.told import Usual, told_numbers
+from synth.retarder.configuration.named_type import named_type
+
+DEFAULT_MIX = "usual"
+
+
+class MixSettings(Section):
+    """The mix of cars."""
+
+    mix: str = named_type(DEFAULT_MIX, CAR_MIXES, "the mix of cars")
+    following_share: float | None = of_library("part of its air resistance that a car has behind another one")
+    underload_mean_t: float | None = of_library("mean of what cars of the heaviest category lack to their gross mass")
+
+    def applied_to(self, entry: CarMixEntry) -> CarMixEntry:
+        """The mix with the values that the file sets; `PlantError` if they make no mix."""
+        return entry.with_values(dict(library_values(self)))
+
+
+def usual_mix(section: str) -> Usual:
+    """What the built-in mix has for the keys of `section`."""
+    return {f"{section}.{key}": told for key, told in told_numbers(load_car_mix(DEFAULT_MIX).provenance).items()}
