@@ -122,7 +122,7 @@ def configuration(case: str) -> str:
     except ValueError:
         raise InputError(f"study coverage: the case is {case!r}; give POSITION:MASS:TARGET as in {CASES[0]}") from None
     return (
-        f'[regulator]\napproach_m = 0.0\n[retarder]\nname = "{position}"\n[targets]\nexit_speeds_m_s = [{target_m_s}]\n'
+        f'[regulator]\napproach_m = 0.0\n[position]\nname = "{position}"\n[targets]\nexit_speeds_m_s = [{target_m_s}]\n'
         f'[validation]\npasses = 1000\n[[cut]]\ncar = "gondola-4"\nmass_t = {mass_t}\n'
     )
 

@@ -75,7 +75,7 @@ class AcceptanceSettings(Section):
 class ComputerSettings(Section):
     """A whole configuration of a control computer; an empty one is the built-in default."""
 
-    title: Title | None = choice(None, "of the page", "…")
+    title: Title | None = choice(None, "title of the page", "…")
     hump: str = choice(
         "large", f"whose elements are counted: {', '.join(hump_names())}, or the path of your own hump file"
     )

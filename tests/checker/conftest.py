@@ -10,7 +10,7 @@ import pytest
 from tests.corpus import Corpus, Recipe
 
 CONFIG = """\
-[retarder]
+[position]
 name = "rnz-2m-park"
 [entry]
 high_m_s = 4.0

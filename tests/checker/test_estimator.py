@@ -166,8 +166,8 @@ def test_a_new_cut_begins_anew() -> None:
 
 CONFIGS = (
     "",
-    'retarder.name = "rnz-2m-park"\nsensor.noise_m_s = 0.0\nsensor.resolution_m_s = 0.0\n',
-    'retarder.name = "kv-3-bunch"\ntrack.grade_permille = [[0.0, 12.0], [9.5, 3.0]]\nfriction.axle_cv = 0.2\n'
+    'position.name = "rnz-2m-park"\nsensor.noise_m_s = 0.0\nsensor.resolution_m_s = 0.0\n',
+    'position.name = "kv-3-bunch"\ntrack.grade_permille = [[0.0, 12.0], [9.5, 3.0]]\nfriction.axle_cv = 0.2\n'
     '[[cut]]\ncar = "gondola-4"\nmass_t = 180\ncars = 3\n[[cut]]\ncar = "gondola-4"\nmass_t = 1000\ncars = 40\n',
 )
 """Every law of force, several grades, spread per axle, no sensor noise, more breaks than a table takes."""

@@ -25,7 +25,7 @@ from synth.retarder.sweep.unit_answer import answer
 
 EPOCH = "1700000000"
 PLANT = """\
-[retarder]
+[position]
 name = "rnz-2m-park"
 [entry]
 high_m_s = 4.0

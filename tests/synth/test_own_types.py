@@ -320,13 +320,6 @@ def test_one_to_eight_braking_stages(stages: int) -> None:
     assert plant.top_stage == stages
 
 
-def test_both_spellings_of_the_position_and_no_two_of_them() -> None:
-    one = parse_config('position.name = "t-50-bunch"', "x.toml")
-    assert one == parse_config('retarder.name = "t-50-bunch"', "x.toml")
-    with pytest.raises(InputError, match=r"position.name is 't-50-bunch', but retarder.name is 'kv-3-bunch'"):
-        parse_config('position.name = "t-50-bunch"\nretarder.name = "kv-3-bunch"', "x.toml")
-
-
 def test_a_position_that_does_not_state_how_uncertain_its_mean_friction_is_takes_it_as_known(tmp_path: Path) -> None:
     own(tmp_path, POSITIONS, "silent", mean_cv="")
     own(tmp_path, POSITIONS, "telling", mean_cv=number("mean_cv", "0.11"))

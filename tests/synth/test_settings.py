@@ -41,7 +41,7 @@ def test_an_empty_file_is_the_default_book() -> None:
 @pytest.mark.parametrize("name", position_names())
 def test_template_reads_back_to_the_defaults(name: str) -> None:
     config = parse_config(default_config_toml(name), "template")
-    assert config == parse_config(f'retarder.name = "{name}"', "short")
+    assert config == parse_config(f'position.name = "{name}"', "short")
     assert config.warnings == ()
     assert all(p.source != "configuration" for p in config.parameters)
 
@@ -106,7 +106,7 @@ def test_grade_in_pieces_and_other_zones() -> None:
 
 
 def test_weight_retarder_takes_its_own_slope() -> None:
-    text = 'retarder.name = "kv-3-bunch"\nretarder.force.slope_kn_per_kpa_per_t = 0.0018\n'
+    text = 'position.name = "kv-3-bunch"\nretarder.force.slope_kn_per_kpa_per_t = 0.0018\n'
     label, plant = parse_config(text, "x.toml").plants()[0]
     assert label == "gondola-4-22t"
     assert plant.position.force.slope_kn_per_kpa(plant.cut, 1) == pytest.approx(0.0018 * 5.5)
@@ -139,8 +139,8 @@ def test_unusual_values_are_warned_of_not_refused() -> None:
         ),
         ("[retader]\nname = 'x'", "retader", "'x'", "did you mean retarder?"),
         ("[grid]\nzzz = 1", "grid.zzz", "1", "known: friction_scenarios"),
-        ("[retarder]\nname = 'knp-5'", "retarder.name", "'knp-5'", "did you mean knp-5-bunch?"),
-        ("[retarder]\nname = 5", "retarder.name", "5", "a string"),
+        ("[position]\nname = 'knp-5'", "position.name", "'knp-5'", "did you mean knp-5-bunch?"),
+        ("[position]\nname = 5", "position.name", "5", "a string"),
         ("[retarder.pneumatics]\nbrake_delay_s = -0.1", "retarder.pneumatics.brake_delay_s", "-0.1", "from 0 to 5"),
         ("[retarder.pneumatics]\nbrake_delay_s = '0.1'", "retarder.pneumatics.brake_delay_s", "'0.1'", "a number"),
         ("[retarder.pneumatics]\nbrake_delay_s = true", "retarder.pneumatics.brake_delay_s", "true", "a number"),

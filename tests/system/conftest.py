@@ -13,7 +13,7 @@ from synth.cli import main
 from tests.corpus import Corpus, Recipe
 
 CLASS = """\
-[retarder]
+[position]
 name = "rnz-2m-park"
 [entry]
 high_m_s = 4.0

@@ -15,7 +15,7 @@ from synth.cli import main
 from tests.frame.results import results_in
 
 SMALL = """\
-[retarder]
+[position]
 name = "rnz-2m-park"
 [retarder.force]
 slope_factor_by_axles = [1.0, 1.001]

@@ -53,7 +53,7 @@ FREE_M2_S2 = 1e-6
 
 OTHERS = (
     ("three cars", '[targets]\nexit_speeds_m_s = [4.0]\n[[cut]]\ncar = "gondola-4"\ncars = 3\nmass_t = 156\n', "156:4"),
-    ("park", '[retarder]\nname = "rnz-2m-park"\n[targets]\nexit_speeds_m_s = [2.5]\n[[cut]]\ncar = "gondola-4"\n'
+    ("park", '[position]\nname = "rnz-2m-park"\n[targets]\nexit_speeds_m_s = [2.5]\n[[cut]]\ncar = "gondola-4"\n'
      "mass_t = 36\n", "36:2.5"),
 )  # fmt: skip
 """Plants besides those of the configuration: name, text, case."""

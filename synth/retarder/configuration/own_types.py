@@ -167,7 +167,6 @@ def references_of_position(tree: Tree, prefix: str) -> Iterator[tuple[dict[str, 
     """The places that name a position and the types there, and those of an aim or hump trial configuration."""
     for section, key, kind in (
         ("position", "name", POSITIONS),
-        ("retarder", "name", POSITIONS),
         ("retarder", "type", RETARDERS),
         ("sensor", "type", SENSORS),
         ("sensors", "type", WHEEL_SENSORS),

@@ -57,7 +57,6 @@ class PositionSettings(Section):
 class RetarderSettings(Section):
     """What is different of the retarders."""
 
-    name: str | None = choice(None, "an older spelling of position.name")
     type: str | None = named_type(None, RETARDERS, "another type of retarders in this position")
     zones_m: Pairs | None = of_library("where each retarder begins and ends, from the entrance of the first")
     stage_pressures_kpa: Numbers | None = of_library("of the released stage, then of the braking stages")

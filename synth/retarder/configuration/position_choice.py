@@ -14,7 +14,7 @@ from tuning_tables.excerpt import excerpt
 
 def resolve_position(settings: Settings, file: str, library: Library) -> PositionEntry:
     """The library's position, other types in it where the file says so, and the values that it sets."""
-    name = position_name(settings, file, library)
+    name = require_held(f"{file}: position.name", POSITIONS, settings.position.name or DEFAULT_POSITION, library)
     types = (("retarder.type", RETARDERS, settings.retarder.type), ("sensor.type", SENSORS, settings.sensor.type))
     for key, kind, chosen in types:
         if chosen is not None:
@@ -27,19 +27,6 @@ def resolve_position(settings: Settings, file: str, library: Library) -> Positio
     with in_file(file):
         entry = position_with_types(name, library, settings.retarder.type, settings.sensor.type)
         return entry.with_values(settings.library_overrides())
-
-
-def position_name(settings: Settings, file: str, library: Library) -> str:
-    """The name under position.name or, as it was once spelt, retarder.name."""
-    name, older = settings.position.name, settings.retarder.name
-    if name is not None and older is not None and name != older:
-        raise InputError(
-            f"{file}: position.name is {excerpt(name)!r}, but retarder.name is {excerpt(older)!r}; both name the "
-            "position: leave out retarder.name"
-        )
-    if name is not None:
-        return require_held(f"{file}: position.name", POSITIONS, name, library)
-    return require_held(f"{file}: retarder.name", POSITIONS, older or DEFAULT_POSITION, library)
 
 
 def require_held(where: str, kind: Kind, name: str, library: Library) -> str:

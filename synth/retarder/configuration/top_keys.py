@@ -11,7 +11,7 @@ from synth.retarder.configuration.named_type import named_type
 class TopKeys(Section):
     """Title, and where types are from."""
 
-    title: Title | None = choice(None, "of the page", "…")
+    title: Title | None = choice(None, "title of the page", "…")
     library: tuple[str, ...] = many(
         (), 0, 20, "folders", "folders with your own types (docs/own-types.md)", example=["my-types/"]
     )

@@ -20,7 +20,7 @@ from tests.synth.aim.conftest import HEAVY, LIGHT
 
 TARGETS = (1.5, 2.0, 3.0)
 PARK = """\
-retarder.name = "rnz-2m-park"
+position.name = "rnz-2m-park"
 entry.low_m_s = 3.2
 entry.high_m_s = 5.0
 targets.exit_speeds_m_s = [1.5]

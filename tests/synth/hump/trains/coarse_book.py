@@ -18,7 +18,7 @@ from tuning_tables import ControllerTable, from_json, to_json
 
 CREATED = "2026-11-20T22:46:00Z"
 PARK = """\
-[retarder]
+[position]
 name = "rnz-2m-park"
 [entry]
 low_m_s = 3.0
