@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from plant_models.cut import Car
 from plant_models.library import CARS, CarEntry, Library, SourcedValue, load_car
 from synth.frame.input_error import InputError
+from synth.frame.settings.numbers import sourced
 from synth.retarder.configuration.plant_fault import in_file
 from synth.retarder.configuration.plant_settings import CutSettings
 from synth.retarder.configuration.position_choice import require_held
@@ -141,7 +142,7 @@ def consist_values(consist: Consist, key: str, source: str) -> Iterator[SourcedV
     """The numbers of the cars with their origin; `source`: that of masses and counts."""
     yield SourcedValue(f"{key}.mass_t", consist.mass_t, "t", consist.limits_t, source, "")
     for part in consist.parts:
-        yield SourcedValue(f"{part.key}.cars", float(part.count), "1", (1.0, 60.0), source, "")
+        yield replace(sourced(f"{part.key}.cars", part.count, CutSettings.model_fields["cars"]), source=source)
         if part.mass_per_car_t is not None:
             limits = (part.entry.car.tare_t, part.entry.car.gross_t)
             yield SourcedValue(f"{part.key}.mass_per_car_t", part.mass_per_car_t, "t", limits, source, "")

@@ -90,7 +90,6 @@ def test_what_is_only_shown_changes_no_hash_and_numbers_do() -> None:
         (TASK + TASK, ("task mix", "a is given twice")),
         ("[reliability]\ncommon_share = 1.5\n", ("reliability.common_share", "1")),
         ("[reliability]\ncheck_h = 3.0\n", ("reliability.check_interval_h is 2.5 h", "shorter than the check")),
-        ("[rates.change]\ncatch_ups = 1.5\n", ("rates.change.catch_ups is 1.5", "from -1 to 1")),
         ("[rates.today]\ncars_per_h = 500.0\n" + SHARES, ("rates.today.gap_m is missing",)),
         ("[prices]\nper_car = -1.0\n", ("prices.per_car",)),
         ('[[range]]\ninput = "prices.car"\nlow = 1.0\nhigh = 2.0\n', ("'prices.car'", "per_car_h")),

@@ -231,7 +231,6 @@ def test_a_list_that_does_not_fit_is_refused_with_row_and_reason(row: str, said:
         ('[[position]]\nnumber = 1\nexit_std_m_s = 0.2\ntables = "b.h5"', "position[0].exit_std_m_s is 0.2 and"),
         ('[[position]]\nnumber = 1\ntables = "b.h5"', "position 1: there is no file 'b.h5'"),
         ('[[position]]\nnumber = 1\ntables_config = "b.toml"', "position[0].tables_config is 'b.toml', but no book"),
-        ("[[position]]\nnumber = 1\nsupply_share = 0.0", "position[0].supply_share is 0.0; it must be from 0.05 to 1"),
         ("[position]\nnumber = 1", "position is {'number': 1}; it must be a list of tables: write [[position]]"),
     ],
 )
