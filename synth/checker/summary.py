@@ -25,7 +25,7 @@ CARRIERS: Final = ("book.h5", "tables/", "c/", "st/")
 FIGURES: Final = ("rms_m_s", "bias_m_s", "p_overspeed", "switchings", "p_stall", "passes")
 """What a table predicts of itself; in a summary each name begins with `predicted_`."""
 RADAR_TUNE: Final = "tune"
-MAKERS: Final = (RADAR_TUNE, "sensors tune", "sweep")
+MAKERS: Final = (RADAR_TUNE, "sensors tune", "sweep run")
 """Commands whose summaries tell of tables."""
 
 

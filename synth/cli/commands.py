@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from synth.cli import hump_commands, sensors_commands
+from synth.cli import hump_commands, sensors_commands, sweep_commands
 from synth.cli.arguments import (
     Config,
     ExportSource,
@@ -66,38 +66,8 @@ def common(
 
 app.add_typer(hump_commands.app, name="hump")
 app.add_typer(sensors_commands.app, name="sensors")
+app.add_typer(sweep_commands.app, name="sweep")
 add_listed(app, COMMANDS)
-
-
-@app.command()
-def sweep(
-    words: Annotated[
-        list[Path],
-        typer.Argument(metavar="CONFIG.toml | status DIR | failed DIR", help="What to sweep, or what to tell of."),
-    ],
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where a sweep keeps everything."),
-    ] = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            parser=whole_number(1, 1024), metavar="N", help="Processes on this machine; by default one a processor."
-        ),
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of this Dask scheduler instead.")
-    ] = None,
-    as_json: Json = False,
-) -> int:
-    """Make books over a grid of cut classes, targets and conditions; resumable.
-
-    The table [sweep] of CONFIG.toml says what is swept. The same command goes on after an end of any kind. Exit code 1
-    if a unit failed; `sweep failed DIR` tells why, `sweep status DIR` how far a sweep is.
-    """
-    from synth.cli.sweep import sweep_command
-
-    return sweep_command(words, output, workers, scheduler, as_json)
 
 
 @app.command()

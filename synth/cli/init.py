@@ -48,6 +48,11 @@ CONFIGURATIONS: Final = {
         "synth.computer.settings:ComputerSettings",
         "synth.computer.template:default_computer_toml",
     ),
+    "sweep": Printed(
+        "Configuration with a sweep",
+        "synth.retarder.sweep.sweep_settings:SweepFileSettings",
+        "synth.retarder.sweep.template:default_sweep_toml",
+    ),
 }
 """The configurations by what asks for them, as `init_command` calls it."""
 
@@ -76,8 +81,8 @@ def schema_command(types: dict[str, str | None]) -> int:
     asked = [folder for folder, name in types.items() if name is not None]
     if len(asked) > 1 or (asked and (asked[0] not in CONFIGURATIONS or types[asked[0]])):
         raise InputError(
-            "init --schema: there are schemas of configurations; give it alone, or with --sensors, --aim, --hump or "
-            "--computer"
+            "init --schema: there are schemas of configurations; give it alone, or with --sensors, --aim, --hump, "
+            "--computer or --sweep"
         )
     asked_of = CONFIGURATIONS[asked[0] if asked else ""]
     print(schema_of(resolve_name(asked_of.model), f"{asked_of.title} of retarder-synth"), end="")
@@ -144,6 +149,13 @@ def no_computer(name: str) -> tuple[str, str]:
     raise InputError(f"init --computer {name}: the library has no control computers; leave the name out")
 
 
+def no_sweep(name: str) -> tuple[str, str]:
+    """As `asked_for`: refused, for there are no types of sweeps."""
+    from synth.frame.input_error import InputError
+
+    raise InputError(f"init --sweep {name}: the library has no sweeps; leave the name out")
+
+
 def sensors_file(name: str) -> tuple[str, str]:
     """As `asked_for`: a configuration with point sensors, of the position `name`."""
     from plant_models.library import BUILT_IN, POSITIONS
@@ -154,7 +166,13 @@ def sensors_file(name: str) -> tuple[str, str]:
     return "configuration", default_sensors_toml(name)
 
 
-NAMED: Final = {"aim": aim_type, "hump": hump_type, "computer": no_computer, "point sensors": sensors_file}
+NAMED: Final = {
+    "aim": aim_type,
+    "hump": hump_type,
+    "computer": no_computer,
+    "point sensors": sensors_file,
+    "sweep": no_sweep,
+}
 """What an option for a configuration asks for by a name, by what `init_command` calls it."""
 
 

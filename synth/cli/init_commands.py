@@ -22,6 +22,7 @@ FILES = {
     "aim": ("aim", "Aim configuration. With the name of a track or car mix: its file."),
     "hump": ("hump", "Hump trial configuration. With the name of a hump: its file."),
     "computer": ("computer", "Configuration of a control computer."),
+    "sweep": ("sweep", "Table [sweep] of a configuration: what a sweep is over."),
 }
 """Options that ask for a file: what `init_command` calls it, and the help."""
 

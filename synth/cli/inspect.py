@@ -205,8 +205,9 @@ def checked_summary(directory: Path) -> dict[str, Any] | None:
             raise DamagedTable(f"{directory / 'summary.json'}: it lists {name}, which is not there; tune again")
         if hashlib.sha256(file.read_bytes()).hexdigest() != sha256:
             raise DamagedTable(f"{file}: its SHA-256 is not the one in summary.json; tune again")
-    accepted = "accepted" if document.get("accepted") else "not accepted"
-    sentence = f"all {len(listed)} files that it lists are there unchanged; {accepted}: {verdict_in(document)}"
+    said, accepted = verdict_in(document), "accepted" if document.get("accepted") else "not accepted"
+    judged = f"{accepted}: {said}" if said else "nothing is judged in it"
+    sentence = f"all {len(listed)} files that it lists are there unchanged; {judged}"
     return {"files": len(listed), "accepted": document.get("accepted"), "sentence": sentence}
 
 

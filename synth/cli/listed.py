@@ -119,6 +119,21 @@ SENSORS: Final = (
 )
 """Behind the word `sensors`."""
 
+SWEEP: Final = (
+    Listed(
+        "sweep run",
+        "synth.retarder.sweep.command:COMMAND",
+        "synth.retarder.sweep.options:SweepOptions",
+        "init --sweep",
+        "Make books over a grid of cut classes, targets and conditions; resumable.\n\n"
+        "The table [sweep] of CONFIG.toml says what is swept. The same command goes on after an end of any kind. Exit "
+        "code 1 if a unit failed or a target has no table; 'sweep failed DIR' tells why, 'sweep status DIR' how far a "
+        "sweep is.",
+        folder="out/sweep",
+    ),
+)
+"""Behind the word `sweep`, beside those that tell of a sweep."""
+
 HUMP: Final = (
     Listed(
         "hump simulate",

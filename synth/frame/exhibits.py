@@ -80,7 +80,7 @@ def shown_value(value: Any, form: Form) -> str:
         case Interval():
             return f"{form(value.value)} [{form(value.low95)}, {form(value.high95)}]"
         case tuple() | list():
-            return ", ".join(shown_value(each, form) for each in value)
+            return ", ".join(shown_value(each, form) for each in value) or ABSENT
     return ABSENT if math.isnan(value) else form(float(value))
 
 

@@ -39,9 +39,9 @@ class ResultsDirectory:
     command did not write, that was changed since, or that it reads; `OSError` where the disk does.
     """
 
-    def __init__(self, path: Path, own: OwnFiles, reads: frozenset[Path], summary: str) -> None:
+    def __init__(self, path: Path, own: OwnFiles, reads: frozenset[Path]) -> None:
         self.path = path
-        self._own, self._reads, self._summary = own, reads, summary
+        self._own, self._reads = own, reads
         self._written: dict[str, str] = {}
         self._lock = threading.Lock()
 
@@ -61,8 +61,8 @@ class ResultsDirectory:
         return tuple(name for name in sorted(self._own) if name.startswith(f"{folder}/") and self._own.content_of(name))
 
     def written_below(self, folder: str) -> dict[str, str]:
-        """`written` below `folder`, by names relative to it; '' for the directory itself."""
-        prefix = f"{folder}/" if folder else ""
+        """`written` below `folder`, by names relative to it."""
+        prefix = f"{folder}/"
         return {name.removeprefix(prefix): sha for name, sha in self.written.items() if name.startswith(prefix)}
 
     def require_own_below(self, folder: str) -> None:
@@ -136,7 +136,7 @@ class ResultsDirectory:
     def finish(self, summary: bytes) -> None:
         """Remove the files of earlier runs, then write the summary: where it is, the rest is whole."""
         self.remove_others()
-        self.write(self._summary, summary)
+        self.write(SUMMARY, summary)
 
     def remove_leftovers(self) -> None:
         """Remove unfinished files of this command, of this run or of one that was killed."""
@@ -164,11 +164,11 @@ class ResultsDirectory:
 
 @contextlib.contextmanager
 def results_directory(
-    path: Path, command: str, reads: Iterable[Path] = (), summary: str = SUMMARY, inputs: str = ""
+    path: Path, command: str, reads: Iterable[Path] = (), inputs: str = ""
 ) -> Iterator[ResultsDirectory]:
     """Make and hold `path` for the results of `command`, which reads the files `reads`.
 
-    Within: no `summary`, which would not belong to what is written next, and no leftovers of a killed run. `inputs`: a
+    Within: no summary, which would not belong to what is written next, and no leftovers of a killed run. `inputs`: a
     folder of copies of what is read, which may be read from there, as it is written before anything is computed.
     `InputError` where the directory is not the command's, cannot be written, or is held by another run.
     """
@@ -182,9 +182,9 @@ def results_directory(
         own, reading = OwnFiles(path, command), frozenset(each.resolve() for each in reads)
         require_as_written(path, own)
         require_apart(path, own, reading, inputs)
-        results = ResultsDirectory(path, own, reading, summary)
+        results = ResultsDirectory(path, own, reading)
         results.remove_leftovers()
-        results.remove(summary)
+        results.remove(SUMMARY)
         own.tidy()
         with faults_naming(path):
             os.fsync(descriptor)

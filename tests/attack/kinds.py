@@ -30,6 +30,7 @@ from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.point_sensors.template import default_sensors_toml
 from synth.retarder.sensors.tune_command import COMMAND as SENSORS_TUNE
 from synth.retarder.sensors.tune_options import SensorsTuneOptions
+from synth.retarder.sweep.command import COMMAND as SWEEP_RUN
 from tests.attack.attempt import Kind, Reading
 from tests.attack.railml_attributes import attribute_kind
 from tests.attack.trains import trains_kind
@@ -46,6 +47,18 @@ cut,cars,axles,mass_t,category,track,length_m,rolling,lead,hump_speed_m_s,marks
 1,2,8,151.5,T,11,27.84,mean,0,1.7,
 2,1,4,23,L,3,13.92,bad,0,1.7,do-not-hump long-base
 3,3,12,150.0,S,8,41.76,good,0,1.5,
+"""
+SWEPT: Final = """\
+retarder.name = "rnz-2m-park"
+[sweep]
+exit_speeds_m_s = { from = 1.5, to = 2.5, step = 0.5 }
+[[sweep.cut]]
+car = "gondola-4"
+cars = [1, 2]
+mass_per_car_t = [22, 85]
+[[sweep.condition]]
+name = "wet"
+friction.common_cv = 0.2
 """
 MAPPING: Final = """\
 delimiter = ";"
@@ -92,6 +105,12 @@ def read_aim(folder: Path) -> str:
 def read_computer(folder: Path) -> str:
     """As `computer`."""
     COMPUTER.resolve(asked_of(COMPUTER, COMPUTER.options(config=folder / "computer.toml"), "init --computer"))
+    return ""
+
+
+def read_sweep(folder: Path) -> str:
+    """As `sweep run`."""
+    SWEEP_RUN.resolve(asked_of(SWEEP_RUN, SWEEP_RUN.options(config=folder / "sweep.toml"), "init --sweep"))
     return ""
 
 
@@ -180,6 +199,7 @@ KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "aim": lambda: file_kind("aim.toml", plain(default_aim_toml()), read_aim),
     "computer": lambda: file_kind("computer.toml", plain(default_computer_toml()), read_computer),
     "sensors": lambda: file_kind("sensors.toml", plain(default_sensors_toml()), read_sensors),
+    "sweep": lambda: file_kind("sweep.toml", SWEPT.encode(), read_sweep),
     "mapping": mapping_kind,
     "list": list_kind,
     "csv-log": lambda: log_kind("log.csv", log_as("log.csv"), Reading.ANY),

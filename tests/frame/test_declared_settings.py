@@ -190,7 +190,7 @@ def test_every_key_that_init_prints_is_explained_above_it(
     assert numbers > 20
 
 
-@pytest.mark.parametrize("words", CONFIGURATIONS)
+@pytest.mark.parametrize("words", [*CONFIGURATIONS, ("--sweep",)])
 def test_what_init_prints_is_what_its_schema_allows(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["init", *words, "--schema"]) == 0
     schema = json.loads(capsys.readouterr().out)

@@ -56,6 +56,7 @@ KINDS = (
     "aim",
     "hump",
     "computer",
+    "sweep",
 )
 BOOK, PARK = "park/book.h5", "--config park.toml"
 LOG = "validated/log.h5 --config park.toml"
@@ -81,7 +82,7 @@ ORDERS: tuple[Order, ...] = (
     Order(f"retune {LOG} --table {BOOK}", "retuned"),
     Order("permissions measured.toml --workers 1", "permissions"),
     Order("sensitivity measured.toml --points 200 --passes 100", "sensitivity"),
-    Order("sweep sweep.toml --workers 1", "swept"),
+    Order("sweep run sweep.toml --workers 1", "swept"),
     Order("sweep status swept"),
     Order("sensors tune sensors.toml --workers 1", "passages"),
     Order("inspect passages/book.h5"),

@@ -17,10 +17,6 @@ import pytest
 from synth.cli import main
 from synth.frame.workers.engine import Engine, InThisProcess
 from synth.hump.trains.trial import BATCH
-from synth.retarder.sweep.bind import Outcome
-from synth.retarder.sweep.run import run_sweep, task_of
-from synth.retarder.sweep.sweep_directory import held_sweep
-from synth.retarder.sweep.sweep_file import load_sweep
 from synth.retarder.sweep.unit_answer import answer
 
 EPOCH = "1700000000"
@@ -66,24 +62,11 @@ report = false
 COMMAND = [sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))"]
 
 
-class Silence:
-    """A watcher that keeps what it is told."""
-
-    def __init__(self) -> None:
-        self.notes: list[str] = []
-        self.ended: list[str] = []
-
-    def note(self, sentence: str) -> None:
-        self.notes.append(sentence)
-
-    def done(self, unit: Any, sentence: str) -> None:
-        self.ended.append(sentence)
-
-
-def run(config: Path, directory: Path, engine: Engine, watcher: Silence | None = None) -> Outcome:
-    """A run of the sweep in `config` by `engine`."""
-    with held_sweep(directory) as found:
-        return run_sweep(task_of(load_sweep(config), found), found, engine, watcher or Silence())
+def run(config: Path, directory: Path, engine: Engine) -> int:
+    """A run of the sweep in `config` by `engine`; the exit code."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("synth.retarder.sweep.command.engine_for", lambda *ignored: engine)
+        return main(["sweep", "run", str(config), "-o", str(directory)])
 
 
 def contents(directory: Path) -> dict[str, bytes]:
@@ -154,8 +137,7 @@ def serial(config: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("serial") / "out"
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
-        outcome = run(config, directory, InThisProcess(answer))
-    assert outcome.failures == ()
+        assert run(config, directory, InThisProcess(answer)) == 0
     return directory
 
 

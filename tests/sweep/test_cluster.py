@@ -60,14 +60,14 @@ def test_killed_worker_and_killed_driver(
 ) -> None:
     address, workers = cluster
     out = tmp_path / "out"
-    first = begin("sweep", config, "-o", out, "--scheduler", address)
+    first = begin("sweep", "run", config, "-o", out, "--scheduler", address)
     wait_until(lambda: events(out, STARTED), first)
     os.kill(workers[0], signal.SIGKILL)
     wait_until(lambda: events(out, DONE), first)
     kill_and_reap(first)
     before = {event["unit"] for event in events(out, DONE)}
     begun = len(events(out, STARTED))
-    second = begin("sweep", config, "-o", out, "--scheduler", address)
+    second = begin("sweep", "run", config, "-o", out, "--scheduler", address)
     _, said = second.communicate(timeout=120)
     assert second.returncode == 0, said
     assert before.isdisjoint(event["unit"] for event in events(out, STARTED)[begun:])

@@ -10,12 +10,13 @@ from pathlib import Path
 import pytest
 
 from synth.frame.held_directory import is_held
+from synth.frame.results_directory import results_directory
 from synth.frame.workers.engine import InThisProcess
-from synth.retarder.sweep.ledger import DONE, PLAN, LedgerWriter, read_ledger
-from synth.retarder.sweep.sweep_directory import SweepDirectory, held_sweep
+from synth.retarder.sweep.ledger import DONE, PLAN, STARTED, LedgerWriter, read_ledger
+from synth.retarder.sweep.sweep_directory import SWEEP, SweepDirectory
 from synth.retarder.sweep.unit_answer import answer
 from synth.retarder.sweep.unit_result import from_bytes, to_bytes
-from tests.sweep.conftest import Ran, Silence, contents, events, run
+from tests.sweep.conftest import Ran, contents, events, run
 from tuning_tables import DamagedTable
 
 
@@ -38,16 +39,16 @@ def test_every_flipped_bit_and_every_cut_of_a_result_is_noticed(serial: Path) ->
             from_bytes(content[:length], "x")
 
 
-def test_a_damaged_result_is_computed_again(config: Path, serial: Path, tmp_path: Path) -> None:
+def test_a_damaged_result_is_computed_again(
+    config: Path, serial: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     out = Path(shutil.copytree(serial, tmp_path / "out"))
     bad = min((out / "sweep" / "units").iterdir())
     bad.write_bytes(bad.read_bytes().replace(b"3", b"4", 1))
     (out / "book.h5").unlink()
-    watcher = Silence()
-    run(config, out, InThisProcess(answer), watcher)
-    assert len(watcher.ended) == 1
-    assert bad.name in watcher.notes[0]
-    assert "damaged" in watcher.notes[0]
+    assert run(config, out, InThisProcess(answer)) == 0
+    assert len(events(out, STARTED)) == 4
+    assert f"{bad} is damaged; what it held is computed again" in capfd.readouterr().err
     assert contents(out) == contents(serial)
 
 
@@ -66,9 +67,9 @@ def test_a_torn_ledger_is_passed_over_and_continued(
     code, said, _ = command("sweep", "status", out)
     assert code == 0
     assert "2 lines of the ledger are torn or damaged" in said
-    watcher = Silence()
-    run(config, out, InThisProcess(answer), watcher)
-    assert watcher.ended == []
+    begun = len(events(out, STARTED))
+    assert run(config, out, InThisProcess(answer)) == 0
+    assert len(events(out, STARTED)) == begun
     assert read_ledger(ledger).bad_lines == 2
     assert len(read_ledger(ledger).of(PLAN)) == 2
     assert contents(out) == contents(serial)
@@ -81,17 +82,19 @@ def test_the_date_is_that_of_the_first_run(
     for path in list((out / "sweep" / "units").iterdir())[:1]:
         path.unlink()
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1800000000")
-    run(config, out, InThisProcess(answer))
-    assert contents(out) == contents(serial)
+    assert run(config, out, InThisProcess(answer)) == 0
+    own = {"summary.json", "report.html", ".retarder-synth"}  # these tell of the last run
+    kept, before = contents(out), contents(serial)
+    assert {name: kept[name] for name in before.keys() - own} == {name: before[name] for name in before.keys() - own}
 
 
 def test_two_runs_at_once_are_refused(command: Callable[..., Ran], config: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    with held_sweep(out):
+    with results_directory(out, SWEEP):
         assert is_held(out)
-        code, said, told = command("sweep", config, "-o", out)
+        code, said, told = command("sweep", "run", config, "-o", out)
         assert (code, said) == (2, "")
-        assert "another sweep is writing there" in told
+        assert "another sweep run is writing there" in told
     assert not is_held(out)
     assert events(out, PLAN) == []
 
@@ -100,22 +103,40 @@ def test_the_results_of_something_else_are_left_alone(
     command: Callable[..., Ran], config: Path, serial: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "book.h5").write_bytes(b"mine")
-    code, _, said = command("sweep", config, "-o", tmp_path)
+    code, _, said = command("sweep", "run", config, "-o", tmp_path)
     assert code == 2
-    assert "it holds book.h5, which 'sweep' did not write" in said
+    assert "it holds book.h5, which 'sweep run' did not write" in said
     assert (tmp_path / "book.h5").read_bytes() == b"mine"
     out = Path(shutil.copytree(serial, tmp_path / "out"))
+    (out / "dry").mkdir()
+    (out / "dry" / "book.h5").write_bytes(b"mine")
     other = tmp_path / "other.toml"
     other.write_text(config.read_text() + '[[sweep.condition]]\nname = "dry"\n', encoding="utf-8")
-    code, _, said = command("sweep", other, "-o", out)
+    code, _, said = command("sweep", "run", other, "-o", out)
     assert code == 2
-    assert "its books would be stale" in said
+    assert f"{out / 'dry' / 'book.h5'}: retarder-synth did not write it" in said
+    assert (out / "dry" / "book.h5").read_bytes() == b"mine"
+
+
+def test_no_book_of_other_conditions_stays(
+    command: Callable[..., Ran], config: Path, serial: Path, tmp_path: Path
+) -> None:
+    out, other = Path(shutil.copytree(serial, tmp_path / "out")), tmp_path / "other.toml"
+    other.write_text(config.read_text() + '[[sweep.condition]]\nname = "dry"\n', encoding="utf-8")
+    assert run(other, out, InThisProcess(answer)) == 0
+    assert not (out / "book.h5").exists()
+    assert command("verify", out / "dry", "--passes", "100")[0] in (0, 1)
+    begun = len(events(out, STARTED))
+    assert run(config, out, InThisProcess(answer)) == 0
+    assert len(events(out, STARTED)) == begun
+    assert (out / "book.h5").read_bytes() == (serial / "book.h5").read_bytes()
+    assert not (out / "dry" / "book.h5").exists()
 
 
 def test_a_result_under_another_name_is_none(serial: Path, tmp_path: Path) -> None:
     out = Path(shutil.copytree(serial, tmp_path / "out"))
     directory = SweepDirectory(out)
-    one, other, *_ = sorted(directory.units.iterdir())
+    one, other, *_ = sorted((out / "sweep" / "units").iterdir())
     one.write_bytes(other.read_bytes())
     with pytest.raises(DamagedTable, match="another unit"):
         directory.stored(one.stem)

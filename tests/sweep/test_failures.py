@@ -14,10 +14,11 @@ import pytest
 from synth.frame.interval import Interval
 from synth.frame.workers.engine import InThisProcess, Work
 from synth.frame.workers.local_workers import LocalWorkers
+from synth.retarder.sweep.book_figures import BookFigures, Failure
 from synth.retarder.sweep.heat_map import heat_map
-from synth.retarder.sweep.sweep_file import load_sweep
+from synth.retarder.sweep.sweep_file import parse_sweep
 from tests.sweep import poison
-from tests.sweep.conftest import COMMAND, Ran, Silence, contents, events, run
+from tests.sweep.conftest import COMMAND, Ran, contents, events, run
 from tuning_tables import read_book
 
 
@@ -36,12 +37,12 @@ def test_a_poisoned_class_is_told_and_stops_no_other(
 ) -> None:
     out = tmp_path / "out"
     with monkeypatch.context() as patch:
-        patch.setattr("synth.cli.sweep.engine_for", lambda *ignored: LocalWorkers(2, work))
-        code, _, said = command("sweep", config, "-o", out)
+        patch.setattr("synth.retarder.sweep.command.engine_for", lambda *ignored: LocalWorkers(2, work))
+        code, told, said = command("sweep", "run", config, "-o", out)
     assert code == 1
-    last = said.splitlines()[-1]
-    assert last.startswith(f"retarder-synth: {poison.POISONED} failed: ")
-    assert reason in last
+    assert f"not accepted: there is no table for {poison.POISONED}: " in told
+    assert reason in told
+    assert sum(f"{poison.POISONED} failed: " in line for line in said.splitlines()) == 1
     assert {table.cut.mass_t for table in read_book(out / "book.h5")} == {22.0, 30.0}
 
     code, listed, _ = command("sweep", "failed", out)
@@ -50,7 +51,7 @@ def test_a_poisoned_class_is_told_and_stops_no_other(
     assert reason in listed
     assert "2 of 3 units done, 1 failed" in command("sweep", "status", out)[1]
 
-    code, _, said = command("sweep", config, "-o", out, "--workers", "1")
+    code, _, said = command("sweep", "run", config, "-o", out, "--workers", "1")
     assert code == 0, said
     assert "2 of 3 units are there already" in said
     assert "no unit has failed" in command("sweep", "failed", out)[1]
@@ -80,22 +81,23 @@ mass_per_car_t = [22, 85]
 def test_a_target_without_a_table_loses_none_but_itself(command: Callable[..., Ran], tmp_path: Path) -> None:
     def swept(name: str, speeds: str) -> tuple[int, str]:
         (tmp_path / f"{name}.toml").write_text(TOO_COARSE.format(speeds=speeds), encoding="utf-8")
-        code, out, said = command("sweep", tmp_path / f"{name}.toml", "-o", tmp_path / name, "--workers", "1")
+        code, out, said = command("sweep", "run", tmp_path / f"{name}.toml", "-o", tmp_path / name, "--workers", "1")
         return code, out + said
 
     code, said = swept("some", "[2.0, 3.0, 3.5, 4.0]")
     assert code == 1
     assert "targets without a table: 1" in said
-    assert "gondola-4-22t to 3.5 m/s failed: the grid is too coarse" in said
+    assert "there is no table for gondola-4-22t to 3.5 m/s: the grid is too coarse" in said
     code, listed, _ = command("sweep", "failed", tmp_path / "some")
     assert [line.split(":")[0] for line in listed.splitlines()] == ["gondola-4-22t to 3.5 m/s"]
     status = command("sweep", "status", tmp_path / "some")[1]
     assert "complete; 2 of 2 units done, 0 failed, targets without a table: 1" in status
     summary = json.loads((tmp_path / "some" / "summary.json").read_text(encoding="utf-8"))
     assert [(each["label"], each["target_m_s"]) for each in summary["tables"]["failed"]] == [("gondola-4-22t", 3.5)]
-    refused = {(each["label"], each["target_m_s"]) for each in summary["tables"]["failed"]}
-    cases = [{**case, "rms_m_s": Interval(**case["rms_m_s"])} for case in summary["tables"]["cases"]]
-    axes = heat_map(cases, refused, load_sweep(tmp_path / "some.toml").conditions[0]).axes[0]
+    book = BookFigures(parse_sweep((tmp_path / "some.toml").read_text(encoding="utf-8"), "x").conditions[0])
+    book.cases += [{**case, "rms_m_s": Interval(**case["rms_m_s"])} for case in summary["tables"]["cases"]]
+    book.failures.append(Failure("", "gondola-4-22t", "it is too coarse", 3.5))
+    axes = heat_map(book).axes[0]
     tables, empty = axes.collections[:2]
     assert (len(tables.get_paths()), len(empty.get_paths())) == (7, 1)
     assert axes.get_title(loc="left").endswith("hatched: no table")
@@ -114,16 +116,16 @@ def test_a_target_without_a_table_loses_none_but_itself(command: Callable[..., R
 
 def test_a_class_without_any_table_has_failed(command: Callable[..., Ran], tmp_path: Path) -> None:
     (tmp_path / "sweep.toml").write_text(TOO_COARSE.format(speeds="[3.5]"), encoding="utf-8")
-    code, _, said = command("sweep", tmp_path / "sweep.toml", "-o", tmp_path / "out", "--workers", "1")
+    code, told, _ = command("sweep", "run", tmp_path / "sweep.toml", "-o", tmp_path / "out", "--workers", "1")
     assert code == 1
-    assert "gondola-4-22t failed: the grid is too coarse" in said
+    assert "there is no table for gondola-4-22t: the grid is too coarse" in told
     assert "1 of 2 units done, 1 failed\n" in command("sweep", "status", tmp_path / "out")[1]
 
 
 def test_refining_gives_up_a_class_with_a_target_without_a_table(command: Callable[..., Ran], tmp_path: Path) -> None:
     text = TOO_COARSE.format(speeds="[3.0, 3.5]").replace("[sweep]", "[sweep]\ninterpolation_loss_m_s = 0.5")
     (tmp_path / "sweep.toml").write_text(text, encoding="utf-8")
-    code, _, said = command("sweep", tmp_path / "sweep.toml", "-o", tmp_path / "out", "--workers", "1")
+    code, _, said = command("sweep", "run", tmp_path / "sweep.toml", "-o", tmp_path / "out", "--workers", "1")
     assert code == 1
     assert "gondola-4-22t failed: the grid is too coarse" in said
     assert {table.cut.mass_t for table in read_book(tmp_path / "out" / "book.h5")} == {85.0}
@@ -133,38 +135,33 @@ def test_a_worker_that_dies_once_costs_nothing_but_time(
     monkeypatch: pytest.MonkeyPatch, config: Path, serial: Path, tmp_path: Path
 ) -> None:
     monkeypatch.setenv("DIED_ONCE", str(tmp_path / "died"))
-    assert run(config, tmp_path / "out", LocalWorkers(2, poison.dying_once)).failures == ()
+    assert run(config, tmp_path / "out", LocalWorkers(2, poison.dying_once)) == 0
     assert (tmp_path / "died").exists()
     assert len(events(tmp_path / "out", "started")) == 4
     assert contents(tmp_path / "out") == contents(serial)
 
 
 def test_another_program_on_a_worker_is_refused(config: Path, tmp_path: Path) -> None:
-    outcome = run(config, tmp_path / "out", InThisProcess(poison.strange))
-    assert len(outcome.failures) == 3
-    assert "another version of retarder-synth" in outcome.failures[0].reason
-    assert not (tmp_path / "out" / "book.h5").exists()
+    out = tmp_path / "out"
+    assert run(config, out, InThisProcess(poison.strange)) == 1
+    failed = json.loads((out / "summary.json").read_text(encoding="utf-8"))["tables"]["failed"]
+    assert len(failed) == 3
+    assert "another version of retarder-synth" in failed[0]["reason"]
+    assert not (out / "book.h5").exists()
 
 
 def test_a_full_memory_is_refused_before_anything_is_computed(
     command: Callable[..., Ran], monkeypatch: pytest.MonkeyPatch, config: Path, tmp_path: Path
 ) -> None:
     monkeypatch.setattr("synth.retarder.sweep.run.available_memory_bytes", lambda: 100 * 2**20)
-    code, out, said = command("sweep", config, "-o", tmp_path / "out")
+    code, out, said = command("sweep", "run", config, "-o", tmp_path / "out")
     assert (code, out) == (2, "")
     assert "make a step larger" in said
     assert [line for line in said.splitlines() if "warning: " not in line] == [said.splitlines()[-1]]
     monkeypatch.setattr("synth.retarder.sweep.run.available_memory_bytes", lambda: 800 * 2**20)
-    code, _, said = command("sweep", config, "-o", tmp_path / "out", "--workers", "3")
+    code, _, said = command("sweep", "run", config, "-o", tmp_path / "out", "--workers", "3")
     assert code == 0
     assert "memory allows for 1 of 3 workers" in said
-
-
-def test_what_is_told_on_the_way(config: Path, tmp_path: Path) -> None:
-    watcher = Silence()
-    run(config, tmp_path / "out", LocalWorkers(2, poison.refusing), watcher)
-    assert len(watcher.ended) == 3
-    assert sum("failed: " in sentence for sentence in watcher.ended) == 1
 
 
 WORKERS_WITHOUT_A_CACHE = """
@@ -173,9 +170,9 @@ from pathlib import Path
 from synth.frame.terminal.telling import leave
 from synth.frame.workers.local_workers import LocalWorkers
 from synth.retarder.sweep.plan import plan_of
-from synth.retarder.sweep.sweep_file import load_sweep
+from synth.retarder.sweep.sweep_file import parse_sweep
 from tests.sweep.poison import caching
-orders = [unit.order for unit in plan_of(load_sweep(Path(sys.argv[1])), "2020-01-01T00:00:00Z").units]
+orders = [unit.order for unit in plan_of(parse_sweep(Path(sys.argv[1]).read_text(), "x"), "2020-01-01T00:00:00Z").units]
 print({answer.reason for answer in LocalWorkers(2, caching).answers(orders, lambda order: None)}, flush=True)
 leave(0)
 """
@@ -195,7 +192,7 @@ def test_workers_leave_no_kernel_cache_of_their_own(config: Path, tmp_path: Path
 
 def test_too_little_address_space_is_refused_before_a_worker_hangs_in_it(config: Path, tmp_path: Path) -> None:
     ran = subprocess.run(
-        ["bash", "-c", 'ulimit -v 600000; exec "$@"', "-", *COMMAND, "sweep", str(config), "-o", str(tmp_path / "out")],
+        ["bash", "-c", 'ulimit -v 600000; exec "$@"', "-", *COMMAND, "sweep", "run", config, "-o", tmp_path / "out"],
         capture_output=True, text=True, timeout=20, check=False,
     )  # fmt: skip
     assert ran.returncode == 2

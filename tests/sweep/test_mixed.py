@@ -46,7 +46,7 @@ def test_no_tune_into_a_sweep(command: Callable[..., Ran], serial: Path, tune_co
     before = contents(out)
     code, told, said = command("tune", tune_config, "-o", out)
     assert (code, told) == (2, "")
-    assert f"{out}: it holds the results of 'sweep'; give another directory by -o" in said
+    assert f"{out}: it holds the results of 'sweep run'; give another directory by -o" in said
     assert contents(out) == before
 
 
@@ -71,9 +71,9 @@ def test_no_sweep_into_a_tune(
     for file, folder in ((config, tmp_path / "out"), (conditions, tmp_path / "outer" / "wet")):
         (folder / name).parent.mkdir(parents=True)
         (folder / name).write_bytes(b"of a tune")
-        code, _, said = command("sweep", file, "-o", tmp_path / folder.relative_to(tmp_path).parts[0])
+        code, _, said = command("sweep", "run", file, "-o", tmp_path / folder.relative_to(tmp_path).parts[0])
         assert code == 2
-        assert f"{name}, which 'sweep' did not write; give a new or an empty directory by -o" in said
+        assert f"{name}, which 'sweep run' did not write; give a new or an empty directory by -o" in said
         assert contents(folder) == {name: b"of a tune"}
 
 

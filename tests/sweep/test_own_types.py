@@ -12,7 +12,7 @@ from plant_models.library import BUILT_IN, CARS, RETARDERS
 from synth.frame.workers.engine import InThisProcess
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.sweep.plan import plan_of
-from synth.retarder.sweep.sweep_file import load_sweep
+from synth.retarder.sweep.sweep_file import SweepFile, parse_sweep
 from synth.retarder.sweep.tune_unit import tune_unit
 from synth.retarder.sweep.unit_answer import answer
 from tests.sweep.conftest import EPOCH, PLANT, run
@@ -43,6 +43,11 @@ def config(tmp_path: Path) -> Path:
     path = tmp_path / "sweep.toml"
     path.write_text(f"{PLANT}[targets]\nexit_speeds_m_s = [1.5]\n{SWEEP}", encoding="utf-8")
     return path
+
+
+def load_sweep(path: Path) -> SweepFile:
+    """The sweep in a file."""
+    return parse_sweep(path.read_text(encoding="utf-8"), str(path))
 
 
 def test_a_unit_needs_no_file_and_a_book_keeps_the_types_beside_it(

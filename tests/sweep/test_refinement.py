@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -105,7 +106,7 @@ def test_a_refined_book_keeps_its_loss(tmp_path: Path) -> None:
     loss = 0.002
     wanted = f"interpolation_loss_m_s = {loss}\nsmallest_step_m_s = 0.05\npasses"
     config.write_text(PLANT + MEASURED + coarse.replace("passes", wanted), encoding="utf-8")
-    outcome = run(config, tmp_path / "out", InThisProcess(answer))
+    assert run(config, tmp_path / "out", InThisProcess(answer)) == 0
     targets = [table.target_speed_m_s for table in read_book(tmp_path / "out" / "book.h5")]
     assert len(targets) > 2
     assert targets == sorted(targets)
@@ -115,6 +116,8 @@ def test_a_refined_book_keeps_its_loss(tmp_path: Path) -> None:
     assert max(gap.loss_m_s for gap in left) <= loss
     for gap in gaps:
         assert gap.refined == (gap.loss_m_s > loss)
-    told = outcome.summary["conditions"][0]  # type: ignore[index]
+    tables = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))["tables"]
+    (told,) = tables["conditions"]
+    assert [gap["loss_m_s"] for gap in tables["interpolation"]] == [gap.loss_m_s for gap in gaps]
     assert told["highest_interpolation_loss_m_s"] == max(gap.loss_m_s for gap in left)
     assert isinstance(gaps[0], Gap)

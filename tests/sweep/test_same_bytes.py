@@ -10,7 +10,7 @@ import pytest
 from synth.frame.workers.engine import InThisProcess
 from synth.frame.workers.local_workers import LocalWorkers
 from synth.retarder.sweep.unit_answer import answer
-from tests.sweep.conftest import MEASURED, PLANT, SWEEP, Ran, Silence, contents, run
+from tests.sweep.conftest import MEASURED, PLANT, SWEEP, Ran, contents, events, run
 from tuning_tables import read_book
 
 TUNED = """\
@@ -37,7 +37,7 @@ mass_t = 30
 def test_worker_processes_give_the_bytes_of_this_process(
     config: Path, serial: Path, tmp_path: Path, workers: int
 ) -> None:
-    assert run(config, tmp_path / "out", LocalWorkers(workers, answer)).failures == ()
+    assert run(config, tmp_path / "out", LocalWorkers(workers, answer)) == 0
     assert contents(tmp_path / "out") == contents(serial)
 
 
@@ -57,7 +57,7 @@ def test_tables_for_the_measured_speed_are_those_of_a_tune(command: Callable[...
     (tmp_path / "sweep.toml").write_text(PLANT + MEASURED + SWEEP, encoding="utf-8")
     code, _, said = command("tune", tmp_path / "tune.toml", "-o", tmp_path / "out", "--workers", "2")
     assert code in (0, 1), said
-    assert run(tmp_path / "sweep.toml", tmp_path / "swept", LocalWorkers(2, answer)).failures == ()
+    assert run(tmp_path / "sweep.toml", tmp_path / "swept", LocalWorkers(2, answer)) == 0
     tuned, swept = (read_book(tmp_path / name / "book.h5") for name in ("out", "swept"))
     assert len(tuned) == 6
     assert all(table.estimator is None for table in tuned)
@@ -81,10 +81,9 @@ def test_a_grown_grid_keeps_what_is_there(config: Path, serial: Path, tmp_path: 
     larger, smaller = tmp_path / "larger.toml", tmp_path / "smaller.toml"
     larger.write_text(config.read_text(), encoding="utf-8")
     smaller.write_text(config.read_text().replace("to = 30", "to = 26"), encoding="utf-8")
-    out, watcher = tmp_path / "out", Silence()
-    assert run(smaller, out, InThisProcess(answer)).failures == ()
-    run(larger, out, InThisProcess(answer), watcher)
-    assert len(watcher.ended) == 1
+    out = tmp_path / "out"
+    assert run(smaller, out, InThisProcess(answer)) == run(larger, out, InThisProcess(answer)) == 0
+    assert len(events(out, "started")) == 3
     kept, new = contents(out), contents(serial)
     # Tables are stamped with the configuration of the last run, whichever run computed them; results are not.
     assert {name: kept[name] for name in new if not name.startswith("sweep/units")} == {

@@ -59,10 +59,10 @@ FAULTS = {
 }
 
 CONDITION_FAULTS = {
-    "no name": ('name = "wet"', "", "sweep.condition[1].name is None"),
+    "no name": ('name = "wet"', "", "sweep.condition[1].name is missing"),
     "slash": ('name = "wet"', 'name = "../wet"', "letters, digits"),
-    "twice": ('name = "wet"', 'name = "Dry"', "which another condition has"),
-    "other section": ("friction.common_cv", "grid.path_step_m", "cannot be changed by a condition; known: entry"),
+    "twice": ('name = "wet"', 'name = "Dry"', "sweep.condition holds 'Dry' twice"),
+    "other section": ("friction.common_cv", "grid.path_step_m", "unknown key; known: entry"),
     "unknown key": ("common_cv", "comon_cv", 'in sweep.condition[1], "wet": friction.comon_cv'),
     "out of range": ("0.2", "-0.2", 'in sweep.condition[1], "wet": friction.common_cv'),
 }
@@ -76,7 +76,7 @@ def test_one_sentence_for_a_fault(command: Callable[..., Ran], tmp_path: Path, n
     assert old in text
     config, out = tmp_path / "bad.toml", tmp_path / "out"
     config.write_text(text.replace(old, new, 1), encoding="utf-8")
-    code, told, words = command("sweep", config, "-o", out)
+    code, told, words = command("sweep", "run", config, "-o", out)
     assert (code, told) == (2, "")
     assert words.startswith(f"retarder-synth: {config}: ")
     faults = words.splitlines()
@@ -92,12 +92,12 @@ def test_faults_of_use(
     monkeypatch.setattr("synth.frame.workers.dask_cluster.ANSWER_WITHIN_S", 1)
     out = tmp_path / "out"
     for arguments, said in (
-        ((config,), "give one by -o DIR"),
-        ((config, "-o", out, "--workers", "2", "--scheduler", "tcp://x:1"), "leave one out"),
+        (("run",), "Missing argument"),
+        (("run", config, "-o", out, "--workers", "2", "--scheduler", "tcp://x:1"), "leave one out"),
         (("status", tmp_path), "there is no sweep in it"),
         (("failed", tmp_path / "none"), "there is no sweep in it"),
-        (("restart", tmp_path), "give CONFIG.toml, status DIR or failed DIR"),
-        ((config, "-o", out, "--scheduler", "tcp://127.0.0.1:1"), "Dask"),
+        (("restart", tmp_path), "No such command"),
+        (("run", config, "-o", out, "--scheduler", "tcp://127.0.0.1:1"), "Dask"),
     ):
         code, told, words = command("sweep", *arguments)
         assert (code, told) == (2, "")
@@ -157,7 +157,7 @@ def test_toml_reads_back(tree: dict[str, object]) -> None:
     assert tomllib.loads(toml_text(tree)) == tree
 
 
-@pytest.mark.parametrize("arguments", [["sweep", "--help"], ["sweep", "failed", "."], ["sweep", "status", "."]])
+@pytest.mark.parametrize("arguments", [["sweep", "run", "--help"], ["sweep", "failed", "."], ["sweep", "status", "."]])
 def test_nothing_heavy_is_imported_to_tell(serial: Path, arguments: list[str]) -> None:
     source = (
         "import sys; from synth.cli import main; code = main(sys.argv[1:]); "

@@ -17,12 +17,13 @@ from synth.frame.command import Unfinished
 from synth.frame.results_directory import results_directory
 from synth.frame.workers.engine import Answer, InThisProcess
 from synth.frame.workers.local_workers import LocalWorkers
+from synth.frame.workers.stored_results import missing_of
 from synth.hump.trains.batch import BatchOrder, answer_batch, orders_of
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
 from synth.hump.trains.outcomes import joined
 from synth.hump.trains.resolved_trial import load_trial
-from synth.hump.trains.train_run import BatchFiles, missing_of, run_trains
+from synth.hump.trains.train_run import BatchFiles, run_trains
 from synth.hump.trains.trial import BATCH
 from tests.sweep import poison
 from tests.sweep.conftest import Ran, begin, contents, kill_and_reap, wait_until
@@ -102,7 +103,7 @@ def test_a_batch_that_cannot_be_humped_is_told_and_the_others_stay(trial: Path, 
     with files_in(tmp_path, trial) as files:
         with pytest.raises(Unfinished, match=f"trains {BATCH + 1} to {2 * BATCH}: no cars"):
             run_trains(orders, orders, files, InThisProcess(refusing), Told())
-        assert [order.first for order in missing_of(orders, files, Told())] == [BATCH, 2 * BATCH]
+        assert [order.first for order in missing_of(orders, files.file, Told())] == [BATCH, 2 * BATCH]
 
 
 def test_a_worker_of_another_version_is_refused(trial: Path) -> None:
@@ -135,7 +136,7 @@ def test_a_damaged_batch_is_humped_again(
     victim.write_bytes(bytes(content))
     code, _, said = command("hump", "simulate", trial, "-o", out)
     assert code == 0
-    assert f"{victim} is damaged; trains " in said
+    assert f"{victim} is damaged; " in said
     assert contents(out) == contents(humped)
 
 

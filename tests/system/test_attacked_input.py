@@ -42,7 +42,7 @@ CONDITIONS = CLASS + '[[sweep.condition]]\nname = "dry"\n[[sweep.condition]]\nna
 
 SWEEPS = {
     "range beyond the doubles": (
-        SWEPT + "mass_per_car_t = { from = -1e308, to = 1e308, step = 1 }\n", "it must have at most 1000 values"
+        SWEPT + "mass_per_car_t = { from = -1e308, to = 1e308, step = 1 }\n", "it must be of at most 1000 values"
     ),
     "huge mass": (SWEPT + f"mass_per_car_t = {DIGITS}\n", "sweep.cut[0].mass_per_car_t is 999"),
     "huge masses": (SWEPT + f"mass_per_car_t = [22, {DIGITS}]\n", "sweep.cut[0].mass_per_car_t[1] is 999"),
@@ -51,7 +51,8 @@ SWEEPS = {
     "thousands of digits": (CLASS + f"[sweep]\npasses = {DIGITS * 11}\n", "thousands of digits"),
     "nested lists": (CLASS + f"[sweep]\nx = {'[' * 3000}{']' * 3000}\n", "nested too deeply"),
     "equal ids": (CLASS + "[sweep]\nexit_speeds_m_s = [1.5, 1.5000001]\n", "but tables are named by six digits"),
-    "a condition called sweep": (CONDITIONS.replace("NAME", "Sweep"), "sweep.condition[1].name is 'Sweep', which is a"),
+    "a condition called sweep": (CONDITIONS.replace("NAME", "Sweep"), ".name is 'Sweep'; it must be another name"),
+    "a condition called as a file": (CONDITIONS.replace("NAME", "report.html"), "a file or folder of the sweep"),
     "a condition called NUL": (CONDITIONS.replace("NAME", "NUL"), "a device of Windows"),
     "a condition called con.1": (CONDITIONS.replace("NAME", "con.1"), "a device of Windows"),
     "a dot at the end": (CONDITIONS.replace("NAME", "dry."), "with no dot at the end"),
@@ -64,7 +65,7 @@ def test_one_short_sentence(command: Command, tmp_path: Path, name: str) -> None
     text, said = SWEEPS[name.removeprefix("sweep: ")] if swept else CONFIGURATIONS[name]
     config, out = tmp_path / "bad.toml", tmp_path / "out"
     config.write_text(text)
-    ran = command("sweep" if swept else "tune", config, "-o", out)
+    ran = command(*(("sweep", "run") if swept else ("tune",)), config, "-o", out)
     assert (ran.code, ran.out) == (2, "")
     assert ran.sentence.startswith(f"{config}: ")
     assert said in ran.sentence
@@ -98,7 +99,7 @@ def test_names_that_conditions_may_have(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names are POSIX's")
-@pytest.mark.parametrize("command", ["tune", "sweep", "validate"])
+@pytest.mark.parametrize("command", ["tune", "sweep run", "validate"])
 @pytest.mark.parametrize("kind", ["pipe", "/dev/zero", "10-gb"])
 def test_a_configuration_that_is_no_ordinary_file(tmp_path: Path, command: str, kind: str) -> None:
     """In a process of its own, with little memory: it may neither wait nor read for ever."""
@@ -109,7 +110,9 @@ def test_a_configuration_that_is_no_ordinary_file(tmp_path: Path, command: str, 
         path.touch()
         os.truncate(path, 10 * 2**30)
     table = tmp_path / "table.json"
-    arguments = ["validate", str(table), "--config", str(path)] if command == "validate" else [command, str(path)]
+    arguments = (
+        ["validate", str(table), "--config", str(path)] if command == "validate" else [*command.split(), str(path)]
+    )
     output = ["-o", str(tmp_path / "out")]
     source = "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))"
     ran = subprocess.run(
@@ -122,14 +125,14 @@ def test_a_configuration_that_is_no_ordinary_file(tmp_path: Path, command: str, 
     assert ran.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("name", ["tune", "sweep", "plot", "export"])
+@pytest.mark.parametrize("name", ["tune", "sweep run", "plot", "export"])
 def test_an_empty_output_is_refused(
     command: Command, tuned: Path, one_class: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
     form = ["--format", "csv"] if name == "export" else []
     before = sorted(tmp_path.rglob("*"))
-    ran = command(name, one_class if name in ("tune", "sweep") else tuned / "book.h5", *form, "-o", "")
+    ran = command(*name.split(), one_class if name in ("tune", "sweep run") else tuned / "book.h5", *form, "-o", "")
     assert (ran.code, ran.out) == (2, "")
     assert "it is empty; give a directory" in ran.sentence
     assert sorted(tmp_path.rglob("*")) == before
@@ -140,7 +143,7 @@ def test_an_empty_output_is_refused(
     [
         (("tune", "--workers", "0"), "--workers is '0'; it must be a whole number from 1 to 256"),
         (("tune", "--workers", "many"), "--workers is 'many'; it must be a whole number from 1 to 256"),
-        (("sweep", "x.toml", "--workers", "1025"), "it is '1025'; give a whole number from 1 to 1024"),
+        (("sweep", "run", "x", "--workers", "1025"), "--workers is '1025'; it must be a whole number from 1 to 1024"),
         (("validate", "x.json", "--passes", "5"), "--passes is '5'; it must be a whole number from 1000 to 100000000"),
         (("validate", "x.json", "--seed", "-1"), "--seed is '-1'; it must be a whole number from 0 to"),
         (("verify", "x.json", "--passes", "1e3"), "it is '1e3'; give a whole number from 100 to 1000000"),

@@ -117,7 +117,7 @@ def test_a_date_that_is_none(
 
 @pytest.mark.parametrize(
     "arguments",
-    [("tuna",), ("sweep", "x.toml", "--workers", "0"), ("tune", "--wrokers", "2"), ("export", "x.json"), ("verify",),
+    [("tuna",), ("sweep", "runs", "x.toml"), ("tune", "--wrokers", "2"), ("export", "x.json"), ("verify",),
      ("verify", "x.json", "--passes", "many"), ("tune", "a.toml", "b.toml")],
 )  # fmt: skip
 def test_faults_of_use(command: Command, arguments: tuple[str, ...]) -> None:

@@ -134,13 +134,11 @@ def test_a_directory_or_ledger_that_cannot_be_forced_out_is_named(
         raise OSError(errno.EIO, os.strerror(errno.EIO))
 
     monkeypatch.setattr(os, "fsync", fail)
-    for name, named in (("tune", tmp_path / "tune/.retarder-synth"), ("sweep", tmp_path / "sweep/.retarder-synth")):
-        ran = command(name, plain, "-o", tmp_path / name)
+    for words, named in ((("tune",), tmp_path / "tune"), (("sweep", "run"), tmp_path / "sweep")):
+        ran = command(*words, plain, "-o", named)
         assert (ran.code, ran.out) == (74, "")
-        assert (
-            ran.err.splitlines()[-1]
-            == f"retarder-synth: {named}: Input/output error; check the disk, then run the command again"
-        )
+        said = f"{named}/.retarder-synth: Input/output error; check the disk, then run the command again"
+        assert ran.err.splitlines()[-1] == f"retarder-synth: {said}"
 
 
 def raising(fault: BaseException) -> object:

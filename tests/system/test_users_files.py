@@ -58,8 +58,9 @@ class Writing:
     @property
     def name(self) -> str:
         """The command as its directory is marked."""
-        words = [word for word in self.words if word in ("hump", "sensors") or word not in INPUTS]
-        return " ".join(words[:2] if words[0] in ("hump", "sensors") else words[:1])
+        groups = ("hump", "sensors", "sweep")
+        words = [word for word in self.words if word in groups or word not in INPUTS]
+        return " ".join(words[:2] if words[0] in groups else words[:1])
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -79,7 +80,7 @@ DIRECTORIES = (
     Writing(("sensors", "plan", "yard.toml"), "sensors.toml"),
     Writing(("permissions", "yard.toml"), "summary.json"),
     Writing(("sensitivity", "yard.toml", "--table", "book.h5"), "sheets/overall.csv"),
-    Writing(("sweep", "sweep.toml"), "config.toml"),
+    Writing(("sweep", "run", "sweep.toml"), "config.toml"),
     Writing(("aim", "aim.toml"), "report.html"),
     Writing(("computer", "computer.toml"), "report.html"),
     Writing(("hump", "simulate", "trial.toml", "--list", "train.csv"), "inputs/config.toml"),

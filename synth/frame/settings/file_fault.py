@@ -48,7 +48,8 @@ def fault_sentence(fault: ErrorDetails, root: type[Section]) -> str:
         return f"{key} = {shown(value)} is an unknown key; {hint(location, root)}"
     if kind == "missing":
         return f"{key} is missing; add it to {key_path(location[:-1]) or 'the file'}"
-    if kind == "value_error" and isinstance(value, dict | Section):  # a rule between the keys of a table
+    if kind == "value_error" and isinstance(value, dict | Section) and holds_section(location, root):
+        # a rule between the keys of a table
         return rule_sentence(key, str(fault["ctx"]["error"]), section_at(location, root))
     return f"{key} is {shown(value)}; it must be {allowed(fault, root)}"
 
@@ -73,10 +74,16 @@ def allowed(fault: ErrorDetails, root: type[Section]) -> str:
         return str(context["expected"])
     if kind in ("too_short", "too_long"):
         return allowed_length(field_at(fault["loc"], root), fault["input"])
-    if kind == "tuple_type" and len(fault["loc"]) == 1 and sections_in(field_at(fault["loc"], root)):
-        name = fault["loc"][0]
+    name = key_path(fault["loc"])
+    if kind == "tuple_type" and "[" not in name and holds_section(fault["loc"], root):
         return f"a list of tables: write [[{name}]], not [{name}]"
     return ALLOWED.get(kind, fault["msg"])
+
+
+def holds_section(location: Location, root: type[Section]) -> bool:
+    """Whether a table is at `location`, or a list of tables."""
+    names = [part for part in location if isinstance(part, str)]
+    return not names or bool(sections_in(field_at(names, root)))
 
 
 def allowed_length(field: FieldInfo, value: object) -> str:

@@ -17,6 +17,7 @@ from importlib import import_module
 from typing import Any
 
 from synth.frame.input_error import InputError
+from synth.frame.terminal.telling import say
 from synth.frame.workers.engine import Answer, Begun, Order, Work
 
 ANSWER_WITHIN_S = 15
@@ -83,7 +84,7 @@ class DaskCluster:
 
 
 def connect(address: str, work: Work) -> DaskCluster:
-    """The cluster whose scheduler is at `address`; `InputError` without the library or without an answer."""
+    """The cluster at `address`, which is told; `InputError` without the library, and without an answer from there."""
     try:
         distributed = import_module("distributed")
     except ImportError:
@@ -96,7 +97,9 @@ def connect(address: str, work: Work) -> DaskCluster:
             "the address that it prints, such as tcp://host:8786"
         ) from None
     silence(LOGGERS)
-    return DaskCluster(client, distributed, work)
+    cluster = DaskCluster(client, distributed, work)
+    say(f"the scheduler at {address} has {cluster.threads()} threads of workers; more may join")
+    return cluster
 
 
 def silence(names: Sequence[str]) -> None:

@@ -38,6 +38,16 @@ Work = Callable[[Any], Answer]
 Begun = Callable[[Any], None]
 
 
+class Watcher(Protocol):
+    """Is told how far a run is."""
+
+    def note(self, sentence: str) -> None:
+        """Something besides the results."""
+
+    def done(self, sentence: str) -> None:
+        """A result is there, or has failed."""
+
+
 class Engine(Protocol):
     """Computes orders somewhere; answers come as they are ready, one for every order, whatever happens to workers."""
 

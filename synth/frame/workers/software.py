@@ -11,7 +11,7 @@ from synth.frame.workers.engine import worker_name
 from synth.kernels.cache import compiling_facts
 
 SHOWING = frozenset({"checker", "cli", "page", "picture", "pictures", "shown", "terminal"})
-"""Folders of what shows or checks results and makes none."""
+"""Folders and files of what shows or checks results and makes none."""
 
 PATTERNS = ("plant_models/**/*.py", "plant_models/**/*.toml", "synth/**/*.py", "tuning_tables/**/*.py")
 
@@ -26,7 +26,7 @@ def software_sha256() -> str:
     digest = hashlib.sha256(f"{version('retarder-synth')}\0{version('scipy')}\0{compiling_facts()}".encode())
     names = {path.relative_to(root).as_posix(): path for pattern in PATTERNS for path in root.glob(pattern)}
     for name in sorted(names):
-        if SHOWING.isdisjoint(name.split("/")):
+        if SHOWING.isdisjoint(Path(name).with_suffix("").parts):
             content = names[name].read_bytes()
             digest.update(f"\0{name}\0{len(content)}\0".encode() + content)
     return digest.hexdigest()

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.frame.input_error import InputError
 from synth.frame.processors import available
-from synth.frame.terminal.telling import say
 from synth.hump.configuration.trial_file import INPUTS, TrialFile, parse_trial_file, trial_text
 from synth.hump.trains.simulate_options import SimulateOptions
 
@@ -34,11 +32,10 @@ LIMITS_OF_USE = (
 
 @dataclass(frozen=True)
 class AskedTrains:
-    """The trains of a trial, and who humps them: so many `workers`, or those of the `scheduler`; None: as fits."""
+    """The trains of a trial, and what was typed: who humps them."""
 
     trial: AskedTrial
-    workers: int | None
-    scheduler: str | None
+    options: SimulateOptions
 
     @property
     def number(self) -> int:
@@ -49,11 +46,10 @@ class AskedTrains:
 def resolve(asked: Asked[TrialFile, SimulateOptions]) -> AskedTrains:
     """The trial with what was typed."""
     options = asked.options
-    if options.workers is not None and options.scheduler is not None:
-        raise InputError("hump simulate: --workers and --scheduler are both given; leave one out")
+    options.require_one("hump simulate")
     from synth.hump.trains.asked_trial import asked_trial
 
-    return AskedTrains(asked_trial(asked.settings, options, options.trains), options.workers, options.scheduler)
+    return AskedTrains(asked_trial(asked.settings, options, options.trains), options)
 
 
 def head(asked: AskedTrains) -> Head:
@@ -86,35 +82,34 @@ def compute(asked: AskedTrains, work: Work) -> HumpedTrial:
 
 def humped(asked: AskedTrains, trial: HumpTrial, work: Work) -> TrainOutcomes:
     """The outcomes of all trains, those of earlier runs among them. Raises `Unfinished` for a batch that fails."""
+    from synth.frame.workers.stored_results import missing_of
     from synth.hump.trains.batch import orders_of
     from synth.hump.trains.outcome_file import TrialTrains
-    from synth.hump.trains.train_run import BatchFiles, missing_of, run_trains
+    from synth.hump.trains.train_run import BatchFiles, run_trains
 
     config, progress = asked.trial.config, work.progress
     orders = list(orders_of(trial, config.trains_sha256, asked.number))
     files = BatchFiles(work.directory, TrialTrains(config.routes, config.trains_sha256))
-    missing = missing_of(orders, files, progress)
+    missing = missing_of(orders, files.file, progress)
     progress.begin(len(orders) - len(missing))
-    return run_trains(orders, missing, files, engine_for(missing, asked), progress)
+    return run_trains(orders, missing, files, engine_for(missing, asked.options), progress)
 
 
-def engine_for(missing: list[BatchOrder], asked: AskedTrains) -> Engine:
+def engine_for(missing: Sequence[BatchOrder], options: SimulateOptions) -> Engine:
     """The cluster that was named, processes, or this process for a single batch: workers have to load first."""
     from synth.hump.trains.batch import answer_batch, answer_batch_here
 
-    if asked.scheduler is not None:
+    if options.scheduler is not None:
         from synth.frame.workers.dask_cluster import connect
 
-        cluster = connect(asked.scheduler, answer_batch)
-        say(f"the scheduler at {asked.scheduler} has {cluster.threads()} threads of workers; more may join")
-        return cluster
-    if asked.workers is None and min(len(missing), available()) < 2:
+        return connect(options.scheduler, answer_batch)
+    if options.workers is None and min(len(missing), available()) < 2:
         from synth.frame.workers.engine import InThisProcess
 
         return InThisProcess(answer_batch_here)
     from synth.frame.workers.local_workers import LocalWorkers
 
-    return LocalWorkers(max(1, min(asked.workers or available(), len(missing))), answer_batch)
+    return LocalWorkers(max(1, min(options.workers or available(), len(missing))), answer_batch)
 
 
 def limits(result: HumpedTrial) -> Iterable[Limit]:

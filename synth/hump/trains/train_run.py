@@ -6,28 +6,15 @@ from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 from synth.frame.command import Unfinished
 from synth.frame.results_directory import ResultsDirectory
-from synth.frame.workers.engine import Engine
+from synth.frame.workers.engine import Engine, Watcher
 from synth.hump.trains.batch import BatchOrder
 from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
 from synth.hump.trains.outcomes import TrainOutcomes, joined
-from tuning_tables import DamagedTable
-from tuning_tables.seal import unsealed
 
 FOLDER = "batches"
-
-
-class BatchWatcher(Protocol):
-    """Is told how far a run is."""
-
-    def note(self, sentence: str) -> None:
-        """Something besides the batches."""
-
-    def done(self, sentence: str) -> None:
-        """A batch is humped."""
 
 
 @dataclass(frozen=True)
@@ -54,35 +41,13 @@ class BatchFiles:
         path = self.file(key)
         return from_npz(path.read_bytes(), str(path), self.trial, count)
 
-    def has(self, key: str) -> bool:
-        """Whether a batch is there; `DamagedTable` where a byte has changed."""
-        path = self.file(key)
-        try:
-            unsealed(path.read_bytes(), str(path))
-        except FileNotFoundError:
-            return False
-        return True
-
-
-def missing_of(orders: Sequence[BatchOrder], files: BatchFiles, watcher: BatchWatcher) -> list[BatchOrder]:
-    """The batches that are not there, or not whole."""
-    missing = []
-    for order in orders:
-        try:
-            if files.has(order.key):
-                continue
-        except DamagedTable:
-            watcher.note(f"{files.file(order.key)} is damaged; {order.name} are humped again")
-        missing.append(order)
-    return missing
-
 
 def run_trains(
     orders: Sequence[BatchOrder],
     missing: Sequence[BatchOrder],
     files: BatchFiles,
     engine: Engine,
-    watcher: BatchWatcher,
+    watcher: Watcher,
 ) -> TrainOutcomes:
     """All trains of `orders`; those `missing` are humped by `engine` and stored as they come.
 

@@ -19,10 +19,13 @@ from tuning_tables.passages.passage_table import PassageTable
 
 UNAVOIDABLE: Final = Column("unavoidable_rms_m_s", "unavoidable", "m/s", decimals(4), spare=2)
 VERDICT: Final = Column("verdict", "verdict", words=True)
-KEYS: Final = (
+IDENTITY: Final = (
     Column("id", "table", words=True, detail=True),
     Column("category", "category", detail=True),
     Column("mass_t", "mass", "t", detail=True),
+)
+KEYS: Final = (
+    *IDENTITY,
     Column("top_stage", "highest stage", detail=True),
     Column("why_infeasible", "why infeasible", words=True, detail=True),
 )

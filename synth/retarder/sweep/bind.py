@@ -2,52 +2,45 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.metadata import version
 
+from synth.frame.command import Verdict
 from synth.frame.results_directory import SUMMARY, ResultsDirectory
 from synth.frame.settings.toml_text import toml_text
-from synth.retarder.sweep.book_summary import BookFigures, Failure, book_summary, case_of, sweep_summary
+from synth.frame.summary import summary_of
+from synth.frame.told import Told
+from synth.retarder.configured import head_of
+from synth.retarder.sweep.book_figures import BookFigures, Failure, case_row, gap_row
 from synth.retarder.sweep.plan import Plan, Unit
-from synth.retarder.sweep.sweep_directory import HeldSweep, SweepDirectory
+from synth.retarder.sweep.shown import chapters, limits_of
+from synth.retarder.sweep.sweep_directory import SWEEP, HeldSweep, SweepDirectory
 from synth.retarder.sweep.sweep_file import Condition, SweepFile
 from synth.retarder.sweep.unit_result import UnitResult
 from tuning_tables import ControllerTable, Generator, InvalidTable, TableBook, TableError, to_json, write_book
-from tuning_tables.canonical import canonical_json
 
-BOOK, CONFIG, PICTURE = "book.h5", "config.toml", "rms-by-mass-and-target"
+BOOK, CONFIG = "book.h5", "config.toml"
 
 TYPES = "types"
 """Folder of the user's types beside the configuration of a swept book."""
 
-__all__ = ["Failure", "Outcome", "bind"]
 
+def bind(
+    file: SweepFile, plan: Plan, created: str, directory: HeldSweep, failed: dict[str, Failure]
+) -> tuple[BookFigures, ...]:
+    """Write the book of every condition, and last of all a summary into the folder of each.
 
-@dataclass(frozen=True)
-class Outcome:
-    """What a run has come to: the summary as written; units without a result and targets without a table."""
-
-    summary: dict[str, object]
-    failures: tuple[Failure, ...]
-
-
-def bind(file: SweepFile, plan: Plan, created: str, directory: HeldSweep, failures: list[Failure]) -> Outcome:
-    """Write the book, summary and picture of every condition, and last of all the summary of the sweep."""
-    failed, results = {failure.key: failure for failure in failures}, directory.results
+    `failed`: units without a result, by their keys; those whose results cannot be read are added.
+    """
+    results = directory.results
     for condition in plan.conditions:
-        results.remove(within(condition, SUMMARY))
-    books = [bound(file, plan, condition, created, directory, failed) for condition in plan.conditions]
+        results.remove(condition.file(SUMMARY))
+    books = tuple(bound(file, plan, condition, created, directory, failed) for condition in plan.conditions)
     results.remove_others()
     for book in books:
-        results.write(within(book.condition, SUMMARY), book_summary(book, created))
-    summary = sweep_summary(books, created)
-    results.finish(canonical_json(summary) + b"\n")
-    return Outcome(summary, tuple(failure for book in books for failure in book.failures))
-
-
-def within(condition: Condition, name: str) -> str:
-    """The name of a file of a condition in the directory of the sweep."""
-    return f"{condition.name}/{name}" if condition.name else name
+        if book.condition.name:
+            results.write(book.condition.file(SUMMARY), book_summary(book, created, results))
+    return books
 
 
 def bound(
@@ -61,17 +54,26 @@ def bound(
             figures.failures.append(failed[unit.order.key])
             continue
         stamped = [stamp(row.table, condition, created) for row in result.rows]
-        figures.cases += [case_of(result.label, row, table) for row, table in zip(result.rows, stamped, strict=True)]
-        figures.gaps += [(result.label, gap) for gap in result.gaps]
+        figures.cases += [
+            case_row(condition, result.label, row, table) for row, table in zip(result.rows, stamped, strict=True)
+        ]
+        figures.gaps += [gap_row(condition, result.label, gap) for gap in result.gaps]
         figures.failures += [
-            Failure(result.key, result.condition, result.label, each.reason, each.target_m_s) for each in result.refused
+            Failure(condition.name, each.label, each.reason, each.target_m_s) for each in result.refused
         ]
         tables += stamped
     if tables:
-        write_condition(file, condition, tables, figures, directory.results)
+        write_condition(file, condition, tables, directory.results)
         figures.shadowed, figures.no_code = choice_of(tables)
-        figures.files |= directory.results.written_below(condition.name)
     return figures
+
+
+def book_summary(book: BookFigures, created: str, results: ResultsDirectory) -> bytes:
+    """The summary of one condition, in the form of that of the whole sweep: its folder may be taken elsewhere."""
+    told = Told(
+        SWEEP, head_of(book.condition.config), created, Verdict(tuple(limits_of([book]))), tuple(chapters([book])), ()
+    )
+    return summary_of(told, results.written_below(book.condition.name))
 
 
 def found(unit: Unit, directory: SweepDirectory, failed: dict[str, Failure]) -> UnitResult | None:
@@ -83,7 +85,7 @@ def found(unit: Unit, directory: SweepDirectory, failed: dict[str, Failure]) -> 
         return directory.stored(order.key)
     except (FileNotFoundError, TableError) as fault:
         reason = f"its result was lost or damaged while the sweep ran ({fault}); run the sweep again"
-        failed[order.key] = Failure(order.key, order.condition, order.label, reason)
+        failed[order.key] = Failure(order.condition, order.label, reason)
         return None
 
 
@@ -96,22 +98,14 @@ def stamp(table: ControllerTable, condition: Condition, created: str) -> Control
 
 
 def write_condition(
-    file: SweepFile, condition: Condition, tables: list[ControllerTable], figures: BookFigures,
-    results: ResultsDirectory,
-) -> None:  # fmt: skip
-    """Book, configuration, tables and picture of one condition."""
-    with results.writing(within(condition, BOOK)) as part:
+    file: SweepFile, condition: Condition, tables: list[ControllerTable], results: ResultsDirectory
+) -> None:
+    """Book, configuration and tables of one condition."""
+    with results.writing(condition.file(BOOK)) as part:
         write_book(tables, part)
     results.write_all(configuration_files(condition))
     if file.settings.tables:
-        results.write_all({within(condition, f"tables/{table.id}.json"): to_json(table) for table in tables})
-    if condition.config.output.plots:
-        from synth.frame.picture.figure_file import figure_files
-        from synth.retarder.sweep.heat_map import heat_map
-
-        refused = {(each.label, each.target_m_s) for each in figures.failures if each.target_m_s is not None}
-        drawn = figure_files(heat_map(figures.cases, refused, condition), PICTURE, within(condition, "plots"))
-        results.write_all(drawn)
+        results.write_all({condition.file(f"tables/{table.id}.json"): to_json(table) for table in tables})
 
 
 def configuration_files(condition: Condition) -> dict[str, bytes]:
@@ -119,7 +113,7 @@ def configuration_files(condition: Condition) -> dict[str, bytes]:
     own = condition.library.own
     tree = {**condition.tree, "library": [f"{TYPES}/"]} if own else condition.tree
     texts = {f"{TYPES}/{each.kind.folder}/{each.name}.toml": each.text for each in own} | {CONFIG: toml_text(tree)}
-    return {within(condition, name): text.encode("utf-8") for name, text in texts.items()}
+    return {condition.file(name): text.encode("utf-8") for name, text in texts.items()}
 
 
 def choice_of(tables: list[ControllerTable]) -> tuple[int, str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -14,18 +13,20 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from synth.frame.picture.house_style import GREY, INK, dress, mark_plainly, new_figure, place
-from synth.retarder.sweep.sweep_file import Condition
+from synth.retarder.sweep.book_figures import BookFigures
 
 COLOURS = "viridis"
 MOST_LABELS = 24
 HALF_CELL = 0.5
 
 
-def heat_map(cases: list[dict[str, Any]], refused: set[tuple[str, float]], condition: Condition) -> Figure:
+def heat_map(book: BookFigures) -> Figure:
     """One cell a table, wide to half the way to its neighbours; a dot where it misses a limit of [acceptance].
 
-    `refused`: class and target in m/s of tables that there are not; their cells are hatched.
+    The cells of targets that have no table are hatched.
     """
+    cases, condition = book.cases, book.condition
+    refused = {(each.label, each.target_m_s) for each in book.failures if each.target_m_s is not None}
     labels = list(dict.fromkeys(case["label"] for case in cases))
     height = min(12.0, max(2.0, 0.24 * len(labels)))
     subject = condition.name or condition.config.title

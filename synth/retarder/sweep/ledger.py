@@ -20,7 +20,7 @@ from typing import Any
 from tuning_tables.atomic_file import faults_naming
 from tuning_tables.canonical import CHECKSUM_KEY, canonical_json, document_checksum
 
-PLAN, STARTED, DONE, FAILED, FOUND_DAMAGED, ENDED = "plan", "started", "done", "failed", "damaged", "ended"
+PLAN, STARTED, DONE, FAILED, ENDED = "plan", "started", "done", "failed", "ended"
 
 Event = dict[str, Any]
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from synth.frame.held_directory import is_held
 from synth.frame.input_error import InputError
+from synth.frame.results_directory import SUMMARY
 from synth.retarder.sweep.ledger import DONE, FAILED, STARTED, Event, Ledger
 from synth.retarder.sweep.sweep_directory import SweepDirectory
 
@@ -55,7 +56,7 @@ def status_of(path: Path) -> Status:
         path=path,
         title=str(plan["title"]),
         running=running,
-        complete=directory.summary.exists() and not running,
+        complete=(path / SUMMARY).exists() and not running,
         units=len(names),
         done=len(done),
         failed=len(without_result(directory, ledger, plan)),

@@ -2,43 +2,31 @@
 
 from __future__ import annotations
 
-import re
+import json
+from collections.abc import Iterator
 from copy import deepcopy
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 
 from pydantic import ValidationError
-from pydantic_core import ErrorDetails
 
-from plant_models.library import BUILT_IN, Library
-from plant_models.library.near_miss import near_miss
+from plant_models.library import BUILT_IN, Library, SourcedValue
 from synth.frame.input_error import InputError
-from synth.frame.settings.fault_words import ALLOWED, shown
-from synth.frame.settings.file_fault import key_path
-from synth.frame.settings.section import setting_limits
-from synth.frame.settings.toml_file import Tree, read_text, toml_tree
+from synth.frame.settings.file_fault import faults_in
+from synth.frame.settings.numbers import numbers_of
+from synth.frame.settings.toml_file import Tree, toml_tree
 from synth.retarder.configuration.config_file import valid_settings
 from synth.retarder.configuration.own_types import with_own_types
-from synth.retarder.configuration.plant_settings import DEFAULT_CUTS, CutSettings
+from synth.retarder.configuration.plant_settings import DEFAULT_CUTS
 from synth.retarder.configuration.resolved_config import ResolvedConfig, resolve
-from synth.retarder.configuration.settings import Settings
-from synth.retarder.sweep.sweep_settings import CONDITION_SECTIONS, SweepSettings, SweptCuts
-from tuning_tables.excerpt import excerpt
-
-AS_CONFIGURED = ""
-"""Name of the only condition where the file lists none."""
-
-NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9._-]{0,29}[A-Za-z0-9_-])?")
-
-TAKEN = re.compile(r"sweep|(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?:\..*)?", re.IGNORECASE)
-"""Names of no condition: the folder of the sweep's own files, and the devices of Windows and its shares."""
+from synth.retarder.sweep.sweep_settings import SweepSettings, SweepTable
+from tuning_tables.canonical import canonical_json
 
 
 @dataclass(frozen=True)
 class Condition:
     """A condition: `tree` is its whole configuration as TOML would give it, `config` the same resolved.
 
-    The tree names types, of which `library` has the user's own.
+    `name`: '' for the only one where the file lists none. The tree names types, of which `library` has the user's own.
     """
 
     name: str
@@ -46,51 +34,67 @@ class Condition:
     config: ResolvedConfig
     library: Library = BUILT_IN
 
+    def said(self, sentence: str) -> str:
+        """`sentence`, and before it which condition it is about."""
+        return f"{self.name}: {sentence}" if self.name else sentence
+
+    def file(self, name: str) -> str:
+        """The name of a file of its own in the directory of the sweep."""
+        return f"{self.name}/{name}" if self.name else name
+
 
 @dataclass(frozen=True)
 class SweepFile:
-    """What a file asks for."""
+    """What a file asks for; `base`: the configuration that conditions differ from."""
 
     settings: SweepSettings
+    base: ResolvedConfig
     conditions: tuple[Condition, ...]
 
+    @property
+    def canonical_json(self) -> str:
+        """That of the configuration, and of all of them by name where there are conditions."""
+        if not self.settings.condition:
+            return self.base.canonical_json()
+        found = {each.name: json.loads(each.config.canonical_json()) for each in self.conditions}
+        return canonical_json({"conditions": found}).decode()
 
-def load_sweep(path: Path) -> SweepFile:
-    """The sweep in the file `path`; `InputError` on any fault."""
-    return parse_sweep(read_text(path), str(path))
+    def parameters(self) -> Iterator[SourcedValue]:
+        """Every number: of the configuration, of [sweep], and what is other under a condition."""
+        yield from self.base.parameters
+        yield from numbers_of(self.settings, "sweep")
+        known = set(self.base.parameters)
+        for condition in self.conditions:
+            others = (each for each in condition.config.parameters if each not in known)
+            yield from (replace(each, key=condition.said(each.key)) for each in others)
 
 
 def parse_sweep(text: str, file: str) -> SweepFile:
     """The sweep written in `text`; `file` is what messages call it."""
     tree, library = with_own_types(toml_tree(text, file), file)
-    raw = tree.pop("sweep", {})
-    if not isinstance(raw, dict):
-        raise InputError(f"{file}: sweep is {shown(raw)}; it must be a table, [sweep]")
     try:
-        settings = SweepSettings.model_validate(raw)
+        settings = SweepTable.model_validate({"sweep": tree.pop("sweep", {})}).sweep
     except ValidationError as error:
-        raise InputError(*(f"{file}: {sentence}" for sentence in sweep_faults(error))) from None
-    base = valid_settings(tree, file)
-    names = condition_names(settings, file)
-    swept = swept_tree(tree, base, settings)
-    resolve(valid_settings(swept, file), file, library)  # a fault of the file itself is told before one of a condition
+        raise InputError(*(f"{file}: {sentence}" for sentence in faults_in(error, SweepTable))) from None
+    valid_settings(tree, file)
+    swept = swept_tree(tree, settings)
+    base = resolve(valid_settings(swept, file), file, library)
+    if base.regulator.estimator and settings.interpolation_loss_m_s is not None:
+        raise InputError(
+            f"{file}: regulator.estimator is true and sweep.interpolation_loss_m_s is "
+            f"{settings.interpolation_loss_m_s:g}, but lines for the estimated speed have no exact prediction to "
+            "measure that loss by; leave out one of the two"
+        )
     conditions = []
-    for place, name in enumerate(names):
-        changed = {key: value for key, value in settings.condition[place].items() if key != "name"} if name else {}
-        where = f'{file}: in sweep.condition[{place}], "{name}"' if name else file
-        merged = overlaid(swept, changed)
+    for place, condition in enumerate(settings.condition):
+        where = f'{file}: in sweep.condition[{place}], "{condition.name}"'
+        merged = overlaid(swept, condition.changes())
         config = resolve(valid_settings(merged, where), where, library)
-        if config.regulator.estimator and settings.interpolation_loss_m_s is not None:
-            raise InputError(
-                f"{file}: regulator.estimator is true and sweep.interpolation_loss_m_s is "
-                f"{settings.interpolation_loss_m_s:g}, but lines for the estimated speed have no exact prediction to "
-                "measure that loss by; leave out one of the two"
-            )
-        conditions.append(Condition(name, merged, config, library))
-    return SweepFile(settings, tuple(conditions))
+        conditions.append(Condition(condition.name, merged, config, library))
+    return SweepFile(settings, base, tuple(conditions) or (Condition("", swept, base, library),))
 
 
-def swept_tree(tree: Tree, base: Settings, settings: SweepSettings) -> Tree:
+def swept_tree(tree: Tree, settings: SweepSettings) -> Tree:
     """`tree` with the classes, targets and passes of the sweep written into it."""
     swept = deepcopy(tree)
     cuts = [cut for each in settings.cut for cut in each.cuts()] or tree.get("cut") or default_cuts()
@@ -106,36 +110,6 @@ def default_cuts() -> list[Tree]:
     return [cut.model_dump(exclude_defaults=True) for cut in DEFAULT_CUTS]
 
 
-def condition_names(settings: SweepSettings, file: str) -> list[str]:
-    """The names of the conditions, which must be file names and differ also where case does not count."""
-    if not settings.condition:
-        return [AS_CONFIGURED]
-    names: list[str] = []
-    for place, condition in enumerate(settings.condition):
-        key = f"sweep.condition[{place}]"
-        name = condition.get("name")
-        if not isinstance(name, str) or not NAME.fullmatch(name):
-            raise InputError(
-                f"{file}: {key}.name is {shown(name)}; it must be made of at most 31 letters, digits, dots, hyphens "
-                "and underscores, with no dot at the end"
-            )
-        if TAKEN.fullmatch(name):
-            raise InputError(
-                f"{file}: {key}.name is {name!r}, which is a folder of the sweep itself or a device of Windows; "
-                "give it another name"
-            )
-        if name.lower() in (other.lower() for other in names):
-            raise InputError(f"{file}: {key}.name is {name!r}, which another condition has; give it another name")
-        for section in condition:
-            if section not in ("name", *CONDITION_SECTIONS):
-                raise InputError(
-                    f"{file}: {key}.{excerpt(section)} cannot be changed by a condition; "
-                    f"{near_miss(section, ('name', *CONDITION_SECTIONS))}"
-                )
-        names.append(name)
-    return names
-
-
 def overlaid(tree: Tree, changes: Tree) -> Tree:
     """`tree` with the values of `changes` in their places; tables are merged, all else is replaced."""
     merged = deepcopy(tree)
@@ -143,30 +117,3 @@ def overlaid(tree: Tree, changes: Tree) -> Tree:
         below = merged.get(key)
         merged[key] = overlaid(below, value) if isinstance(below, dict) and isinstance(value, dict) else deepcopy(value)
     return merged
-
-
-def sweep_faults(error: ValidationError) -> list[str]:
-    """Every fault within [sweep] as a sentence; mistyped keys come before the others."""
-    found = error.errors(include_url=False)
-    return [fault_sentence(fault) for fault in sorted(found, key=lambda fault: fault["type"] != "extra_forbidden")]
-
-
-def fault_sentence(fault: ErrorDetails) -> str:
-    """One pydantic error as 'key is value; what is allowed'."""
-    location, kind, value = fault["loc"], fault["type"], fault["input"]
-    section: type[SweepSettings] | type[SweptCuts] = SweptCuts if location[0] == "cut" else SweepSettings
-    key = key_path(("sweep", *location))
-    if kind == "extra_forbidden":
-        elsewhere = str(location[-1]) in CutSettings.model_fields and section is SweptCuts
-        hint = "did you mean mass_per_car_t?" if elsewhere else near_miss(str(location[-1]), section.model_fields)
-        return f"{key} = {shown(value)} is an unknown key; {hint}"
-    if kind == "missing":
-        return f"{key} is missing; add it to {key_path(('sweep', *location[:-1]))}"
-    if kind == "value_error":
-        return f"{key} is {shown(value)}; {fault['ctx']['error']}"
-    if kind in ("greater_than_equal", "less_than_equal"):
-        low, high = setting_limits(section.model_fields[str(location[-1])]) or (0.0, 0.0)
-        return f"{key} is {shown(value)}; it must be from {low:g} to {high:g}"
-    if location in (("cut",), ("condition",)):
-        return f"{key} is {shown(value)}; it must be a list of tables: write [[{key}]], not [{key}]"
-    return f"{key} is {shown(value)}; it must be {ALLOWED.get(kind, fault['msg'])}"

@@ -1,0 +1,38 @@
+"""The commands `retarder-synth sweep …`, their arguments and their help; what they do is in modules of their own.
+
+Annotations are not postponed here: typer would compile every one of them anew at each start.
+"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from synth.cli.listed import SWEEP
+from synth.frame.arguments import Json
+from synth.frame.command_line import add_listed, listed_group
+
+app = typer.Typer(
+    cls=listed_group(SWEEP), help="Make books over a grid of cut classes, targets and conditions; how far it is."
+)
+
+Swept = Annotated[Path, typer.Argument(metavar="DIR", help="The directory of a sweep.")]
+
+
+add_listed(app, SWEEP)
+
+
+@app.command()
+def status(path: Swept, as_json: Json = False) -> int:
+    """Tell how far a sweep is, while it runs or later."""
+    from synth.cli.sweep import status_command
+
+    return status_command(path, as_json)
+
+
+@app.command()
+def failed(path: Swept, as_json: Json = False) -> int:
+    """Tell which units of a sweep have failed, which targets have no table, and why."""
+    from synth.cli.sweep import failed_command
+
+    return failed_command(path, as_json)
