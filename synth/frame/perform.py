@@ -12,6 +12,7 @@ from synth.frame.command import Asked, Command, Head, O, P, R, S, Steps, Unfinis
 from synth.frame.creation_time import creation_time, require_date
 from synth.frame.exhibits import Chapter, Chart, File, Table
 from synth.frame.picture.picture import Picture, picture_files
+from synth.frame.printed_numbers import counted
 from synth.frame.results_directory import SUMMARY, ResultsDirectory, results_directory
 from synth.frame.terminal.interrupt import interruptible
 from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
@@ -111,5 +112,5 @@ def drawn(told: Told, studio: Studio, tell: Callable[[str], None]) -> dict[str, 
         for (heading, each), drawing in zip(charts, drawings, strict=True)
     }
     if found:
-        tell(f"{len(found)} pictures drawn")
+        tell(f"{counted(len(found), 'picture')} drawn")
     return found

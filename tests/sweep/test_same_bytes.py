@@ -41,26 +41,19 @@ def test_worker_processes_give_the_bytes_of_this_process(
     assert contents(tmp_path / "out") == contents(serial)
 
 
-def test_tables_are_those_of_a_tune(command: Callable[..., Ran], serial: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("regulator", ["", MEASURED])
+def test_tables_are_those_of_a_tune(command: Callable[..., Ran], serial: Path, tmp_path: Path, regulator: str) -> None:
     # The same steps, but a tune solves each target beside other ones.
-    (tmp_path / "tune.toml").write_text(PLANT + TUNED, encoding="utf-8")
+    (tmp_path / "tune.toml").write_text(PLANT + regulator + TUNED, encoding="utf-8")
     code, _, said = command("tune", tmp_path / "tune.toml", "-o", tmp_path / "out", "--workers", "2")
     assert code in (0, 1), said
-    tuned, swept = (read_book(directory / "book.h5") for directory in (tmp_path / "out", serial))
+    if regulator:
+        (tmp_path / "sweep.toml").write_text(PLANT + regulator + SWEEP, encoding="utf-8")
+        assert run(tmp_path / "sweep.toml", tmp_path / "swept", LocalWorkers(2, answer)) == 0
+    tuned = read_book(tmp_path / "out" / "book.h5")
+    swept = read_book((tmp_path / "swept" if regulator else serial) / "book.h5")
     assert len(tuned) == 6
-    assert any(table.estimator is not None for table in tuned)
-    assert all(one == other for one, other in zip(swept, tuned, strict=True))
-
-
-def test_tables_for_the_measured_speed_are_those_of_a_tune(command: Callable[..., Ran], tmp_path: Path) -> None:
-    (tmp_path / "tune.toml").write_text(PLANT + MEASURED + TUNED, encoding="utf-8")
-    (tmp_path / "sweep.toml").write_text(PLANT + MEASURED + SWEEP, encoding="utf-8")
-    code, _, said = command("tune", tmp_path / "tune.toml", "-o", tmp_path / "out", "--workers", "2")
-    assert code in (0, 1), said
-    assert run(tmp_path / "sweep.toml", tmp_path / "swept", LocalWorkers(2, answer)) == 0
-    tuned, swept = (read_book(tmp_path / name / "book.h5") for name in ("out", "swept"))
-    assert len(tuned) == 6
-    assert all(table.estimator is None for table in tuned)
+    assert all((table.estimator is None) == bool(regulator) for table in tuned)
     assert all(one == other for one, other in zip(swept, tuned, strict=True))
 
 

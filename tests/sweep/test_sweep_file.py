@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import tomllib
@@ -141,6 +142,16 @@ def test_a_condition_is_an_ordinary_configuration() -> None:
         text = toml_text(condition.tree)
         assert tomllib.loads(text) == condition.tree
         assert parse_config(text, "x").sha256 == condition.config.sha256
+
+
+def test_what_init_prints_is_the_default_and_its_examples_are_allowed(command: Callable[..., Ran]) -> None:
+    text = command("init", "--sweep")[1]
+    assert parse_sweep(text, "x") == parse_sweep("", "x")
+    examples = re.sub(r"(?m)^# (?=\[\[|[a-z_]+ = )", "", text)
+    swept = parse_sweep(MEASURED + examples, "x")
+    assert [each.name for each in swept.conditions] == ["dry", "wet"]
+    assert swept.settings.interpolation_loss_m_s == 0.001
+    assert len(swept.base.cuts) == 3
 
 
 LEAVES = st.one_of(st.booleans(), st.integers(-(2**53), 2**53), st.floats(allow_nan=False), st.text())

@@ -29,13 +29,23 @@ def modules_after(*arguments: str) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["tune", "--help"], ["aim", "--help"], ["hump", "simulate", "--help"], ["--version"]]
+    "arguments",
+    [
+        ["--help"],
+        ["tune", "--help"],
+        ["aim", "--help"],
+        ["hump", "simulate", "--help"],
+        ["sweep", "run", "--help"],
+        ["--version"],
+    ],
 )
 def test_help_imports_nothing_numeric(arguments: list[str]) -> None:
     assert modules_after(*arguments).isdisjoint(HEAVY | {"numpy"})
 
 
-@pytest.mark.parametrize("arguments", [["init"], ["init", "--aim"], ["init", "--hump"], ["init", "--sensors"]])
+@pytest.mark.parametrize(
+    "arguments", [["init"], ["init", "--aim"], ["init", "--hump"], ["init", "--sensors"], ["init", "--sweep"]]
+)
 def test_init_needs_no_solver(arguments: list[str]) -> None:
     assert modules_after(*arguments).isdisjoint(HEAVY)
 
