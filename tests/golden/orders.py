@@ -60,6 +60,7 @@ KINDS = (
 )
 BOOK, PARK = "park/book.h5", "--config park.toml"
 LOG = "validated/log.h5 --config park.toml"
+PASSAGES = "passages/tables/gondola-4-22t-to-2-m-s.json"
 
 ORDERS: tuple[Order, ...] = (
     Order("init"),
@@ -85,9 +86,9 @@ ORDERS: tuple[Order, ...] = (
     Order("sweep run sweep.toml --workers 1", "swept"),
     Order("sweep status swept"),
     Order("sensors tune sensors.toml --workers 1", "passages"),
-    Order("inspect passages/book.h5"),
-    Order("export passages/book.h5 --format c", "export-passages-c"),
-    Order("export passages/book.h5 --format st", "export-passages-st"),
+    Order(f"inspect {PASSAGES}"),
+    Order(f"export {PASSAGES} --format c", "export-passages-c"),
+    Order(f"export {PASSAGES} --format st", "export-passages-st"),
     Order("sensors plan dumper.toml --sensors 4-5 --workers 1", "planned"),
     Order("aim aim.toml", "aimed"),
     Order("hump check medium"),
