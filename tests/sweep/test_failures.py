@@ -94,10 +94,10 @@ def test_a_target_without_a_table_loses_none_but_itself(command: Callable[..., R
     assert "complete; 2 of 2 units done, 0 failed, targets without a table: 1" in status
     summary = json.loads((tmp_path / "some" / "summary.json").read_text(encoding="utf-8"))
     assert [(each["label"], each["target_m_s"]) for each in summary["tables"]["failed"]] == [("gondola-4-22t", 3.5)]
-    book = BookFigures(parse_sweep((tmp_path / "some.toml").read_text(encoding="utf-8"), "x").conditions[0])
-    book.cases += [{**case, "rms_m_s": Interval(**case["rms_m_s"])} for case in summary["tables"]["cases"]]
-    book.failures.append(Failure("", "gondola-4-22t", "it is too coarse", 3.5))
-    axes = heat_map(book).axes[0]
+    (condition,) = parse_sweep((tmp_path / "some.toml").read_text(encoding="utf-8"), "x").conditions
+    cases = tuple({**case, "rms_m_s": Interval(**case["rms_m_s"])} for case in summary["tables"]["cases"])
+    failures = (Failure("", "gondola-4-22t", "it is too coarse", 3.5),)
+    axes = heat_map(BookFigures(condition, cases, (), failures)).axes[0]
     tables, empty = axes.collections[:2]
     assert (len(tables.get_paths()), len(empty.get_paths())) == (7, 1)
     assert axes.get_title(loc="left").endswith("hatched: no table")

@@ -6,6 +6,7 @@ from dataclasses import replace
 from importlib.metadata import version
 
 from synth.frame.command import Verdict
+from synth.frame.exhibits import Row
 from synth.frame.results_directory import SUMMARY, ResultsDirectory
 from synth.frame.settings.toml_text import toml_text
 from synth.frame.summary import summary_of
@@ -47,25 +48,26 @@ def bound(
     file: SweepFile, plan: Plan, condition: Condition, created: str, directory: HeldSweep, failed: dict[str, Failure]
 ) -> BookFigures:
     """The figures of one condition, its files written but for the summary; no file where no unit has a result."""
-    tables, figures = [], BookFigures(condition)
+    tables: list[ControllerTable] = []
+    cases: list[Row] = []
+    gaps: list[Row] = []
+    failures: list[Failure] = []
     for unit in plan.of(condition):
         result = found(unit, directory, failed)
         if result is None:
-            figures.failures.append(failed[unit.order.key])
+            failures.append(failed[unit.order.key])
             continue
         stamped = [stamp(row.table, condition, created) for row in result.rows]
-        figures.cases += [
+        cases += [
             case_row(condition, result.label, row, table) for row, table in zip(result.rows, stamped, strict=True)
         ]
-        figures.gaps += [gap_row(condition, result.label, gap) for gap in result.gaps]
-        figures.failures += [
-            Failure(condition.name, each.label, each.reason, each.target_m_s) for each in result.refused
-        ]
+        gaps += [gap_row(condition, result.label, gap) for gap in result.gaps]
+        failures += [Failure(condition.name, each.label, each.reason, each.target_m_s) for each in result.refused]
         tables += stamped
     if tables:
         write_condition(file, condition, tables, directory.results)
-        figures.shadowed, figures.no_code = choice_of(tables)
-    return figures
+    choice = choice_of(tables) if tables else (0, "")
+    return BookFigures(condition, tuple(cases), tuple(gaps), tuple(failures), *choice)
 
 
 def book_summary(book: BookFigures, created: str, results: ResultsDirectory) -> bytes:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 
 from synth.frame.exhibits import Row
 from synth.retarder.exit_figures import table_row
@@ -29,18 +29,18 @@ class Failure:
         return f"{self.condition}/{self.label}".lstrip("/") + target
 
 
-@dataclass
+@dataclass(frozen=True)
 class BookFigures:
-    """What is collected while the book of a condition is bound.
+    """What is known of the book of a condition.
 
     `cases`: a row of figures a table; `gaps`: a row for each gap between two targets that was measured; `shadowed`:
     tables that no choice by category and axles can reach; `no_code`: why the book makes no controller code, if so.
     """
 
     condition: Condition
-    cases: list[Row] = field(default_factory=list)
-    gaps: list[Row] = field(default_factory=list)
-    failures: list[Failure] = field(default_factory=list)
+    cases: tuple[Row, ...] = ()
+    gaps: tuple[Row, ...] = ()
+    failures: tuple[Failure, ...] = ()
     shadowed: int = 0
     no_code: str = ""
 
