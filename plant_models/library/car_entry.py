@@ -49,7 +49,7 @@ class CarEntry:
 
 def car_from(file: TypeFile) -> CarEntry:
     """The entry written in `file`; `TypeFileError` names file and key."""
-    with telling(file.place, {f"car {file.name}: ": ""}):
+    with telling(file.place, file.text, {f"car {file.name}: ": ""}):
         tree = parse_toml(file.text)
         title = take_string(tree, "title")
         table = sourced_table(tree, schema_of(tree), file.origin)

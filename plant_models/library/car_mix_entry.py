@@ -58,7 +58,7 @@ def load_car_mix(name: str, library: Library = BUILT_IN) -> CarMixEntry:
 
 def car_mix_from(file: TypeFile, library: Library) -> CarMixEntry:
     """The entry written in `file`, with the cars of `library`; `TypeFileError` names file and key."""
-    with telling(file.place, {"car mix: ": ""}):
+    with telling(file.place, file.text, {"car mix: ": ""}):
         tree = parse_toml(file.text)
         title, notes = take_string(tree, "title"), take_strings(tree, "notes")
         names = car_names_in(tree)

@@ -3,12 +3,13 @@
     brake_delay_s = { value = 0.10, range = [0.05, 0.20], source = "engineering judgement", confidence = "L" }
 
 A *form* turns the raw TOML value into a `Value` or returns None if it is of the wrong type. The functions here raise
-`PlantError` that names the key; `telling` puts the file before it.
+`PlantError` that names the key, or `Faults` of several; `telling` puts file and line before each.
 """
 
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -18,6 +19,7 @@ from typing import Any, Final
 from plant_models.errors import PlantError, require
 from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import CONFIDENCES, SourcedTable, SourcedValue, Value
+from plant_models.library.toml_lines import places_of
 from plant_models.library.type_file import TypeFileError
 
 Form = Callable[[object], Value | None]
@@ -34,18 +36,49 @@ class Quantity:
     form: Form
 
 
-@contextmanager
-def telling(place: str, keys: Mapping[str, str] | None = None) -> Iterator[None]:
-    """Within, a `PlantError` becomes a `TypeFileError` that begins with the file `place`.
+KEY: Final = re.compile(r"(?:unknown key |key )?([\w.-]+)")
+"""The key that a sentence is about."""
 
-    `keys`: how the plant's own messages begin, and the key of the file that this means.
+
+class Faults(PlantError):
+    """All that is at fault in the numbers of a file, a sentence each."""
+
+    def __init__(self, *sentences: str) -> None:
+        super().__init__("; ".join(sentences))
+        self.sentences = sentences
+
+
+@contextmanager
+def telling(place: str, text: str = "", keys: Mapping[str, str] | None = None, table: str = "") -> Iterator[None]:
+    """Within, a `PlantError` becomes a `TypeFileError` of the file `place`, with the line of its `text` at fault.
+
+    `keys`: how the plant's own messages begin, and the key of the file that this means. `table`: of the file, in which
+    the keys stand; '' for the whole.
     """
     try:
         yield
     except TypeFileError:
         raise
     except PlantError as error:
-        raise TypeFileError(f"{place}: {keyed(str(error), keys or {})}") from None
+        sentences = error.sentences if isinstance(error, Faults) else (str(error),)
+        told = (keyed(sentence, keys or {}) for sentence in sentences)
+        raise TypeFileError(
+            *(f"{place}{line_told(text, table, each)}: {f'{table}: ' if table else ''}{each}" for each in told)
+        ) from None
+
+
+def line_told(text: str, table: str, sentence: str) -> str:
+    """', line 12' where `sentence` begins with a key that `text` has, or with one that is missing in a table of it."""
+    about = KEY.match(sentence)
+    try:
+        tomllib.loads(text)
+    except (ValueError, RecursionError):  # the sentence is about that
+        return ""
+    lines = places_of(text)
+    key = (*filter(None, [table]), *(about[1].rstrip(".").split(".") if about else ()))
+    while key and key not in lines:
+        key = key[:-1]
+    return f", line {lines[key]}" if key else ""
 
 
 def keyed(sentence: str, keys: Mapping[str, str]) -> str:
@@ -123,24 +156,47 @@ def sourced_table(tree: Mapping[str, Any], schema: Mapping[str, Quantity], origi
     """All of `schema` and nothing else out of the nested `tree`, in the order of the schema.
 
     `origin`: the user's file, told behind the source of each number; '' for a file that comes with the program.
-    Raises `PlantError` with the key: unknown or missing key, wrong type, value outside its own range.
+    Raises `Faults`, each with its key: unknown or missing key, wrong type, value outside its own range.
     """
     cells = dict(walk(tree, "", schema))
-    for key in schema:
-        require(key in cells, f"key {key} is missing")
-    return SourcedTable(tuple(sourced_value(cells[key], key, q, origin) for key, q in schema.items()))
+    faults = list(unknown_keys(tree, "", schema))
+    if not faults:  # else a missing key may be one of these, mistyped
+        faults += (f"key {key} is missing" for key in schema if key not in cells)
+    values = []
+    for key in filter(cells.__contains__, schema):
+        try:
+            values.append(sourced_value(cells[key], key, schema[key], origin))
+        except PlantError as fault:
+            faults.append(str(fault))
+    if faults:
+        raise Faults(*faults)
+    return SourcedTable(tuple(values))
+
+
+def unknown_keys(tree: Mapping[str, Any], prefix: str, schema: Mapping[str, Quantity]) -> Iterator[str]:
+    """A sentence for each key below `tree` that the schema has not."""
+    for name, item in tree.items():
+        key = prefix + name
+        if key not in schema:
+            if isinstance(item, dict) and holds(schema, key):
+                yield from unknown_keys(item, key + ".", schema)
+            else:
+                yield f"unknown key {shown_key(key)}; {near_miss(key, schema)}"
+
+
+def holds(schema: Mapping[str, Quantity], table: str) -> bool:
+    """Whether `table` is one whose keys the schema has."""
+    return any(known.startswith(table + ".") for known in schema)
 
 
 def walk(tree: Mapping[str, Any], prefix: str, schema: Mapping[str, Quantity]) -> Iterator[tuple[str, Any]]:
-    """(dotted key, cell) of every cell below `tree`."""
+    """(dotted key, cell) of every cell below `tree` that the schema has."""
     for name, item in tree.items():
         key = prefix + name
         if key in schema:
             yield key, item
-            continue
-        inner = isinstance(item, dict) and any(known.startswith(key + ".") for known in schema)
-        require(inner, f"unknown key {shown_key(key)}; {near_miss(key, schema)}")
-        yield from walk(item, key + ".", schema)
+        elif isinstance(item, dict) and holds(schema, key):
+            yield from walk(item, key + ".", schema)
 
 
 def sourced_value(cell: object, key: str, quantity: Quantity, origin: str = "") -> SourcedValue:

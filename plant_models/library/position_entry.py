@@ -142,7 +142,7 @@ class PositionFile:
 
 def position_file(file: TypeFile) -> PositionFile:
     """The content of `file`; `TypeFileError` names file and key."""
-    with telling(file.place, KEYS_OF_PLANT):
+    with telling(file.place, file.text, KEYS_OF_PLANT):
         tree = parse_toml(file.text)
         title, notes = take_string(tree, "title"), take_strings(tree, "notes")
         retarder, sensor = take_string(tree, "retarder"), take_string(tree, "sensor")
@@ -182,7 +182,7 @@ def position_with_types(
         of_type = library.file(RETARDERS, retarder or here.retarder)
         of_sensor = library.file(SENSORS, sensor or here.sensor)
     unit, radar = retarder_from(of_type), sensor_from(of_sensor)
-    with telling(here.file.place, KEYS_OF_PLANT):
+    with telling(here.file.place, here.file.text, KEYS_OF_PLANT):
         table = SourcedTable(tuple(composed(here.site, unit, radar.provenance)))
         called = name if unit.name == here.retarder else f"{name}-with-{unit.name}"
         entry = entry_of(called, here.title, (*unit.notes, *here.notes), unit.law, table)

@@ -95,7 +95,7 @@ class RetarderEntry:
 
 def retarder_from(file: TypeFile) -> RetarderEntry:
     """The entry written in `file`; `TypeFileError` names file and key."""
-    with telling(file.place, {"retarder: ": "", "force: ": FORCE, "pneumatics: ": PNEUMATICS}):
+    with telling(file.place, file.text, {"retarder: ": "", "force: ": FORCE, "pneumatics: ": PNEUMATICS}):
         tree = parse_toml(file.text)
         title, law = take_string(tree, "title"), take_string(tree, "law")
         notes = take_strings(tree, "notes")

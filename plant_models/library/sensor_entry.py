@@ -33,7 +33,7 @@ class SensorEntry:
 
 def sensor_from(file: TypeFile) -> SensorEntry:
     """The entry written in `file`; `TypeFileError` names file and key."""
-    with telling(file.place, {"sensor: ": ""}):
+    with telling(file.place, file.text, {"sensor: ": ""}):
         tree = parse_toml(file.text)
         title = take_string(tree, "title")
         table = sourced_table(tree, SENSOR_SCHEMA, file.origin)

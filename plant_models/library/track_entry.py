@@ -97,7 +97,7 @@ class TrackEntry:
 
 def track_from(file: TypeFile) -> TrackEntry:
     """The entry written in `file`; `TypeFileError` names file and key."""
-    with telling(file.place, KEYS_OF_PLANT):
+    with telling(file.place, file.text, KEYS_OF_PLANT):
         tree = parse_toml(file.text)
         title, notes, position = (
             take_string(tree, "title"),

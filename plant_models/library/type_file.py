@@ -16,7 +16,11 @@ DEVICE: Final = re.compile(r"(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?:\..*)?", re
 
 
 class TypeFileError(PlantError):
-    """A file of a library is at fault; the message is one sentence that begins with the file."""
+    """A file of a library is at fault; every one of the `sentences` begins with the file."""
+
+    def __init__(self, *sentences: str) -> None:
+        super().__init__("\n".join(sentences))
+        self.sentences = sentences
 
 
 @dataclass(frozen=True)

@@ -130,7 +130,7 @@ class WeightCategories:
 def categories_from(file: TypeFile) -> WeightCategories:
     """The categories written in `file`, one table each; `TypeFileError` names file and key."""
     members: list[WeightCategory] = []
-    with telling(file.place):
+    with telling(file.place, file.text):
         tree = parse_toml(file.text)
         title = take_string(tree, "title")
         of_stages = take_stages(tree)
@@ -141,7 +141,7 @@ def categories_from(file: TypeFile) -> WeightCategories:
                 "hyphens and underscores",
             )
             require(isinstance(below, dict), f"{latin} is {shown(below)}; it must be a table")
-            with telling(f"{file.place}: {latin}", {"rolling resistance: ": "rolling_resistance."}):
+            with telling(file.place, file.text, {"rolling resistance: ": "rolling_resistance."}, latin):
                 members.append(replace(category_of(latin, below, tuple(members), file.origin), of_stages=of_stages))
                 require_among(members[-1], of_stages)
         require(len(members) > 0, "it holds no category")

@@ -45,7 +45,7 @@ class WheelSensorEntry:
 
 def wheel_sensor_from(file: TypeFile) -> WheelSensorEntry:
     """The entry written in `file`; `TypeFileError` names file and key."""
-    with telling(file.place, {"sensors: ": ""}):
+    with telling(file.place, file.text, {"sensors: ": ""}):
         tree = parse_toml(file.text)
         title = take_string(tree, "title")
         entry = WheelSensorEntry(file.name, title, sourced_table(tree, WHEEL_SENSOR_SCHEMA, file.origin).values)

@@ -1,5 +1,7 @@
 """The library: it loads, says where each number is from, and refuses what is not as it should be."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ from plant_models.library import (
     YARD_CATEGORIES,
     Kind,
     TypeFile,
+    TypeFileError,
     WeightCategories,
     car_names,
     load_car,
@@ -132,7 +135,7 @@ def test_weight_categories_keep_their_numbers_wherever_they_stand() -> None:
 )
 def test_a_category_without_a_number_of_its_own_is_refused(old: str, new: str, message: str) -> None:
     assert CATEGORIES.count(old) == 1
-    with pytest.raises(PlantError, match=f"weight_categories.toml: {message}"):
+    with pytest.raises(PlantError, match=rf"weight_categories.toml, line \d+: {message}"):
         categories_in(CATEGORIES.replace(old, new))
 
 
@@ -206,7 +209,7 @@ def test_unknown_names_get_a_hint() -> None:
 )
 def test_damaged_retarder_file_is_refused_by_name_and_key(old: str, new: str, message: str) -> None:
     assert GOOD.count(old) >= 1
-    with pytest.raises(PlantError, match=r"retarders/bad.toml: .*" + message):
+    with pytest.raises(PlantError, match=r"retarders/bad.toml(, line \d+)?: .*" + message):
         retarder_from(bad(RETARDERS, GOOD.replace(old, new, 1)))
 
 
@@ -214,7 +217,7 @@ def test_damaged_car_and_category_files_are_refused() -> None:
     with pytest.raises(PlantError, match=r"cars/bad.toml: key title is missing"):
         car_from(bad(CARS, ""))
     swapped = CATEGORIES.replace("value = 28.0, range = [28.0, 28.0]", "value = 70.0, range = [0.0, 90.0]")
-    with pytest.raises(PlantError, match=r"weight_categories.toml: S: mass_above_t is 44"):
+    with pytest.raises(PlantError, match=r"weight_categories.toml, line \d+: S: mass_above_t is 44"):
         categories_in(swapped)
     with pytest.raises(PlantError, match="holds no category"):
         categories_in('title = "none"')
@@ -230,3 +233,17 @@ def test_with_values_marks_what_changed_and_only_that() -> None:
     assert entry.position.pneumatics.brake_delay_s == 0.10
     with pytest.raises(PlantError, match=r"slope_kn_per_kpa_per_t is 1.0; the pressing force law of knp-5-bunch"):
         entry.with_values({"retarder.force.slope_kn_per_kpa_per_t": 1.0})
+
+
+def test_all_faults_of_the_numbers_of_a_file_are_told_each_with_its_line() -> None:
+    late = GOOD.replace("brake_delay_s = { value = 0.1", "brake_delay_s = { value = 9.1")
+    text = late.replace("dead_band_kpa", "dead_band")
+    with pytest.raises(TypeFileError) as caught:
+        retarder_from(bad(RETARDERS, text))
+    unknown, outside = caught.value.sentences
+    lines = text.splitlines()
+    for sentence, key in ((unknown, "dead_band"), (outside, "brake_delay_s")):
+        told = re.match(r"retarders/bad\.toml, line (\d+): (?:unknown key )?pneumatics\.(\w+)", sentence)
+        assert told is not None, sentence
+        assert told[2] == key
+        assert lines[int(told[1]) - 1].startswith(key)

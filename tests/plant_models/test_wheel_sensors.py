@@ -40,7 +40,8 @@ def test_a_faulty_type_is_told_with_file_key_and_value(old: str, new: str, said:
     assert old in GOOD
     with pytest.raises(TypeFileError) as caught:
         wheel_sensor_from(TypeFile(WHEEL_SENSORS, "bad", GOOD.replace(old, new, 1), "wheel_sensors/bad.toml"))
-    assert str(caught.value).startswith(f"wheel_sensors/bad.toml: {said}")
+    line = 1 + next(number for number, each in enumerate(GOOD.splitlines()) if old in each)
+    assert str(caught.value).startswith(f"wheel_sensors/bad.toml, line {line}: {said}")
 
 
 def test_oil_takes_force_and_certainty_from_the_dumper_position() -> None:

@@ -117,7 +117,7 @@ def with_own_types(tree: Tree, file: str) -> tuple[Tree, Library]:
     try:
         return named, Library(tuple(collection.found.values()))
     except TypeFileError as error:
-        raise InputError(excerpt(str(error), 400)) from None
+        raise InputError(*(excerpt(sentence, 400) for sentence in error.sentences)) from None
 
 
 def folders_in(tree: Tree) -> list[str]:
@@ -193,7 +193,7 @@ def type_file(kind: Kind, path: Path, origin: str) -> TypeFile:
     try:
         return TypeFile(kind, path.name.removesuffix(SUFFIX), text, str(path), origin)
     except TypeFileError as error:
-        raise InputError(excerpt(str(error), 400)) from None
+        raise InputError(*(excerpt(sentence, 400) for sentence in error.sentences)) from None
 
 
 def is_path(reference: object) -> bool:

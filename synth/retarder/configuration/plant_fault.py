@@ -43,6 +43,6 @@ def in_file(
     try:
         yield
     except TypeFileError as error:
-        raise InputError(excerpt(str(error), LONGEST_SENTENCE)) from None
+        raise InputError(*(excerpt(sentence, LONGEST_SENTENCE) for sentence in error.sentences)) from None
     except PlantError as error:
         raise InputError(f"{file}: {excerpt(key_path(str(error)), LONGEST_SENTENCE)}") from None

@@ -112,7 +112,7 @@ def test_own_types_by_name_and_by_path(kind: Kind, text: str, tmp_path: Path) ->
     traced = [v.key for v in by_name.parameters if v.source.endswith(f"(my/{kind.folder}/mine.toml)")]
     assert len(traced) > 5
     file.write_text(file.read_text(encoding="utf-8").replace("value = ", "valve = ", 1), encoding="utf-8")
-    with pytest.raises(InputError, match=r"mine\.toml: unknown key"):
+    with pytest.raises(InputError, match=r"mine\.toml, line \d+: unknown key"):
         resolved(text.format(f"my/{kind.folder}/mine.toml"), place)
 
 
