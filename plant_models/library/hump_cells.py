@@ -24,6 +24,14 @@ class HumpFileFault(PlantError):
         self.place = place
 
 
+class HumpFileFaults(PlantError):
+    """All that is at fault in the rows of a hump file."""
+
+    def __init__(self, *faults: HumpFileFault) -> None:
+        super().__init__("; ".join(map(str, faults)))
+        self.faults = faults
+
+
 @dataclass(frozen=True)
 class Key:
     """What a key holds: its unit ('' where it is no number) and its form, which gives None for a wrong value."""

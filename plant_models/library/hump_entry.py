@@ -14,6 +14,7 @@ from plant_models.library.hump_cells import (
     Cell,
     Cells,
     HumpFileFault,
+    HumpFileFaults,
     Origin,
     TypeTables,
     checked_cells,
@@ -31,6 +32,9 @@ from plant_models.library.type_file import HUMPS, TypeFileError
 
 FORMAT: Final = "hump"
 VERSION: Final = 1
+MOST_TOLD: Final = 20
+"""Faults that are told at once; one mistake may stand in hundreds of rows."""
+
 TOP: Final = ("format", "version", "title", "notes", "source", "confidence", "type", "hump")
 
 
@@ -66,14 +70,17 @@ def hump_names(library: Library = BUILT_IN) -> tuple[str, ...]:
 def hump_from(tree: Mapping[str, Any], content: str, name: str, place: str) -> HumpEntry:
     """The hump that the TOML `content` of the file `place` describes, parsed into `tree`.
 
-    `TypeFileError` in one sentence: file, line, element, value, what is allowed.
+    `TypeFileError`, of its rows with a sentence for each fault: file, line, element, value, what is allowed.
     """
     try:
         return entry_from(dict(tree), name)
     except HumpFileFault as fault:
-        where = label(tree, fault.place)
-        line = line_of(content, fault.place)
-        raise TypeFileError(f"{place}, line {line}: {where}{fault}") from None
+        faults: tuple[HumpFileFault, ...] = (fault,)
+    except HumpFileFaults as found:
+        faults = found.faults
+    told = [f"{place}, line {line_of(content, each.place)}: {label(tree, each.place)}{each}" for each in faults]
+    more = len(told) - MOST_TOLD
+    raise TypeFileError(*told[:MOST_TOLD], *([f"{place}: {more} more faults"] if more > 0 else []))
 
 
 def entry_from(tree: dict[str, Any], name: str) -> HumpEntry:
@@ -122,36 +129,58 @@ def graph_from(hump: Mapping[str, Any], types: TypeTables, origin: Origin) -> tu
     leads = wholes(hump.get("leads"))
     if leads is None:
         raise HumpFileFault(("hump", "leads"), "leads must be a list of whole numbers, the signal at each crest")
-    found: list[Cells] = []
-    vertices: list[Vertex] = []
-    rows: dict[int, Place] = {}
-    for kind, schema in ELEMENTS.items():
+    rows: dict[int, Row] = {}
+    faults: dict[tuple[Place, str], HumpFileFault] = {}  # that of a type is told once, however many rows name it
+    for kind in ELEMENTS:
         listed = hump.get(kind, [])
         if not isinstance(listed, list):
             raise HumpFileFault(("hump", kind), f"{kind} is {shown(listed)}; it must be a list of tables")
-        for row, raw in enumerate(listed):
-            place: Place = ("hump", kind, row)
-            cells = checked_cells(raw, schema, place, origin, types)
+        for number, raw in enumerate(listed):
             try:
-                vertex = element_from(kind, cells)
-            except ElementFault as fault:
-                raise HumpFileFault(fault.place or place, str(fault)) from None
-            except HumpError as error:  # a number out of its group, whose sentence names the element itself
-                raise HumpFileFault((*place, "number"), unnamed(error, kind)) from None
-            if vertex.number in rows:
-                first = rows[vertex.number]
-                raise HumpFileFault(
-                    (*place, "number"),
-                    f"{kind}[{first[-1]}] has the number {vertex.number}, too; numbers must be unique",
-                )
-            rows[vertex.number] = place
-            found.append(cells)
-            vertices.append(vertex)
+                row = row_from(raw, ("hump", kind, number), origin, types)
+                require_new(row, rows)
+                rows[row.vertex.number] = row
+            except HumpFileFault as fault:
+                faults.setdefault((fault.place, str(fault)), fault)
+    if faults:
+        raise HumpFileFaults(*faults.values())
     try:
-        return HumpGraph(tuple(vertices), leads), found
+        return HumpGraph(tuple(row.vertex for row in rows.values()), leads), [row.cells for row in rows.values()]
     except HumpError as error:
-        at: Place = ("hump", "leads") if error.element is None else rows.get(error.element, ("hump", "leads"))
+        of_row = None if error.element is None else rows.get(error.element)
+        at = ("hump", "leads") if of_row is None else of_row.place
         raise HumpFileFault(at, unnamed(error, str(at[1]))) from None
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of the table `[hump]`: the element, its cells, and the place of the row in the file."""
+
+    vertex: Vertex
+    cells: Cells
+    place: Place
+
+
+def row_from(raw: object, place: Place, origin: Origin, types: TypeTables) -> Row:
+    """The row `raw` at `place`; `HumpFileFault`."""
+    kind = str(place[1])
+    cells = checked_cells(raw, ELEMENTS[kind], place, origin, types)
+    try:
+        return Row(element_from(kind, cells), cells, place)
+    except ElementFault as fault:
+        raise HumpFileFault(fault.place or place, str(fault)) from None
+    except HumpError as error:  # a number out of its group, whose sentence names the element itself
+        raise HumpFileFault((*place, "number"), unnamed(error, kind)) from None
+
+
+def require_new(row: Row, rows: Mapping[int, Row]) -> None:
+    """`HumpFileFault` where one of the `rows` before has the number of `row`."""
+    same = rows.get(row.vertex.number)
+    if same is not None:
+        raise HumpFileFault(
+            (*row.place, "number"),
+            f"{same.place[1]}[{same.place[2]}] has the number {row.vertex.number}, too; numbers must be unique",
+        )
 
 
 def unnamed(error: HumpError, kind: str) -> str:

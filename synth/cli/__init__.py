@@ -48,6 +48,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     # See `synth.solver.one_blas_thread`; before BLAS is loaded it starts no threads at all.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    # No other package changes what a file may say, and nobody waits while all that are installed are asked for plugins.
+    os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
     with standard_streams() as stderr:
         code = told(lambda: run(sys.argv[1:] if arguments is None else list(arguments)))
         flushed = told(flush_stdout)

@@ -342,20 +342,38 @@ def test_what_the_schema_refuses_the_reader_refuses_too() -> None:
     assert sound > 50
 
 
-def test_changed_trees_are_read_or_told_in_one_sentence() -> None:
+def test_changed_trees_are_read_or_told_in_sentences() -> None:
     told = 0
     for tree in changed_trees(2, 2000):
-        sentence = fault_of(tree)
-        if sentence:
-            told += 1
-            assert sentence.startswith("changed.toml, line 1: ")
+        sentences = faults_of(tree)
+        told += bool(sentences)
+        for sentence in sentences:
+            assert sentence.startswith("changed.toml, line 1: ") or sentence.endswith(" more faults")
             assert sentence.isprintable()
     assert 1000 < told < 2000
 
 
-def fault_of(tree: dict[str, Any]) -> str:
+def faults_of(tree: dict[str, Any]) -> tuple[str, ...]:
     try:
         hump_from(tree, "", "changed", "changed.toml")
     except TypeFileError as fault:
-        return str(fault)
-    return ""
+        return fault.sentences
+    return ()
+
+
+def test_all_rows_at_fault_are_told_each_with_its_line() -> None:
+    text = SMALL.replace("number = 401", "number = 999").replace("number = 201", "nummer = 201")
+    with pytest.raises(TypeFileError) as caught:
+        read(text)
+    lines = [int(sentence.split("line ")[1].split(":")[0]) for sentence in caught.value.sentences]
+    assert ["nummer" in text.splitlines()[line - 1] for line in lines] == [True, False]
+    assert text.splitlines()[lines[1] - 1] == "number = 999"
+
+
+def test_a_mistake_of_many_rows_does_not_fill_the_screen() -> None:
+    rows = "".join(f"[[hump.retarder]]\nnumber = {number}\n" for number in range(402, 442))
+    with pytest.raises(TypeFileError) as caught:
+        read(SMALL + rows)
+    *told, last = caught.value.sentences
+    assert len(told) == 20
+    assert last.endswith(": 20 more faults")
