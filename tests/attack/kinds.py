@@ -49,7 +49,7 @@ cut,cars,axles,mass_t,category,track,length_m,rolling,lead,hump_speed_m_s,marks
 3,3,12,150.0,S,8,41.76,good,0,1.5,
 """
 SWEPT: Final = """\
-retarder.name = "rnz-2m-park"
+position.name = "rnz-2m-park"
 [sweep]
 exit_speeds_m_s = { from = 1.5, to = 2.5, step = 0.5 }
 [[sweep.cut]]
