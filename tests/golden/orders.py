@@ -85,6 +85,7 @@ ORDERS: tuple[Order, ...] = (
     Order("sensitivity measured.toml --points 200 --passes 100", "sensitivity"),
     Order("sweep run sweep.toml --workers 1", "swept"),
     Order("sweep status swept"),
+    Order("sweep failed swept"),
     Order("sensors tune sensors.toml --workers 1", "passages"),
     Order(f"inspect {PASSAGES}"),
     Order(f"export {PASSAGES} --format c", "export-passages-c"),

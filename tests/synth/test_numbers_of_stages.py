@@ -99,7 +99,9 @@ def test_all_stages_are_used_from_tune_to_exports(
     """One heavy class; `verify` works out every export anew, and simulates with all stages."""
     pressures = [600.0 * k / stages for k in range(stages + 1)]
     swaps = (
-        ("[entry]", f"stage_pressures_kpa = {pressures}\n[entry]"), ("mass_t = 22", "mass_t = 66"), ("[1.5]", "[2.5]"),
+        ("[entry]", f"[retarder]\nstage_pressures_kpa = {pressures}\n[entry]"),
+        ("mass_t = 22", "mass_t = 66"),
+        ("[1.5]", "[2.5]"),
         ("csv = true", "csv = true\nplots = false\nreport = false"),
     )  # fmt: skip
     config, out = tmp_path / "c.toml", tmp_path / "out"

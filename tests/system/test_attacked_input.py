@@ -23,12 +23,16 @@ CONFIGURATIONS = {
     "some nested lists": (f"x = {'[' * 40}{']' * 40}\n", "nested too deeply"),
     "long car": (CLASS.replace("gondola-4", LONG), "cut[0].car is 'xxx"),
     "long category": (CLASS + f'category = "{LONG}"\n', "cut[0].category is"),
-    "long retarder": (CLASS.replace("rnz-2m-park", LONG), "retarder.name is 'xxx"),
+    "long retarder": (CLASS.replace("rnz-2m-park", LONG), "position.name is 'xxx"),
     "long key": (CLASS + f"{LONG} = 1\n", "unknown key"),
     "long stages": (
-        CLASS.replace("[entry]", f"stage_pressures_kpa = {[0.0] * 2000}\n[entry]"), "retarder.stage_pressures_kpa"
+        CLASS.replace("[entry]", f"[retarder]\nstage_pressures_kpa = {[0.0] * 2000}\n[entry]"),
+        "retarder.stage_pressures_kpa",
     ),
-    "long zones": (CLASS.replace("[entry]", f"zones_m = {[[1.0, 2.0]] * 2000}\n[entry]"), "retarder.zones_m"),
+    "long zones": (
+        CLASS.replace("[entry]", f"[retarder]\nzones_m = {[[1.0, 2.0]] * 2000}\n[entry]"),
+        "retarder.zones_m",
+    ),
     "huge stage": (CLASS + f"allowed_stage = {DIGITS}\n", "cut[0].allowed_stage is 99999"),
     "huge file": ("#" * (4 * 2**20 + 1), "more than 4194304 bytes"),
     "equal ids": (CLASS.replace("[1.5]", "[1.5, 1.5000001]"), "holds 1.5 and 1.5000001, but tables are named by six"),

@@ -17,9 +17,13 @@ CONFIGURATIONS = {
     "wrong type": (CLASS + "[friction]\ncommon_cv = '0.15'\n", "friction.common_cv is '0.15'; it must be a number"),
     "unknown key": (CLASS + "[friction]\ncomon_cv = 0.15\n", "did you mean common_cv?"),
     "negative mass": (changed(CLASS, ("mass_t = 22", "mass_t = -22")), "cut[0].mass_t is -22.0"),
-    "overlapping zones": (changed(CLASS, ("[entry]", "zones_m = [[0, 4], [3, 7]]\n[entry]")), "must not overlap"),
+    "overlapping zones": (
+        changed(CLASS, ("[entry]", "[retarder]\nzones_m = [[0, 4], [3, 7]]\n[entry]")),
+        "must not overlap",
+    ),
     "stage pressures not rising": (
-        changed(CLASS, ("[entry]", "stage_pressures_kpa = [0, 300, 150]\n[entry]")), "retarder.stage_pressures_kpa"
+        changed(CLASS, ("[entry]", "[retarder]\nstage_pressures_kpa = [0, 300, 150]\n[entry]")),
+        "retarder.stage_pressures_kpa",
     ),
     "target above entry speed": (changed(CLASS, ("[1.5]", "[4.5]")), "targets.exit_speeds_m_s holds 4.5"),
     "not a number": (
