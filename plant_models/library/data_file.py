@@ -19,7 +19,7 @@ from typing import Any, Final
 from plant_models.errors import PlantError, require
 from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import CONFIDENCES, SourcedTable, SourcedValue, Value
-from plant_models.library.toml_lines import places_of
+from plant_models.library.toml_lines import line_around
 from plant_models.library.type_file import TypeFileError
 
 Form = Callable[[object], Value | None]
@@ -74,11 +74,9 @@ def line_told(text: str, table: str, sentence: str) -> str:
         tomllib.loads(text)
     except (ValueError, RecursionError):  # the sentence is about that
         return ""
-    lines = places_of(text)
-    key = (*filter(None, [table]), *(about[1].rstrip(".").split(".") if about else ()))
-    while key and key not in lines:
-        key = key[:-1]
-    return f", line {lines[key]}" if key else ""
+    key = about[1].rstrip(".").split(".") if about else []
+    line = line_around(text, [table, *key] if table else key)
+    return "" if line is None else f", line {line}"
 
 
 def keyed(sentence: str, keys: Mapping[str, str]) -> str:

@@ -78,9 +78,11 @@ def hump_from(tree: Mapping[str, Any], content: str, name: str, place: str) -> H
         faults: tuple[HumpFileFault, ...] = (fault,)
     except HumpFileFaults as found:
         faults = found.faults
-    told = [f"{place}, line {line_of(content, each.place)}: {label(tree, each.place)}{each}" for each in faults]
-    more = len(told) - MOST_TOLD
-    raise TypeFileError(*told[:MOST_TOLD], *([f"{place}: {more} more faults"] if more > 0 else []))
+    told = [
+        f"{place}, line {line_of(content, each.place)}: {label(tree, each.place)}{each}" for each in faults[:MOST_TOLD]
+    ]
+    more = len(faults) - MOST_TOLD
+    raise TypeFileError(*told, *([f"{place}: {more} more faults"] if more > 0 else []))
 
 
 def entry_from(tree: dict[str, Any], name: str) -> HumpEntry:

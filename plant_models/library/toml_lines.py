@@ -25,11 +25,16 @@ WORD: Final = re.compile(r"[^ \t\r\n,\]}#]+(?: \d[^ \t\r\n,\]}#]*)?")
 
 def line_of(text: str, place: Sequence[str | int]) -> int:
     """The line (from 1) of what is at `place` in the valid TOML `text`, or of the innermost thing around it."""
+    return line_around(text, place) or 1
+
+
+def line_around(text: str, place: Sequence[str | int]) -> int | None:
+    """The same, None where nothing around it stands on a line."""
     lines = places_of(text)
     wanted = tuple(place)
     while wanted and wanted not in lines:
         wanted = wanted[:-1]
-    return lines.get(wanted, 1)
+    return lines.get(wanted)
 
 
 def places_of(text: str) -> Mapping[Place, int]:

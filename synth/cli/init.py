@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Final
@@ -61,10 +63,9 @@ def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -
     """Print a commented configuration, the file of one type, or the library's list.
 
     `types`: by folder of the library, the type that is asked for; '' for a usual one, None for none. A position under
-    "retarders" asks for a configuration with it: so the option --retarder was, before there were files of types. Under
-    "aim" '' asks for an aim configuration, a name for the file of a track or a car mix; under "hump" '' asks for a hump
-    trial configuration, a name for the file of a hump; under "computer" '' asks for that of a control computer; under
-    "point sensors" '' or the name of a position asks for a configuration with point sensors.
+    "retarders" asks for a configuration with it. Under "aim" '' asks for an aim configuration, a name for the file of a
+    track or a car mix; under "hump" '' for a hump trial configuration, a name for the file of a hump; under "computer"
+    and "sweep" '' for theirs; under "point sensors" '' or the name of a position for one with point sensors.
     """
     if show_list:
         return print_list(as_json)
@@ -142,18 +143,11 @@ def hump_type(name: str) -> tuple[str, str]:
     return "type", hump_text(Path(name))
 
 
-def no_computer(name: str) -> tuple[str, str]:
-    """As `asked_for`: refused, for there are no types of control computers."""
+def no_types(option: str, noun: str, name: str) -> tuple[str, str]:
+    """As `asked_for`: refused, for the library has no types of what `option` asks for."""
     from synth.frame.input_error import InputError
 
-    raise InputError(f"init --computer {name}: the library has no control computers; leave the name out")
-
-
-def no_sweep(name: str) -> tuple[str, str]:
-    """As `asked_for`: refused, for there are no types of sweeps."""
-    from synth.frame.input_error import InputError
-
-    raise InputError(f"init --sweep {name}: the library has no sweeps; leave the name out")
+    raise InputError(f"init {option} {name}: the library has no {noun}; leave the name out")
 
 
 def sensors_file(name: str) -> tuple[str, str]:
@@ -166,12 +160,12 @@ def sensors_file(name: str) -> tuple[str, str]:
     return "configuration", default_sensors_toml(name)
 
 
-NAMED: Final = {
+NAMED: Final[Mapping[str, Callable[[str], tuple[str, str]]]] = {
     "aim": aim_type,
     "hump": hump_type,
-    "computer": no_computer,
+    "computer": partial(no_types, "--computer", "control computers"),
     "point sensors": sensors_file,
-    "sweep": no_sweep,
+    "sweep": partial(no_types, "--sweep", "sweeps"),
 }
 """What an option for a configuration asks for by a name, by what `init_command` calls it."""
 

@@ -10,16 +10,14 @@ from plant_models.library import SourcedValue, WeightCategories
 from plant_models.library.car_mix_entry import CarMixEntry
 from plant_models.library.hump_entry import HumpEntry
 from synth.frame.settings.numbers import numbers_of, sourced
-from synth.hump.configuration.settings import HumpPositionSettings, HumpTrialSettings
+from synth.hump.configuration.settings import HumpPositionSettings, HumpSpeedSettings, HumpTrialSettings
 from synth.hump.trains.position_choice import PositionChoice
 
 OF_POPULATION: Final = ("cuts", "cars_mean", "most_cars", "category_shares", "track_shares")
 """Of [trains], what a sorting list tells in its place."""
 
-OF_A_PROGRAM: Final = (
-    "lowest_m_s", "highest_m_s", "step_m_s", "uncoupling_m_s", "acceleration_m_s2", "least_s", "early_s"
-)  # fmt: skip
-"""Of [hump_speed], what one speed for all cuts stands in place of."""
+BESIDE_ONE_SPEED: Final = {"constant_m_s", "slow_down_s"}
+"""Of [hump_speed], what counts where there is one speed for all cuts; it stands in place of the rest."""
 
 CHANGES_NO_TRAIN: Final = ("trains.number", "acceptance.")
 """Keys, or their beginnings, that change no train, only how many are humped and how they are judged."""
@@ -35,7 +33,8 @@ def trial_numbers(
     """
     yield from (replace(value, key=f"hump.{value.key}") for value in hump.provenance)
     left_out = {f"trains.{key}" for key in OF_POPULATION if settings.trains.list is not None}
-    left_out |= {f"hump_speed.{key}" for key in OF_A_PROGRAM if settings.hump_speed.constant_m_s is not None}
+    if settings.hump_speed.constant_m_s is not None:
+        left_out |= {f"hump_speed.{key}" for key in HumpSpeedSettings.model_fields.keys() - BESIDE_ONE_SPEED}
     yield from (replace(value, key=f"cars.{value.key.removeprefix('cars.')}") for value in mix.provenance)
     yield from category_values(settings, categories)
     for section in sections_in_force(settings, designed):
