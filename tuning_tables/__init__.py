@@ -19,16 +19,7 @@ from tuning_tables.errors import (
     TableError,
     UnknownFormat,
 )
-from tuning_tables.estimator import (
-    HEAVIER_ALARM,
-    LIGHTER_ALARM,
-    LOST_ALARM,
-    SENSOR_ALARM,
-    Estimator,
-    begin,
-    table_after,
-    unseen_samples,
-)
+from tuning_tables.estimator import Estimator, begin, unseen_samples
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_any_book, read_book, write_book
 from tuning_tables.json_file import from_json, read_json, to_json, write_json
@@ -42,8 +33,11 @@ from tuning_tables.passages.rule import wanted_stage
 from tuning_tables.passages.schema import passage_schema
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
 from tuning_tables.passages.tracker import begin_cut, believed_passage
+from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM, table_after
+from tuning_tables.programs.decide import decide
+from tuning_tables.programs.observe import observe
 from tuning_tables.provenance import CutId, Generator, RetarderId
-from tuning_tables.rule import alarms_for, decide, decide_for, decide_many, speed_for
+from tuning_tables.rule import alarms_for, decide_for, decide_many, speed_for
 from tuning_tables.schema import table_schema
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
@@ -95,6 +89,7 @@ __all__ = [
     "decide_many",
     "from_json",
     "from_table_json",
+    "observe",
     "passage_schema",
     "read_any_book",
     "read_book",

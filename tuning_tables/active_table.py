@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +10,8 @@ import numpy.typing as npt
 from tuning_tables.approach import Approach, entrance_stage, same_approach
 from tuning_tables.decisions import Decisions, farthest
 from tuning_tables.estimator import Estimator
+from tuning_tables.held_table import held_table
+from tuning_tables.programs.line_table import LineTable
 from tuning_tables.table import ControllerTable
 
 
@@ -26,6 +28,9 @@ class ActiveTable:
     estimator         of the speed that the lines are for; None: for the measured speed
     approach          on which the regulator already acts; None: it acts from the entrance on
     decisions         at rest or at any time
+    has_gauge         whether the lines depend on the pressure
+
+    Derived: held, what the programs take.
     """
 
     target_speed_m_s: np.float32
@@ -37,10 +42,18 @@ class ActiveTable:
     estimator: Estimator | None = None
     approach: Approach | None = None
     decisions: Decisions = Decisions.AT_REST
+    has_gauge: bool = False
+    held: LineTable = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         for array in (self.coefficients, self.has_line, self.valid_range, self.slopes, self.pressures):
             array.setflags(write=False)
+        held = held_table(
+            self.coefficients, self.has_line, self.valid_range[:2], self.slopes, self.pressures,
+            target_speed_m_s=float(self.target_speed_m_s), has_gauge=self.has_gauge, decisions=self.decisions,
+            approach=self.approach, estimator=self.estimator,
+        )  # fmt: skip
+        object.__setattr__(self, "held", held)
 
     @property
     def highest_raised(self) -> int:
@@ -70,6 +83,7 @@ def active(table: ControllerTable) -> ActiveTable:
         table.estimator,
         table.approach,
         table.decisions,
+        table.has_gauge,
     )
 
 
@@ -99,7 +113,7 @@ def same_estimator(one: Estimator | None, other: Estimator | None) -> bool:
     if one is None or other is None:
         return one is other
     return (
-        np.array_equal(one.parameters, other.parameters)
+        all(np.float32(number) == np.float32(other.numbers[name]) for name, number in one.numbers.items())
         and np.array_equal(one.work, other.work)
         and np.float32(one.touch_pressure_kpa) == np.float32(other.touch_pressure_kpa)
     )
@@ -125,4 +139,5 @@ def between(slower: ControllerTable, faster: ControllerTable, target_speed_m_s: 
         slower.estimator,
         slower.approach,
         slower.decisions,
+        slower.has_gauge,
     )

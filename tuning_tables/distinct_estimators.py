@@ -52,5 +52,5 @@ def distinct_estimators(book: TableBook) -> DistinctEstimators:
 def _numbers(estimator: Estimator) -> bytes:
     """All that a controller holds of it; 0.0 for -0.0, which compare alike."""
     touch_kpa = np.array([estimator.touch_pressure_kpa], dtype=np.float32)
-    numbers = np.concatenate([estimator.parameters, touch_kpa, estimator.work.ravel()])
+    numbers = np.concatenate([np.array([*estimator.numbers.values()], np.float32), touch_kpa, estimator.work.ravel()])
     return (numbers + np.float32(0.0)).tobytes()

@@ -7,55 +7,47 @@ from itertools import pairwise
 
 import numpy as np
 
+from tuning_tables.active_table import ActiveTable
 from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN
-from tuning_tables.table_block import LAYOUT, BlockSize, block_of, block_size
 from tuning_tables.table_book import Status, TableBook
 
 
 @dataclass(frozen=True)
 class GoldenChoice:
-    """A command, and how the choice ends: status, and the checksum of the chosen table's block, 0 for none.
+    """A command, and how the choice ends: status, the chosen lines and the tables that they come from.
 
-    `layout`: that of the caller, `category`: the number of the weight category.
+    `category`: the number of the weight category.
     """
 
-    layout: int
     category: int
     axles: int
     commanded_m_s: np.float32
     status: Status
-    crc32: int
+    table: ActiveTable | None
+    numbers: tuple[int, ...]
 
 
 def golden_choices(book: TableBook) -> tuple[GoldenChoice, ...]:
-    """Commands at, next to, between and beyond the targets of every class; no numbers; classes that the book lacks.
-
-    At last commands of callers with another layout.
-    """
-    size = block_size(book)
+    """Commands at, next to, between and beyond the targets of every class; no numbers; classes that the book lacks."""
     found = [
-        golden_choice(book, category, axles, speed, size)
+        golden_choice(book, category, axles, speed)
         for category, axles in book.by_class
         for speed in _commands(book, category, axles)
     ]
     category, axles = next(iter(book.by_class))
     most = max(axles for _, axles in book.by_class)
-    found.append(golden_choice(book, category, most + 1, np.float32(book.tables[0].target_speed_m_s), size))
+    found.append(golden_choice(book, category, most + 1, np.float32(book.tables[0].target_speed_m_s)))
     target = np.float32(book.tables[0].target_speed_m_s)
     lacking = sorted({0, 6, LARGEST_OWN, *KNOWN_NUMBERS.values()} - {*book.category_numbers.values()})
-    found += [GoldenChoice(LAYOUT, number, axles, target, Status.NO_CLASS, 0) for number in lacking]
-    number = book.number_of(category)
-    found += [GoldenChoice(other, number, axles, target, Status.OTHER_LAYOUT, 0) for other in (0, 1, LAYOUT + 1)]
+    found += [GoldenChoice(number, axles, target, Status.NO_CLASS, None, ()) for number in lacking]
     return tuple(found)
 
 
-def golden_choice(
-    book: TableBook, category: str, axles: int, commanded_m_s: np.float32, size: BlockSize
-) -> GoldenChoice:
+def golden_choice(book: TableBook, category: str, axles: int, commanded_m_s: np.float32) -> GoldenChoice:
     """What `book.choose` answers to one command."""
     choice = book.choose(category, axles, float(commanded_m_s))
-    crc32 = block_of(book, choice.numbers[0], choice.table, size).crc32 if choice.table is not None else 0
-    return GoldenChoice(LAYOUT, book.number_of(category), axles, commanded_m_s, choice.status, crc32)
+    number = book.number_of(category)
+    return GoldenChoice(number, axles, commanded_m_s, choice.status, choice.table, choice.numbers)
 
 
 def _commands(book: TableBook, category: str, axles: int) -> list[np.float32]:

@@ -7,7 +7,11 @@ from typing import Final
 
 import numpy as np
 
-from tuning_tables.estimator import LARGEST_STEP_M, LEAST_SPEED_M_S, Estimator
+from tuning_tables.estimator import Estimator
+from tuning_tables.programs import observe
+
+LARGEST_STEP_M: Final = float(observe.LARGEST_STEP_M)
+LEAST_SPEED_M_S: Final = float(observe.LEAST_SPEED_M_S)
 
 Reading = tuple[float, float, float]
 """Path in m, measured speed in m/s, overpressure in kPa."""

@@ -14,14 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.distinct_estimators import distinct_estimators
-from tuning_tables.estimator import (
-    LARGEST_OVERPRESSURE_KPA,
-    LARGEST_SPEED_M_S,
-    LARGEST_STEP_M,
-    Estimator,
-    begin,
-    unseen_samples,
-)
+from tuning_tables.estimator import Estimator, begin, unseen_samples
 from tuning_tables.golden_faults import (
     MISSING_M_S,
     Reading,
@@ -30,11 +23,16 @@ from tuning_tables.golden_faults import (
     rising_while_braked,
     wrong_at_first,
 )
+from tuning_tables.programs import observe
 from tuning_tables.rule import alarms_for, speed_for
 from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import TableBook
 
 Floats = npt.NDArray[np.float32]
+
+LARGEST_SPEED_M_S: Final = float(observe.LARGEST_SPEED_M_S)
+LARGEST_OVERPRESSURE_KPA: Final = float(observe.LARGEST_OVERPRESSURE_KPA)
+LARGEST_STEP_M: Final = float(observe.LARGEST_STEP_M)
 
 LARGEST: Final = float(np.finfo(np.float32).max)
 LEAST_NORMAL: Final = np.finfo(np.float32).smallest_normal

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.rule import NO_GAUGE, decide_many, rises
+from tuning_tables.rule import NO_GAUGE, decide_many, rises_at
 from tuning_tables.table import ControllerTable
 
 Floats = npt.NDArray[np.float32]
@@ -159,7 +159,7 @@ def _line_readings(
     readings = []
     for k in range(len(table.stages)):
         kpa = pressures(table, k, len(paths))
-        rise = np.array([rises(table.slopes, table.pressures, table.highest_raised, k, p) for p in kpa])
+        rise = rises_at(table, k, kpa)
         lines = [line_speeds(table.coefficients[k, i], clamped) + rise[:, i] for i in (0, 1) if table.has_line[k, i]]
         for line in lines or [target]:
             for place in places:

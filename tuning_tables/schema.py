@@ -19,7 +19,8 @@ from tuning_tables.document import (
     VARIABLE,
     VERSION,
 )
-from tuning_tables.estimator import FARTHEST_M, LARGEST_OVERPRESSURE_KPA, LARGEST_WORK, MOST_BREAKS, MOST_READINGS
+from tuning_tables.estimator import FARTHEST_M, LARGEST_WORK, MOST_BREAKS, MOST_READINGS
+from tuning_tables.programs.observe import LARGEST_OVERPRESSURE_KPA
 from tuning_tables.requirement import UTC_INSTANT
 from tuning_tables.schema_parts import DIALECT, above_zero, array_of, number, object_of, pair_of, text, whole
 from tuning_tables.schema_sections import (
@@ -107,7 +108,7 @@ def _estimator() -> dict[str, dict[str, object]]:
         doubted_readings=whole(1, MOST_READINGS),
         lost_speed_std_m_s=number(1e-3, 10),
         unlikely_deviation=number(0, 10),
-        touch_pressure_kpa=number(0, LARGEST_OVERPRESSURE_KPA),
+        touch_pressure_kpa=number(0, float(LARGEST_OVERPRESSURE_KPA)),
         s_m=array_of(number(-FARTHEST_M, FARTHEST_M), 2, MOST_BREAKS),
         drive_m2_s2=array_of(number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),
         brake_m2_s2_per_kpa=array_of(number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),

@@ -16,8 +16,7 @@ from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.golden_exits import COUNTS, FLAGS, INPUT_FIELDS, OUTPUT_FIELDS, golden_exits, golden_passes
 from tuning_tables.st_correction_test import EXITS_TEST, SELF_TEST_HEAD
-from tuning_tables.st_literals import bool_array, int_array, is_portable, real, real_array
-from tuning_tables.st_tables import constants
+from tuning_tables.st_literals import bool_array, constants, int_array, is_portable, real_array, real_constant
 from tuning_tables.st_units import unit_files
 
 CORRECTION_FILE: Final = "retarder_correction.st"
@@ -88,6 +87,10 @@ END_VAR
 VAR
     Others : INT;
 END_VAR
+VAR CONSTANT
+$LARGEST_ERRORS
+$LARGEST_EXCESS_CONSTANT
+END_VAR
 
 Usable := FALSE;
 IF (Samples >= $FEWEST_SAMPLES) AND (Missing >= 0) AND (Missing <= $MOST_MISSING) AND (AtTop >= 0)
@@ -95,8 +98,8 @@ IF (Samples >= $FEWEST_SAMPLES) AND (Missing >= 0) AND (Missing <= $MOST_MISSING
     Others := Samples - AtTop;
     (* No comparison with a NaN is true. *)
     Usable := (AtTop <= Others) AND NOT ByHand AND NOT Stalled
-        AND (Error_m_s >= -$LARGEST_ERROR_REAL) AND (Error_m_s <= $LARGEST_ERROR_REAL)
-        AND ((NOT EndsAtTop) OR (Error_m_s <= $LARGEST_EXCESS_REAL));
+        AND (Error_m_s >= MinusLargestError_m_s) AND (Error_m_s <= LargestError_m_s)
+        AND ((NOT EndsAtTop) OR (Error_m_s <= LargestExcess_m_s));
 END_IF;
 END_FUNCTION_BLOCK
 """
@@ -125,34 +128,31 @@ VAR
     Largest : REAL;
 END_VAR
 VAR CONSTANT
-    Gain : REAL := $GAIN_REAL;
-    ThresholdSquared : REAL := $THRESHOLD_SQUARED_REAL;
-    Limit_m_s : REAL := $LIMIT_REAL;
-    Reach_m_s : REAL := $REACH_REAL;
-    Clip_m_s : REAL := $CLIP_REAL;
-    Step_m_s : REAL := $STEP_REAL;
+$LEARN_CONSTANTS
+$LIMITS
+$LARGEST_ERRORS
 END_VAR
 
 (* No comparison with a NaN is true. *)
-Sound := (State.Mean_m_s >= -$REACH_REAL) AND (State.Mean_m_s <= Reach_m_s)
-    AND (State.Correction_m_s >= -$LIMIT_REAL) AND (State.Correction_m_s <= Limit_m_s)
-    AND (State.Learnt >= 0.0) AND (State.Learnt <= $MOST_LEARNT_REAL);
+Sound := (State.Mean_m_s >= MinusReach_m_s) AND (State.Mean_m_s <= Reach_m_s)
+    AND (State.Correction_m_s >= MinusLimit_m_s) AND (State.Correction_m_s <= Limit_m_s)
+    AND (State.Learnt >= 0.0) AND (State.Learnt <= MostLearnt);
 IF NOT Sound THEN
     Beginner(State := State);
 END_IF;
-IF Credible AND (Error_m_s >= -$LARGEST_ERROR_REAL) AND (Error_m_s <= $LARGEST_ERROR_REAL) THEN
+IF Credible AND (Error_m_s >= MinusLargestError_m_s) AND (Error_m_s <= LargestError_m_s) THEN
     Surprise := Error_m_s + State.Correction_m_s;
     Surprise := Surprise - State.Mean_m_s;
-    IF Surprise < -$CLIP_REAL THEN
-        Surprise := -$CLIP_REAL;
+    IF Surprise < MinusClip_m_s THEN
+        Surprise := MinusClip_m_s;
     END_IF;
     IF Surprise > Clip_m_s THEN
         Surprise := Clip_m_s;
     END_IF;
     Change := Gain * Surprise;
     Mean := State.Mean_m_s + Change;
-    IF Mean < -$REACH_REAL THEN
-        Mean := -$REACH_REAL;
+    IF Mean < MinusReach_m_s THEN
+        Mean := MinusReach_m_s;
     END_IF;
     IF Mean > Reach_m_s THEN
         Mean := Reach_m_s;
@@ -163,8 +163,8 @@ IF Credible AND (Error_m_s >= -$LARGEST_ERROR_REAL) AND (Error_m_s <= $LARGEST_E
         Doubt := ThresholdSquared / Mean;
         Wanted := Mean - Doubt;
     END_IF;
-    IF Wanted < -$LIMIT_REAL THEN
-        Wanted := -$LIMIT_REAL;
+    IF Wanted < MinusLimit_m_s THEN
+        Wanted := MinusLimit_m_s;
     END_IF;
     IF Wanted > Limit_m_s THEN
         Wanted := Limit_m_s;
@@ -197,11 +197,15 @@ END_VAR
 VAR_OUTPUT
     Corrected_m_s : REAL; (* to ask RETARDER_DECIDE with *)
 END_VAR
+VAR CONSTANT
+$LIMITS
+$LARGEST_SPEED_CONSTANT
+END_VAR
 
 Corrected_m_s := Observed_m_s;
 (* No comparison with a NaN is true. *)
-IF (Observed_m_s >= 0.0) AND (Observed_m_s <= $LARGEST_SPEED_REAL)
-    AND (State.Correction_m_s >= -$LIMIT_REAL) AND (State.Correction_m_s <= $LIMIT_REAL) THEN
+IF (Observed_m_s >= 0.0) AND (Observed_m_s <= LargestSpeed_m_s)
+    AND (State.Correction_m_s >= MinusLimit_m_s) AND (State.Correction_m_s <= Limit_m_s) THEN
     Corrected_m_s := Observed_m_s + State.Correction_m_s;
     IF Corrected_m_s < 0.0 THEN
         Corrected_m_s := 0.0;
@@ -235,9 +239,29 @@ def _head(correction: Correction) -> str:
 
 
 def _units(correction: Correction) -> list[str]:
-    numbers = zip(CONSTANTS, correction.parameters[:12], strict=True)
-    blanks = {**correction_words(correction), **{f"{name}_REAL": real(value) for name, value in numbers}}
+    blanks = {**correction_words(correction), **_declarations(correction)}
     return [STATE_TYPE, BEGIN, *(Template(text).substitute(blanks) for text in (USABLE, LEARN, SPEED))]
+
+
+def _declarations(correction: Correction) -> Mapping[str, str]:
+    """Declarations of constants, by the blanks that ask for them."""
+    number = dict(zip(CONSTANTS, correction.parameters[:12], strict=True))
+    names = {"Gain": "GAIN", "ThresholdSquared": "THRESHOLD_SQUARED", "Step_m_s": "STEP", "MostLearnt": "MOST_LEARNT"}
+    learn = [real_constant(name, number[key]) for name, key in names.items()]
+    for name, key in (("Reach_m_s", "REACH"), ("Clip_m_s", "CLIP")):
+        learn.append(_both(name, number[key]))
+    return {
+        "LEARN_CONSTANTS": "\n".join(learn),
+        "LIMITS": _both("Limit_m_s", number["LIMIT"]),
+        "LARGEST_ERRORS": _both("LargestError_m_s", number["LARGEST_ERROR"]),
+        "LARGEST_EXCESS_CONSTANT": real_constant("LargestExcess_m_s", number["LARGEST_EXCESS"]),
+        "LARGEST_SPEED_CONSTANT": real_constant("LargestSpeed_m_s", number["LARGEST_SPEED"]),
+    }
+
+
+def _both(name: str, value: np.float32) -> str:
+    """Declarations of a limit and of its negative."""
+    return f"{real_constant(name, value)}\n{real_constant(f'Minus{name}', -value)}"
 
 
 def _test_block(correction: Correction) -> str:

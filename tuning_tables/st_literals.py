@@ -24,6 +24,20 @@ def real(value: float | np.floating) -> str:
     return "0.0" if number == 0 else f"{float(number):.9E}"
 
 
+def real_constant(name: str, value: float | np.floating) -> str:
+    """Declaration of the constant `name` of REAL.
+
+    A literal in a statement is LREAL for many compilers, and so not the REAL that it is compared with. Therefore every
+    number that is no small whole number or short binary fraction stands in the text as such a constant.
+    """
+    return f"    {name} : REAL := {real(value)};"
+
+
+LEAST_REAL: Final = real_constant("LeastReal", np.finfo(np.float32).min)
+GREATEST_REAL: Final = real_constant("GreatestReal", np.finfo(np.float32).max)
+"""Declarations of the ends of REAL: a number is finite if it lies between them."""
+
+
 def is_portable(values: npt.NDArray[np.float32]) -> npt.NDArray[np.bool_]:
     """Which have a literal in every language: 0, or normal and finite numbers, and not -0.0."""
     sizes = np.abs(values)
@@ -50,6 +64,11 @@ def int_array(name: str, values: Iterable[int | np.integer]) -> str:
 def bool_array(name: str, values: Iterable[bool | np.bool_]) -> str:
     """Declaration of the constant array `name` of BOOL from index 0."""
     return _array(name, "BOOL", [boolean(value) for value in values])
+
+
+def constants(declarations: list[str]) -> str:
+    """A block of constants, and the empty line before the statements."""
+    return "\n".join(["VAR CONSTANT", *declarations, "END_VAR", "", ""])
 
 
 def _array(name: str, kind: str, literals: Sequence[str], row: int = 0) -> str:

@@ -14,7 +14,9 @@ from tuning_tables.decisions import Decisions, farthest
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, Validated, ValidRange
+from tuning_tables.held_table import held_table
 from tuning_tables.line_order import LARGEST_FLOAT32
+from tuning_tables.programs.line_table import LineTable
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.requirement import (
     UTC_INSTANT,
@@ -56,6 +58,7 @@ class ControllerTable:
     valid_range       float32 (4,): s_min, s_max in m, v_min, v_max in m/s
     slopes            float32 (K+1, 2), m/s per kPa; 0 where a line has none
     pressures         float32 (K+1,), kPa; the largest float32 number where one exceeds it
+    held              what the programs take, `programs.line_table`
 
     On the valid path range lower(s) < upper(s) holds at every stage that has both, also as evaluated in float32, and
     with slopes at every pressure from that of stage 0 to that of the highest stage that the table raises to, and at the
@@ -83,6 +86,7 @@ class ControllerTable:
     valid_range: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
     slopes: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
     pressures: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
+    held: LineTable = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         self._require_fields()
@@ -100,6 +104,12 @@ class ControllerTable:
         for name, array in zip(("coefficients", "has_line", "valid_range", "slopes", "pressures"), arrays, strict=True):
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+        held = held_table(
+            coefficients, has_line, valid_range[:2], slopes, pressures,
+            target_speed_m_s=self.target_speed_m_s, has_gauge=self.has_gauge, decisions=self.decisions,
+            approach=self.approach, estimator=self.estimator,
+        )  # fmt: skip
+        object.__setattr__(self, "held", held)
 
     @property
     def entrance_stage(self) -> int:

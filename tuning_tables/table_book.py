@@ -37,6 +37,7 @@ from tuning_tables.book_classes import tables_by_class
 from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN
 from tuning_tables.errors import InvalidTable
 from tuning_tables.line_order import UNIT_ROUNDOFF
+from tuning_tables.programs import choose
 from tuning_tables.requirement import require_kind, require_tuple
 from tuning_tables.stage import Stage
 from tuning_tables.surface_order import NO_PRESSURE, range_above, reach_kpa, stage_gap, surface_bound
@@ -47,17 +48,13 @@ LARGEST_FLOAT32: Final = float(np.finfo(np.float32).max)
 
 
 class Status(IntEnum):
-    """How a choice ended; below 0 there is no table.
+    """How a choice ended; below 0 there is no table."""
 
-    `OTHER_LAYOUT` is an answer of controller code alone, to a caller that numbers categories otherwise.
-    """
-
-    TUNED = 0
-    BETWEEN = 1
-    SLOWER = 2
-    NO_CLASS = -1
-    NO_TARGET = -2
-    OTHER_LAYOUT = -3
+    TUNED = choose.TUNED
+    BETWEEN = choose.BETWEEN
+    SLOWER = choose.SLOWER
+    NO_CLASS = choose.NO_CLASS
+    NO_TARGET = choose.NO_TARGET
 
 
 @dataclass(frozen=True)

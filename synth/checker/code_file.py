@@ -1,4 +1,4 @@
-"""Controller code as files: found whatever its prefix, read as if it had none, its layout recognised."""
+"""Controller code as files: found whatever its prefix, read as if it had none."""
 
 from __future__ import annotations
 
@@ -10,22 +10,15 @@ from typing import Final
 
 from synth.checker.source_file import content_of, text_of
 
-LAYOUT: Final = 2
-"""The layout that this checker knows, in which the numbers of the categories are fixed."""
 HEAD: Final = b"Controller tables of a car retarder"
 C_COMMENT: Final = r"/\*.*?\*/"
 COMMENT: Final = {".st": r"\(\*.*?\*\)"}
 """By the ending of a file, where it is not as in C."""
-OLD_ADVICE: Final = "layout 1, in which the numbers of the categories follow the order of the tables; export again"
 UNIT_FILE: Final = re.compile(r"\d{4}_(\w+)_LOAD\.st")
 """Of an export with a file each unit, the one with most of the tables."""
 
 IS_AIM: Final = re.compile(r"(?:^|_)AIM$")
 """Whether what stands before _LOAD is of an aim table: no prefix may end so."""
-
-
-class OtherLayoutError(Exception):
-    """The code is whole, but of a layout that is not compared; the message is one sentence without the file's name."""
 
 
 @dataclass(frozen=True)
@@ -75,13 +68,3 @@ def whole_files(folder: Path, ending: str) -> Iterator[CodeFile]:
         prefix = file.name.removesuffix(ending)
         if prefix == "retarder" or HEAD in content_of(file)[: 2 * len(HEAD)]:
             yield CodeFile(file, prefix)
-
-
-def require_layout(text: str, pattern: str) -> None:
-    """Raise `OtherLayoutError` unless the layout of `text`, told by the group of `pattern`, is the one known here."""
-    found = re.search(pattern, text)
-    layout = int(found[1]) if found else 1
-    if layout > LAYOUT:
-        raise OtherLayoutError(f"layout {layout}, but this checker knows layout {LAYOUT}; update it")
-    if layout < LAYOUT:
-        raise OtherLayoutError(OLD_ADVICE)

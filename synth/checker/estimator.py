@@ -63,7 +63,6 @@ class Held(NamedTuple):
     speed_variance: float
     factor_variance: float
     path_variance: float
-    touch_pressure: float
     excess_variance: float
     leap: float
     frozen_readings: float
@@ -98,7 +97,6 @@ class Estimator:
             speed_variance=self.speed_noise_m_s**2,
             factor_variance=self.friction_cv**2,
             path_variance=2.0 * self.path_std**2 * self.correlation_length_m,
-            touch_pressure=self.touch_pressure_kpa,
             excess_variance=self.resistance_std_m_s2**2,
             leap=GATE * math.sqrt(2.0) * self.speed_noise_m_s,
             frozen_readings=self.frozen_readings,

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from synth.checker.code_file import OtherLayoutError
 from synth.checker.finding import DamagedError, Finding, Kind
 
 Differences = Iterator[tuple[str, str]]
@@ -22,5 +21,3 @@ def findings_of(name: str, compare: Callable[[], Differences]) -> Iterator[Findi
             yield Finding(Kind.DISAGREES, about or name, f"{name}: {sentence}" if about else sentence)
     except DamagedError as fault:
         yield Finding(Kind.DAMAGED, name, str(fault))
-    except OtherLayoutError as fault:
-        yield Finding(Kind.LAYOUT, name, str(fault))

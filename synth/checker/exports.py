@@ -9,10 +9,10 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
-from synth.checker import c_export, csv_export, golden_export, st_export, track_export
+from synth.checker import csv_export, golden_export, line_export, track_export
 from synth.checker.aim.exports import check_aim_exports, is_aim_csv
 from synth.checker.book_categories import without_number
-from synth.checker.code_file import CodeFile, c_files, require_layout, st_files
+from synth.checker.code_file import CodeFile, c_files, st_files
 from synth.checker.export_check import Check, Differences, findings_of
 from synth.checker.finding import Finding, Kind
 from synth.checker.passages.reading import PassageTable
@@ -72,21 +72,17 @@ def check_code(source: Source, folder: Path, check: Check) -> None:
 
 
 def c_differences(code: CodeFile, source: Source) -> Differences:
-    """The C export in a file, and the header beside it; `OtherLayoutError` for one that is not compared."""
+    """The C export in a file, and the header beside it."""
     text, header = code.text(), code.text(code.path.with_suffix(".h"))
-    blocks = c_export.read_blocks(text)
-    require_layout(header, c_export.LAYOUT)
     yield from without_number(source.tables)
-    yield from c_export.differences(blocks, in_order(source, text), header)
+    yield from line_export.c_differences(text, header, in_order(source, text))
 
 
 def st_differences(code: CodeFile, source: Source) -> Differences:
-    """The Structured Text of an export; `OtherLayoutError` for one that is not compared."""
+    """The Structured Text of an export."""
     text = code.units()
-    arrays = st_export.read_arrays(text)
-    require_layout(text, st_export.LAYOUT)
     yield from without_number(source.tables)
-    yield from st_export.differences(arrays, in_order(source, text))
+    yield from line_export.st_differences(text, in_order(source, text))
 
 
 def golden_differences(file: Path, source: Source) -> Differences:
@@ -94,7 +90,7 @@ def golden_differences(file: Path, source: Source) -> Differences:
     content = content_of(file)
     text = content.decode("utf-8", "replace")
     rows = dict.fromkeys(re.findall(r'^(\d{1,6}),"?([^",]*)"?,', text, re.MULTILINE))
-    order = "".join(f"/* {number}: {c_export.ascii_comment(name)} */" for number, name in rows)
+    order = "".join(f"/* {number}: {line_export.ascii_comment(name)} */" for number, name in rows)
     return golden_export.differences(content, in_order(source, order))
 
 
@@ -118,7 +114,7 @@ def in_order(source: Source, text: str) -> list[Table]:
     """The tables in the order of the book; without a book, in the order that the comments of `text` tell."""
     if source.has_book:
         return list(source.tables)
-    by_name = {c_export.ascii_comment(table.id): table for table in source.tables}
+    by_name = {line_export.ascii_comment(table.id): table for table in source.tables}
     names = [name for _, name in sorted((int(number), name) for number, name in PLACE.findall(text))]
     ordered = [by_name[name] for name in dict.fromkeys(names) if name in by_name]
     return ordered + [table for table in source.tables if table not in ordered]

@@ -13,8 +13,6 @@ class Kind(Enum):
     """A file is broken, or its content makes no table."""
     DISAGREES = "disagrees"
     """Two files that should say the same do not."""
-    LAYOUT = "other layout"
-    """Controller code is of an older or newer layout and was not compared."""
     CLAIM = "claim"
     """A figure of quality was not confirmed."""
 

@@ -78,7 +78,7 @@ class Verdict:
 
     @property
     def code(self) -> int:
-        """0 all confirmed, 1 a claim is not, or code is of another layout, 3 something is damaged or disagrees."""
+        """0 all confirmed, 1 a claim is not, 3 something is damaged or disagrees."""
         kinds = {finding.kind for finding in self.findings}
         if kinds & {Kind.DAMAGED, Kind.DISAGREES}:
             return DAMAGED

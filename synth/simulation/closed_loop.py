@@ -183,7 +183,7 @@ def empty_exits(passes: int) -> kernel.Exits:
 
 def empty_observed(law: regulator.Rule, passes: int) -> Observed:
     """Memory of the estimator of `law` for `passes` passes that have not begun; none if it has no estimator."""
-    passes = passes if law.estimator_work.shape[1] > 0 else 0
+    passes = passes if law.table.breaks > 0 else 0
     return Observed(
         np.zeros((passes, FIELDS), dtype=np.float32),
         np.zeros((passes, 2), dtype=np.float32),

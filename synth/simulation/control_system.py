@@ -7,6 +7,7 @@ different timebases, so `nominal_response` closes the loop. What python-control 
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,7 @@ from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.kernels.loop import regulator
 from synth.simulation.closed_loop import Controller
 from tuning_tables import estimator
+from tuning_tables.programs.observe import observe
 
 if TYPE_CHECKING:
     from control import InterconnectedSystem, NonlinearIOSystem
@@ -103,17 +105,16 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
 
     def estimated(x: Any, u: Any, measured: float) -> tuple[float, NDArray[np.float32]]:
         known = np.array(x[KNOWN:], dtype=np.float32)
-        if law.estimator_work.shape[1] == 0:
+        if law.table.breaks == 0:
             return measured, known
-        numbers = law.estimator_parameters, law.estimator_work
-        return float(estimator.observe(*numbers, known, float(u[0]), measured, float(u[2]))), known
+        return float(observe(law.table, known, float(u[0]), measured, float(u[2]))), known
 
     def stage_wanted(t: float, x: Any, u: Any, params: dict[str, float]) -> list[int]:
         stage, top = int(x[STAGE]), actuator.stages - 1
         if x[LOCKED] > 0:
             return [stage]
         measured = regulator.measure(float(u[1]), 0.0, sensor)
-        if law.coefficients.shape[0] > 0:
+        if law.table.stages > 0:
             wanted = stage_by_table(law, stage, float(u[0]), estimated(x, u, measured)[0])
         else:
             ahead = measured + law.lead_s * filtered_slope(x, measured)
@@ -143,8 +144,7 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
 
 def stage_by_table(law: regulator.Rule, stage: int, s_m: float, v_m_s: float) -> int:
     """Digital controller of a radar: the stage wanted at (s, v) while `stage` is in force."""
-    lines, limits = (law.coefficients, law.has_line, law.valid), (law.entrance_stage, law.farthest)
-    return int(regulator.stage_by_table(*lines, limits, stage, s_m, v_m_s))
+    return int(regulator.stage_by_table(law.table, stage, s_m, v_m_s, math.nan))
 
 
 def regulator_start(plant: Plant, controller: Controller) -> NDArray[np.float64]:

@@ -15,6 +15,7 @@ from synth.solver.switching_lines import SwitchingLines, always_up
 from tuning_tables.active_table import ActiveTable
 from tuning_tables.decisions import Decisions
 from tuning_tables.estimator import Estimator
+from tuning_tables.held_table import lines_apart
 from tuning_tables.table import MOST_STAGES, ControllerTable
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -47,26 +48,16 @@ class TableController:
 
     def law(self) -> Law:
         """The rule as the kernel takes it."""
-        table = self.table
-        if table.decisions is Decisions.AT_REST:
-            return self.rule
-        slopes, pressures = fixed(table.slopes, np.float32), fixed(table.pressures, np.float32)
-        return AnyTimeLaw(self.rule, slopes, pressures, table.highest_raised, self.gauge_factor)
+        return self.rule if self.table.decisions is Decisions.AT_REST else AnyTimeLaw(self.rule, self.gauge_factor)
 
     @cached_property
     def rule(self) -> regulator.Rule:
         """What is asked at a decision, but for the pressure."""
-        none = fixed(np.empty((0, 0)), np.float64)
-        table = self.table
-        there = np.where(table.has_line[:, :, None], table.coefficients, np.float32(np.nan))
-        arrays = (
-            fixed(there, np.float32),
-            fixed(table.has_line, np.bool_),
-            fixed(table.valid_range, np.float32),
-        )
-        by_table = *arrays, table.entrance_stage, table.farthest
-        estimator = estimator_arrays(table.estimator)
-        return regulator.Rule(*by_table, none, none, 0.0, 1.0, 0.0, 0.0, *estimator)
+        none, table = fixed(np.empty((0, 0)), np.float64), self.table.held
+        # Passes side by side look at the lines alone: what is no line must give no command.
+        there = np.where(table.has_line[:, :, None], table.coefficient, np.float32(np.nan))
+        table = table._replace(coefficient=fixed(there, np.float32))
+        return regulator.Rule(table, none, none, 0.0, 1.0, 0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -93,28 +84,21 @@ class LineController:
 
     def law(self) -> Law:
         """The rule as the kernel takes it."""
-        if self.decisions is Decisions.AT_REST:
-            return self.rule
-        none = fixed(np.empty((0, 2)), np.float32), fixed(np.empty(0), np.float32)
-        return AnyTimeLaw(self.rule, *none, 0, 1.0)
+        return self.rule if self.decisions is Decisions.AT_REST else AnyTimeLaw(self.rule, 1.0)
 
     @property
     def rule(self) -> regulator.Rule:
         """What is asked at a decision."""
         lines = self.lines
         return regulator.Rule(
-            fixed(np.empty((0, 0, 0)), np.float32),
-            fixed(np.empty((0, 0)), np.bool_),
-            fixed(np.empty(0), np.float32),
-            lines.stages - 1,
-            self.farthest,
+            lines_apart(self.estimator),
             fixed(lines.lower_m_s, np.float64),
             fixed(lines.upper_m_s, np.float64),
             float(lines.nodes_m[0]),
             float(lines.nodes_m[-1] - lines.nodes_m[0]) / (lines.nodes_m.size - 1),
+            self.farthest,
             self.lead_s,
             self.slope_filter_s,
-            *estimator_arrays(self.estimator),
         )
 
 
@@ -135,10 +119,3 @@ class Regulator(Protocol):
 
     def law(self) -> Law:
         """The rule as a kernel takes it, asked at rest or at any time."""
-
-
-def estimator_arrays(estimator: Estimator | None) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Parameters and work of the estimator as the kernel takes them; no work for none."""
-    if estimator is None:
-        return fixed(np.zeros(0), np.float32), fixed(np.zeros((3, 0)), np.float32)
-    return fixed(estimator.parameters, np.float32), fixed(estimator.work, np.float32)

@@ -1,7 +1,8 @@
 """The fixed part of the Structured Text of aim tables, as templates of `string.Template` for `st_source`.
 
 The subset of the language is that of controller tables (`tuning_tables.st_blocks`): one operation on REAL a statement,
-no index that only the other side of an AND keeps in range, no RETURN, EXIT, WHILE or typed literals.
+no index that only the other side of an AND keeps in range, no RETURN, EXIT or typed literals. Loops over as much as a
+table has are WHILE (`tuning_tables.st_loops`).
 """
 
 from __future__ import annotations
@@ -165,30 +166,34 @@ SPEED_BODY: Final = """\
 ExitSpeed_m_s := -1.0;
 Loader(TableNo := TableNo, Axes := Axes);
 Row := -1;
-FOR Index := 0 TO Axes.Listed - 1 DO
+Index := 0;
+WHILE Index < Axes.Listed DO
     IF Cars >= Axes.Cars[Index] THEN
         Row := Index;
     END_IF;
-END_FOR;
+    Index := Index + 1;
+END_WHILE;
 LastRow := Row;
 IF Row >= 0 THEN
     IF Cars > Axes.Cars[Row] THEN
         LastRow := Row + 1;
     END_IF;
 END_IF;
-(* No comparison with a NaN is true. 3.4028235E+38 is the largest REAL, rounded up in its last digit. *)
+(* No comparison with a NaN is true. *)
 Credible := (Row >= 0) AND (LastRow < Axes.Listed)
-    AND (FreeDistance_m >= Axes.Distance_m[0]) AND (FreeDistance_m <= 3.4028235E+38);
+    AND (FreeDistance_m >= Axes.Distance_m[0]) AND (FreeDistance_m <= GreatestReal);
 IF Axes.Resistances > 0 THEN
-    Credible := Credible AND (Resistance >= -3.4028235E+38) AND (Resistance <= 3.4028235E+38);
+    Credible := Credible AND (Resistance >= LeastReal) AND (Resistance <= GreatestReal);
 END_IF;
 IF Credible THEN
     Below := 0;
-    FOR Index := 1 TO Axes.Distances - 1 DO
+    Index := 1;
+    WHILE Index < Axes.Distances DO
         IF FreeDistance_m >= Axes.Distance_m[Index] THEN
             Below := Index;
         END_IF;
-    END_FOR;
+        Index := Index + 1;
+    END_WHILE;
     Above := Below;
     Way := 0.0;
     Beyond := FALSE;
@@ -212,11 +217,13 @@ IF Credible THEN
     Stride := 1;
     IF Axes.Resistances > 0 THEN
         Stride := Axes.Resistances;
-        FOR Index := 1 TO Axes.Resistances - 1 DO
+        Index := 1;
+        WHILE Index < Axes.Resistances DO
             IF Resistance >= Axes.Resistance[Index] THEN
                 Lower := Index;
             END_IF;
-        END_FOR;
+            Index := Index + 1;
+        END_WHILE;
         Upper := Lower;
         IF (Resistance > Axes.Resistance[Lower]) AND (Lower < Axes.Resistances - 1) THEN
             Upper := Lower + 1;
@@ -229,7 +236,8 @@ IF Credible THEN
     Node[1] := Above * Stride + Lower;
     Node[2] := Below * Stride + Upper;
     Node[3] := Above * Stride + Upper;
-    FOR Side := Row TO LastRow DO
+    Side := Row;
+    WHILE Side <= LastRow DO
         Place := Axes.FirstRow + Side;
         CASE Place OF
 $CASES
@@ -278,7 +286,8 @@ $CASES
         IF (Side = Row) OR (Answer < ExitSpeed_m_s) THEN
             ExitSpeed_m_s := Answer;
         END_IF;
-    END_FOR;
+        Side := Side + 1;
+    END_WHILE;
 END_IF;
 END_FUNCTION_BLOCK
 """

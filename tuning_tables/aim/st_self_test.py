@@ -16,8 +16,8 @@ from tuning_tables.aim.aim_tables import AimTables
 from tuning_tables.aim.block import controller_speeds
 from tuning_tables.aim.golden_aims import GoldenAims, golden_selections
 from tuning_tables.category_names import comment_text
-from tuning_tables.st_literals import LONGEST_ARRAY, bool_array, int_array, is_portable, real_array
-from tuning_tables.st_tables import constants
+from tuning_tables.st_literals import LONGEST_ARRAY, bool_array, constants, int_array, is_portable, real_array
+from tuning_tables.st_loops import without_single_turns
 
 SELF_TEST_HEAD: Final = """\
 (* Self-test of aim_table.st, for the controller that is to run it. Generated: do not edit, export again.
@@ -198,8 +198,8 @@ RUN_ONE: Final = """\
 def aim_self_test_blocks(aims: AimTables, ask: Callable[[AimTable], GoldenAims]) -> Iterator[str]:
     """The blocks of aim_self_test.st, in an order in which none is used before it is declared."""
     for number, table in enumerate(aims.tables):
-        yield _table_test(table, number, ask(table))
-    yield _selection_test(aims)
+        yield without_single_turns(_table_test(table, number, ask(table)))
+    yield without_single_turns(_selection_test(aims))
     count = len(aims.tables)
     yield Template(RUN_ALL).substitute(
         TABLES=count,

@@ -30,8 +30,8 @@ from tuning_tables.aim.st_blocks import (
 from tuning_tables.aim.st_self_test import SELF_TEST_HEAD, aim_self_test_blocks
 from tuning_tables.category_names import category_names, comment_text
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
-from tuning_tables.st_literals import bool_array, int_array, real_array
-from tuning_tables.st_tables import constants
+from tuning_tables.st_literals import GREATEST_REAL, LEAST_REAL, bool_array, constants, int_array, real_array
+from tuning_tables.st_loops import without_single_turns
 from tuning_tables.st_units import unit_files
 
 AIM_FILE: Final = "aim_table.st"
@@ -71,7 +71,8 @@ def _units(aims: AimTables) -> list[str]:
     size = aim_block_size(aims)
     lengths = {"CARS": size.cars, "DISTANCE": size.distances, "RESISTANCE": size.resistances}
     last = {f"LAST_{name}": length - 1 for name, length in lengths.items()}
-    return [Template(AXES_TYPE).substitute(last), _load_block(aims), _select_block(aims), _speed_block(aims)]
+    blocks = [_load_block(aims), _select_block(aims), _speed_block(aims)]
+    return [Template(AXES_TYPE).substitute(last), *map(without_single_turns, blocks)]
 
 
 def first_rows(aims: AimTables) -> list[int]:
@@ -116,7 +117,11 @@ def _select_block(aims: AimTables) -> str:
 
 def _speed_block(aims: AimTables) -> str:
     rows = [row for table in aims.tables for row in controller_speeds(table)]
-    declarations = [real_array(f"Speed_{number}", row.ravel(), row.shape[1]) for number, row in enumerate(rows)]
+    declarations = [
+        LEAST_REAL,
+        GREATEST_REAL,
+        *(real_array(f"Speed_{number}", row.ravel(), row.shape[1]) for number, row in enumerate(rows)),
+    ]
     cases = "\n".join(Template(SPEED_CASE).substitute(ROW=number) for number in range(len(rows)))
     body = Template(SPEED_BODY).substitute(CASES=textwrap.indent(cases, " " * 8))
     return SPEED_DECLARATIONS + constants(declarations) + body

@@ -1,7 +1,7 @@
 """The fixed part of the Structured Text for point sensors: the head comment, the types, the rule and the step.
 
-The texts are templates of `string.Template` in the subset that `tuning_tables.st_blocks` keeps to; the tracker's stand
-in `st_tracker`.
+The texts are templates of `string.Template` in the subset that `tuning_tables.st_blocks` keeps to, with WHILE for loops
+over as much as a table has (`tuning_tables.st_loops`); the tracker's stand in `st_tracker`.
 """
 
 from __future__ import annotations
@@ -121,10 +121,13 @@ VAR
     Highest : INT;
     Index : INT;
 END_VAR
+VAR CONSTANT
+$GREATEST_REAL
+END_VAR
 
 Wanted := Stage;
-(* No comparison with a NaN is true. 3.4028235E+38 is the largest REAL, rounded up in its last digit. *)
-Credible := (Speed_m_s >= 0.0) AND (Speed_m_s <= 3.4028235E+38)
+(* No comparison with a NaN is true. *)
+Credible := (Speed_m_s >= 0.0) AND (Speed_m_s <= GreatestReal)
     AND (Passage >= 0) AND (Passage < Table.Passages) AND (Stage >= 0) AND (Stage < Table.Stages)
     AND (Table.Passages <= $PASSAGES) AND (Table.Stages <= $STAGES);
 (* Indices are used only inside this IF: AND may evaluate both of its sides. *)
@@ -134,17 +137,21 @@ IF Credible THEN
     IF (Passage < Table.BeforeEntrance) AND (Table.EntranceStage < Highest) THEN
         Highest := Table.EntranceStage;
     END_IF;
-    FOR Index := Stage TO Highest - 1 DO
+    Index := Stage;
+    WHILE Index < Highest DO
         IF (Wanted = Index) AND (Speed_m_s > Table.Switching_m_s[First + Index]) THEN
             Wanted := Index + 1;
         END_IF;
-    END_FOR;
+        Index := Index + 1;
+    END_WHILE;
     IF Wanted = Stage THEN
-        FOR Index := Stage - 1 TO 0 BY -1 DO
+        Index := Stage - 1;
+        WHILE Index >= 0 DO
             IF (Wanted = Index + 1) AND (Speed_m_s < Table.Switching_m_s[First + Index]) THEN
                 Wanted := Index;
             END_IF;
-        END_FOR;
+            Index := Index - 1;
+        END_WHILE;
     END_IF;
 END_IF;
 END_FUNCTION_BLOCK
@@ -173,9 +180,13 @@ VAR
     Wanter : RETARDER_WANTED_STAGE;
     Speed : REAL;
 END_VAR
+VAR CONSTANT
+$SHORTEST_READING
+$LONGEST_WAIT
+END_VAR
 
 Speed := -1.0;
-IF (OverBase_s >= $SHORTEST_READING_REAL) AND (OverBase_s <= $LONGEST_WAIT_REAL) THEN
+IF (OverBase_s >= ShortestReading_s) AND (OverBase_s <= LongestWait_s) THEN
     Speed := Table.Base_m / OverBase_s;
 END_IF;
 Believer(Sensor := Sensor, Since_s := Since_s, Speed_m_s := Speed, Table := Table, Tracker := Tracker);

@@ -42,7 +42,7 @@ FOR Number := 0 TO $LAST_TABLE DO
             SlowerNo := -1;
         END_IF;
         (* A later table of equal target does not replace an earlier one. A NaN is not above a target. *)
-        IF (MassOf[Number] >= Heaviest_t) AND (TargetOf[Number] <= Commanded_m_s) AND (Commanded_m_s <= 3.4028235E+38)
+        IF (MassOf[Number] >= Heaviest_t) AND (TargetOf[Number] <= Commanded_m_s) AND (Commanded_m_s <= GreatestReal)
             AND ((SlowerNo < 0) OR (TargetOf[Number] > Slower_m_s)) THEN
             SlowerNo := Number;
             Slower_m_s := TargetOf[Number];

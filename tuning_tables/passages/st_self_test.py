@@ -21,8 +21,8 @@ from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.st_members import COUNTS, NUMBERS, arrays_of, counts_of, numbers_of, parts_of
 from tuning_tables.passages.st_select import CHOICE_ASKED, CHOICE_HEAD
-from tuning_tables.st_literals import int_array, is_portable, real, real_array
-from tuning_tables.st_tables import constants
+from tuning_tables.st_literals import constants, int_array, is_portable, real_array, real_constant
+from tuning_tables.st_loops import without_single_turns
 
 SELF_TEST_HEAD: Final = """\
 (* Self-test of retarder_passages.st, for the controller that is to run it. Generated: do not edit, export again.
@@ -173,8 +173,8 @@ def self_test_blocks(book: PassageBook, ask: Ask) -> Iterator[str]:
     """The blocks of the self-test, in an order in which none is used before it is declared."""
     tables, size = book.tables, passage_block_size(book.tables)
     for number, table in enumerate(tables):
-        yield _table_test(number, table, size, ask)
-    yield _choice_test(book)
+        yield without_single_turns(_table_test(number, table, size, ask))
+    yield without_single_turns(_choice_test(book))
     yield Template(RUN_ALL).substitute(
         INSTANCES="\n".join(f"    Test_{number} : RETARDER_PASSAGES_TEST_{number};" for number in range(len(tables))),
         CASES="\n".join(Template(RUN_ONE).substitute(NUMBER=number) for number in range(len(tables))),
@@ -187,7 +187,8 @@ def _table_test(number: int, table: PassageTable, size: PassageBlockSize, ask: A
     golden = ask(table)
     kinds = {"Stage": golden.stages, "Pair": golden.pairs, "Pulse": golden.pulses}
     kept = {kind: rows[_portable(rows)] for kind, rows in kinds.items()}
-    declarations, statements = [], [TEST_BEGIN, _same_constants(table)]
+    same_numbers, same = _same_constants(table)
+    declarations, statements = [*same_numbers], [TEST_BEGIN, same]
     for member, values in arrays_of(table, size):
         for part, start, piece in parts_of(values):
             name = f"Expected_{member}_{part}"
@@ -233,12 +234,13 @@ def _choice_test(book: PassageBook) -> str:
     return "".join([head, constants(declarations), TEST_BEGIN, *statements, "END_FUNCTION_BLOCK\n"])
 
 
-def _same_constants(table: PassageTable) -> str:
-    """Whether the single numbers of the table are those that they should be: one group."""
-    numbers = [f"(Table.{name} = {real(v)})" for name, v in zip(NUMBERS, numbers_of(table), strict=True)]
-    numbers += [f"(Table.{name} = {v})" for name, v in zip(COUNTS, counts_of(table), strict=True)]
-    same = "\n    AND ".join(numbers)
-    return f"Agrees := {same};\n{_told('')}"
+def _same_constants(table: PassageTable) -> tuple[list[str], str]:
+    """Declarations and test whether the single numbers of the table are those that they should be: one group."""
+    expected = [real_constant(f"Expected_{name}", v) for name, v in zip(NUMBERS, numbers_of(table), strict=True)]
+    equal = [f"(Table.{name} = Expected_{name})" for name in NUMBERS]
+    equal += [f"(Table.{name} = {v})" for name, v in zip(COUNTS, counts_of(table), strict=True)]
+    same = "\n    AND ".join(equal)
+    return expected, f"Agrees := {same};\n{_told('')}"
 
 
 def _loop(count: int, asked: str) -> str:

@@ -37,8 +37,8 @@ from tuning_tables.passages.st_select import SELECT_BODY, SELECT_DECLARATIONS
 from tuning_tables.passages.st_self_test import SELF_TEST_HEAD, self_test_blocks
 from tuning_tables.passages.st_tracker import BELIEVED, NEXT
 from tuning_tables.passages.tracker import LONGEST_WAIT_S
-from tuning_tables.st_literals import int_array, real, real_array
-from tuning_tables.st_tables import constants
+from tuning_tables.st_literals import GREATEST_REAL, constants, int_array, real_array, real_constant
+from tuning_tables.st_loops import without_single_turns
 from tuning_tables.st_units import unit_files
 
 TABLE_FILE: Final = "retarder_passages.st"
@@ -93,18 +93,22 @@ def _units(book: PassageBook) -> list[str]:
         "LAST_TABLE": len(tables) - 1,
         "LAST_HEARD": size.heard - 1,
         "LAST_SPEED": size.passages * size.stages * (size.stages - 1) - 1,
-        "LONGEST_WAIT_REAL": real(LONGEST_WAIT_S),
-        "SHORTEST_READING_REAL": real(SHORTEST_READING_S),
     }
     blanks = {name: str(number) for name, number in numbers.items()}
+    blanks |= {
+        "GREATEST_REAL": GREATEST_REAL,
+        "LONGEST_WAIT": real_constant("LongestWait_s", LONGEST_WAIT_S),
+        "SHORTEST_READING": real_constant("ShortestReading_s", SHORTEST_READING_S),
+    }
     fixed = (TABLE_TYPE, TRACKER_TYPE, BEGIN, WANTED, NEXT, BELIEVED, AT_PULSE)
     blocks = [*(Template(text).substitute(blanks) for text in fixed), _load_block(tables, size, blanks)]
-    return [*blocks, _select_block(tables, blanks)]
+    return [without_single_turns(text) for text in (*blocks, _select_block(tables, blanks))]
 
 
 def _select_block(tables: Sequence[PassageTable], blanks: Mapping[str, str]) -> str:
     """RETARDER_SELECT_PASSAGES: what the choice has to know of every table, and the choice."""
     declarations = [
+        GREATEST_REAL,
         int_array("CategoryOf", [exported_number(table) for table in tables]),
         int_array("AxlesOf", [len(table.cut.axle_offsets_m) for table in tables]),
         real_array("MassOf", [table.cut.mass_t for table in tables]),

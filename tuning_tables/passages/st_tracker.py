@@ -105,7 +105,8 @@ IF (Last >= 0) AND (Last < Table.Heard) AND (Table.Heard <= $HEARD) THEN
         Nearest := Rest * Nearest;
         Nearest := Part + Nearest;
         Nearest := Nearest - Table.PathTolerance_m;
-        FOR Index := Table.Heard - 1 TO 0 BY -1 DO
+        Index := Table.Heard - 1;
+        WHILE Index >= 0 DO
             Better := (Index > Last) OR ((Index < Last) AND (Passage < 0));
             IF Better AND (Table.Sensor[Index] = Sensor) THEN
                 Way := Table.Path_m[Index] - Table.Path_m[Last];
@@ -113,7 +114,8 @@ IF (Last >= 0) AND (Last < Table.Heard) AND (Table.Heard <= $HEARD) THEN
                     Passage := Index;
                 END_IF;
             END_IF;
-        END_FOR;
+            Index := Index - 1;
+        END_WHILE;
     END_IF;
 END_IF;
 END_FUNCTION_BLOCK
@@ -142,6 +144,9 @@ VAR
     Last : INT;
     Index : INT;
 END_VAR
+VAR CONSTANT
+$LONGEST_WAIT
+END_VAR
 
 Passage := -1;
 (* Indices are used only inside this IF: AND may evaluate both of its sides. *)
@@ -149,29 +154,31 @@ IF (Table.Heard >= 1) AND (Table.Heard <= $HEARD) THEN
     (* No comparison with a NaN is true. *)
     Sound := (Tracker.Passage >= -1) AND (Tracker.Passage < Table.Heard)
         AND (Tracker.Speed_m_s >= 0.0) AND (Tracker.Speed_m_s <= Table.Greatest_m_s)
-        AND (Tracker.Time_s >= 0.0) AND (Tracker.Time_s <= $LONGEST_WAIT_REAL)
+        AND (Tracker.Time_s >= 0.0) AND (Tracker.Time_s <= LongestWait_s)
         AND (Tracker.Rival >= -1) AND (Tracker.Rival < Table.Heard)
         AND (Tracker.RivalSpeed_m_s >= 0.0) AND (Tracker.RivalSpeed_m_s <= Table.Greatest_m_s)
-        AND (Tracker.RivalTime_s >= 0.0) AND (Tracker.RivalTime_s <= $LONGEST_WAIT_REAL);
+        AND (Tracker.RivalTime_s >= 0.0) AND (Tracker.RivalTime_s <= LongestWait_s);
     IF NOT Sound THEN
         Beginner(Tracker := Tracker);
     END_IF;
     First := -1;
-    IF (Since_s >= 0.0) AND (Since_s <= $LONGEST_WAIT_REAL) THEN
+    IF (Since_s >= 0.0) AND (Since_s <= LongestWait_s) THEN
         Tracker.Time_s := Tracker.Time_s + Since_s;
-        IF Tracker.Time_s > $LONGEST_WAIT_REAL THEN
-            Tracker.Time_s := $LONGEST_WAIT_REAL;
+        IF Tracker.Time_s > LongestWait_s THEN
+            Tracker.Time_s := LongestWait_s;
         END_IF;
         Tracker.RivalTime_s := Tracker.RivalTime_s + Since_s;
-        IF Tracker.RivalTime_s > $LONGEST_WAIT_REAL THEN
-            Tracker.RivalTime_s := $LONGEST_WAIT_REAL;
+        IF Tracker.RivalTime_s > LongestWait_s THEN
+            Tracker.RivalTime_s := LongestWait_s;
         END_IF;
         IF (Speed_m_s >= Table.Least_m_s) AND (Speed_m_s <= Table.Greatest_m_s) THEN
-            FOR Index := Table.Heard - 1 TO 0 BY -1 DO
+            Index := Table.Heard - 1;
+            WHILE Index >= 0 DO
                 IF Table.Sensor[Index] = Sensor THEN
                     First := Index;
                 END_IF;
-            END_FOR;
+                Index := Index - 1;
+            END_WHILE;
         END_IF;
     END_IF;
     IF First >= 0 THEN

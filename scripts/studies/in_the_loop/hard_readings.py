@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from tuning_tables.table_block import LAYOUT
 
 from scripts.studies.in_the_loop.controller_process import COMMAND, READING
 from tuning_tables import ControllerTable
 from tuning_tables.golden_choices import golden_choices
 from tuning_tables.golden_vectors import golden_vectors, line_speeds
-from tuning_tables.rule import rises
-from tuning_tables.table_block import LAYOUT
+from tuning_tables.rule import rises_at
 from tuning_tables.table_book import TableBook
 
 
@@ -48,7 +48,7 @@ def near_lines(book: TableBook, count: int, rng: np.random.Generator) -> NDArray
         kpa = pressures(table, k, each, rng) if table.has_gauge else np.full(each, np.nan, np.float32)
         v = line_speeds(table.coefficients[k, i], np.clip(s, table.valid_range[0], table.valid_range[1]))
         if table.has_gauge:
-            v = v + rises_of(table, k, kpa)[:, i]
+            v = v + rises_at(table, k, kpa)[:, i]
         steps = rng.integers(-2, 3, each)
         for _ in range(2):
             towards = np.where(steps < 0, -np.inf, np.inf).astype(np.float32)
@@ -74,12 +74,6 @@ def pressures(table: ControllerTable, stage: int, count: int, rng: np.random.Gen
 
 NO_PRESSURES = np.array([np.nan, np.inf, -np.inf, 3.4028235e38, -3.4028235e38, 1e-45, -0.0], dtype=np.float32)
 """What is no pressure, and what only just is one."""
-
-
-def rises_of(table: ControllerTable, stage: int, pressure_kpa: NDArray[np.float32]) -> NDArray[np.float32]:
-    """What pressures (n,) add to both lines of a stage, (n, 2), m/s."""
-    found = [rises(table.slopes, table.pressures, table.highest_raised, stage, float(kpa)) for kpa in pressure_kpa]
-    return np.array(found, dtype=np.float32)
 
 
 def anything(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[np.void]:

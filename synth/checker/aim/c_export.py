@@ -7,11 +7,14 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from synth.checker.aim.reading import Aim
-from synth.checker.c_export import Words, ascii_comment, word_difference, words_of_array
 from synth.checker.canonical import crc32
 from synth.checker.category_number import YARD
+from synth.checker.code_records import words_of_array
 from synth.checker.finding import DamagedError
-from synth.checker.float32 import WORD, bits
+from synth.checker.float32 import FLOAT, WORD, bits
+from synth.checker.line_export import ascii_comment
+
+Words = tuple[int, ...]
 
 ARRAY: Final = re.compile(r"const aim_table aim_tables\[\w*\]\s*=\s*(\{.*?\})\s*;", re.DOTALL)
 COUNT: Final = re.compile(r"const unsigned aim_table_count\s*=\s*(\d{1,6})u\s*;")
@@ -87,3 +90,15 @@ def words_of(aim: Aim, size: tuple[int, int, int]) -> Words:
 def padded(words: list[int], length: int) -> list[int]:
     """`words` with zeros behind them."""
     return words + [0] * (length - len(words))
+
+
+def word_difference(number: int, block: Words, wanted: Words) -> str:
+    """The first word in which two blocks differ."""
+    if len(block) != len(wanted):
+        return f"table {number} has {len(block)} words, but {len(wanted)} are due"
+    at = next(i for i, (a, b) in enumerate(zip(block, wanted, strict=True)) if a != b)
+    values = [FLOAT.unpack(WORD.pack(words[at]))[0] for words in (block, wanted)]
+    return (
+        f"word {at} of table {number} is {block[at]:08x} ({values[0]:.9g}), "
+        f"but the table says {wanted[at]:08x} ({values[1]:.9g})"
+    )

@@ -11,11 +11,11 @@ from typing import Final
 
 from synth.checker.aim import c_export, csv_export, st_export
 from synth.checker.aim.reading import Aim
+from synth.checker.aim.st_export import read_arrays
 from synth.checker.csv_export import read_rows
 from synth.checker.export_check import Check, Differences
 from synth.checker.finding import DamagedError
 from synth.checker.source_file import content_of, text_of
-from synth.checker.st_export import read_arrays
 
 FOLDERS: Final = ("", "c", "st")
 UNITS: Final = "LOAD|SELECT|EXIT_SPEED"

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, Final
 
 from synth.checker.aim.reading import Aim
+from synth.checker.finding import DamagedError, shown
 from synth.checker.float32 import rounded
-from synth.checker.st_export import Arrays, array_differences
+
+ARRAY: Final = re.compile(r"\b(\w+) : ARRAY\[0\.\.(\d{1,6})\] OF (REAL|INT|BOOL) := \[([^\]]*)\];")
+COMMENT: Final = re.compile(r"\(\*.*?\*\)", re.DOTALL)
+
+Arrays = dict[str, list[list[Any]]]
 
 
 def differences(arrays: Arrays, aims: Sequence[Aim]) -> Iterator[tuple[str, str]]:
@@ -46,3 +52,38 @@ def differences(arrays: Arrays, aims: Sequence[Aim]) -> Iterator[tuple[str, str]
         yield from array_differences(name, arrays, values, about[name])
     for name in sorted(arrays.keys() - wanted.keys() - {"CategoryOf", "MeasuredOf"}):
         yield "", f"the array {name} is of no table"
+
+
+def read_arrays(source: str) -> Arrays:
+    """All constant arrays by name, each as often as it is declared; `DamagedError` for one that cannot be read."""
+    found: Arrays = {}
+    for name, last, kind, content in ARRAY.findall(COMMENT.sub(" ", source)):
+        try:
+            values = [value_of(literal.strip(), kind) for literal in content.split(",")]
+        except ValueError:
+            raise DamagedError(f"the array {name} holds something else than {kind}") from None
+        if len(values) != int(last) + 1:
+            raise DamagedError(f"the array {name} holds {len(values)} values, but is declared with {int(last) + 1}")
+        found.setdefault(name, []).append(values)
+    return found
+
+
+def value_of(literal: str, kind: str) -> Any:
+    """The value of a literal; a REAL as float32 number."""
+    if kind == "BOOL":
+        return {"TRUE": True, "FALSE": False}.get(literal) if literal in ("TRUE", "FALSE") else int("no BOOL")
+    if kind == "INT":
+        return int(literal)
+    return rounded(float(literal))
+
+
+def array_differences(name: str, arrays: Arrays, wanted: list[Any], about: str) -> Iterator[tuple[str, str]]:
+    """What is wrong with every declaration of the array `name`."""
+    if name not in arrays:
+        yield about, f"the array {name} is missing"
+    for found in arrays.get(name, []):
+        if len(found) != len(wanted):
+            yield about, f"{name} has {len(found)} values, but {len(wanted)} are due"
+        elif found != wanted:
+            at = next(i for i, (a, b) in enumerate(zip(found, wanted, strict=True)) if a != b)
+            yield about, f"{name}[{at}] is {shown(found[at])}, but the table says {shown(wanted[at])}"

@@ -21,7 +21,6 @@ from synth.kernels.loop.regulator import (
     admitted,
     estimated_speed,
     measure,
-    pressure_rises,
     stage_by_lines,
     stage_by_table,
 )
@@ -47,14 +46,10 @@ class SampledDrive(NamedTuple):
 class AnyTimeLaw(NamedTuple):
     """What is asked at every sample: a rule of the locked loop.
 
-    `slopes` float32 (K + 1, 2), `pressures` float32 (K + 1,), `highest_raised`: those of a table, as
-    `tuning_tables.rule.rises` takes them. The gauge shows `gauge_factor` times the true pressure; NaN: it shows none.
+    The gauge shows `gauge_factor` times the true pressure; NaN: it shows none.
     """
 
     rule: Rule
-    slopes: NDArray[np.float32]
-    pressures: NDArray[np.float32]
-    highest_raised: int
     gauge_factor: float
 
 
@@ -62,11 +57,8 @@ class AnyTimeLaw(NamedTuple):
 def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, s: float, v: float) -> int:
     """The stage that is wanted at a sample, within 0 … `top`; `v` is the speed that the regulator knows."""
     by = law.rule
-    if by.coefficients.shape[0] > 0:
-        shown = pressure * law.gauge_factor
-        rise = pressure_rises(law.slopes, law.pressures, law.highest_raised, stage, shown)
-        lines, limits = (by.coefficients, by.has_line, by.valid), (by.entrance_stage, by.farthest)
-        by_table: int = stage_by_table(*lines, limits, stage, s, v, rise)
+    if by.table.stages > 0:
+        by_table: int = stage_by_table(by.table, stage, s, v, pressure * law.gauge_factor)
         return by_table
     wanted: int = stage_by_lines(by.lower, by.upper, by.start_m, by.spacing_m, by.farthest, stage, top, s, v)
     return wanted
@@ -110,8 +102,8 @@ def run_any_time_pass(
 
     `known` (16,) is memory for the estimator, `over` (parts,) for the overpressures of a period.
     """
-    parameters, work = law.rule.estimator_parameters, law.rule.estimator_work
-    estimating = work.shape[1] > 0
+    table = law.rule.table
+    estimating = table.breaks > 0
     lead_s, gain = law.rule.lead_s, sensor.period_s / (sensor.period_s + law.rule.filter_s)
     known[:], passed_kpa, slope, last = 0.0, 0.0, 0.0, math.nan
     stage_kpa, touch = drive.stage_kpa, drive.valves.touch_kpa
@@ -124,7 +116,7 @@ def run_any_time_pass(
     while status == MOVING and sample < longest:
         measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
         if estimating:
-            measured = float(estimated_speed(parameters, work, known, s, measured, passed_kpa))
+            measured = float(estimated_speed(table, known, s, measured, passed_kpa))
         if not math.isnan(measured - last):  # neither at the first sample nor beside a missing reading
             slope += gain * ((measured - last) / period - slope)
         last = measured

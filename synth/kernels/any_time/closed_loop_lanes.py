@@ -34,15 +34,15 @@ def listen(
         s, stage, state = packs.gather(x, lane + S), packs.gather(n, lane + STAGE), packs.gather(n, lane + PIECE)
         speed = measured(x, n, lane, sensor, noise_z)
         there = lane < LANES
-        if rule.estimator_work.shape[1] > 0:
+        if rule.table.breaks > 0:
             i = packs.gather(n, lane + PASS)
-            speed = estimated(observed, rule.estimator_parameters, rule.estimator_work, there, i, s, speed)
+            speed = estimated(observed, rule.table, there, i, s, speed)
             packs.scatter(observed.passed_kpa, i, there, packs.gather(played.pieces.mean_kpa, state))
         unplayed = packs.gather(x, lane + LEFT_S) == 0.0
-        if rule.coefficients.shape[0] > 0:
+        if rule.table.stages > 0:
             at = state * 2
             rises = packs.gather(played.rises, at), packs.gather(played.rises, at + 1)
-            speaks = there & (unplayed | speaks_by_table(rule, stage, s, speed, *rises))
+            speaks = there & (unplayed | speaks_by_table(rule.table, stage, s, speed, *rises))
         else:
             speed = foretold(x, lane, speed, speed, sensor, rule)
             speaks = there & (unplayed | speaks_by_lines(rule, stage, s, speed))
@@ -65,7 +65,7 @@ def regulate(
         n[SWITCHINGS + lane] += 1
     first = first_piece(played, drive, law, sensor.period_s, lane, state, wanted)
     n[STAGE + lane], n[PIECE + lane], x[LEFT_S + lane] = wanted, first, played.pieces.duration_s[first]
-    if law.rule.estimator_work.shape[1] > 0:
+    if law.rule.table.breaks > 0:
         observed.passed_kpa[n[PASS + lane]] = played.pieces.mean_kpa[first]
 
 

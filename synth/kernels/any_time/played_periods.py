@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, joined_until
 from synth.kernels.any_time.driven_period import play_period
 from synth.kernels.loop.lane_places import LANES, Floats, Ints, Pieces
-from synth.kernels.loop.regulator import pressure_rises
+from synth.kernels.loop.regulator import pressure_above_stage
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 STATES, PIECES = 0, 1
@@ -76,8 +76,12 @@ def state_at(played: PlayedPeriods, law: AnyTimeLaw, lane: int, pressure: float,
     else:
         state = pieces.command.shape[0] + lane
     played.pressure_kpa[state], played.wait_s[state], played.stage[state] = pressure, wait, stage
-    rise = pressure_rises(law.slopes, law.pressures, law.highest_raised, stage, pressure * law.gauge_factor)
-    played.rises[state, 0], played.rises[state, 1] = rise
+    table = law.rule.table
+    played.rises[state, 0], played.rises[state, 1] = 0.0, 0.0
+    if table.has_gauge == 1:
+        above = pressure_above_stage(table, stage, pressure * law.gauge_factor)
+        played.rises[state, 0] = table.slope[stage, 0] * above
+        played.rises[state, 1] = table.slope[stage, 1] * above
     pieces.duration_s[state] = 0.0
     return state
 

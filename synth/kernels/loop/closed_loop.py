@@ -154,11 +154,10 @@ def run_pass(
     A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (16,)
     is memory for the estimator.
     """
-    coefficients, has_line, valid, gate, farthest, lower, upper, start_m, spacing_m, lead_s, filter_s = law[:11]
-    parameters, work = law.estimator_parameters, law.estimator_work
+    table, lower, upper, start_m, spacing_m, farthest, lead_s, filter_s = law
     mode_kpa, command, chain_mode, chain_samples, chain_kpa, substeps, mode, stage, entrance_stage = drive
     period, part = sensor.period_s, sensor.period_s / substeps
-    tabled, estimating = coefficients.shape[0] > 0, work.shape[1] > 0
+    tabled, estimating = table.stages > 0, table.breaks > 0
     known[:], passed_kpa = 0.0, 0.0
     top = command.shape[1] - 1
     gain, longest = period / (period + filter_s), int(LONGEST_PASS_S / period)
@@ -177,11 +176,11 @@ def run_pass(
                 slope += gain * ((measured - before) / period - slope)
             before = measured
         if estimating:
-            estimated = float(estimated_speed(parameters, work, known, s, measured, passed_kpa))
+            estimated = float(estimated_speed(table, known, s, measured, passed_kpa))
             measured = estimated if chain < 0 else math.nan  # compared, and noted, only at rest
         if chain < 0:
             if tabled:
-                wanted = stage_by_table(coefficients, has_line, valid, (gate, farthest), stage, s, measured)
+                wanted = stage_by_table(table, stage, s, measured, math.nan)
             else:
                 ahead = measured + lead_s * slope
                 wanted = stage_by_lines(lower, upper, start_m, spacing_m, farthest, stage, top, s, ahead)

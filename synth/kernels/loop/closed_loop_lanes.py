@@ -195,7 +195,7 @@ def run_lanes(
     x, n = work.floats, work.ints
     brakes, longest = draws.brake_m_s2_per_kpa.reshape(-1), int(LONGEST_PASS_S / sensor.period_s)
     active = min(LANES, draws.cut_factor.shape[0])
-    filters = law.lead_s != 0.0 or law.estimator_work.shape[1] > 0
+    filters = law.lead_s != 0.0 or law.table.breaks > 0
     looked_at = pieces.sampled if filters else pieces.resting
     begin_all(work, active, path, pieces, draws)
     following = active

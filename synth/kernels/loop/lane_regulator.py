@@ -5,6 +5,8 @@ The rule itself is only asked where it has a command to give: its branches are d
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,16 +45,16 @@ def listen(
         s, stage = packs.gather(x, lane + S), packs.gather(n, lane + STAGE)
         read = measured(x, n, lane, sensor, noise_z)
         speed, there = read, lane < LANES
-        if law.estimator_work.shape[1] > 0:
+        if law.table.breaks > 0:
             i, kpa = packs.gather(n, lane + PASS), packs.gather(pieces.mean_kpa, packs.gather(n, lane + PIECE))
-            speed = estimated(observed, law.estimator_parameters, law.estimator_work, there, i, s, read)
+            speed = estimated(observed, law.table, there, i, s, read)
             packs.scatter(observed.passed_kpa, i, there, kpa)  # if there is no command
-        if law.coefficients.shape[0] > 0:
-            speaks = speaks_by_table(law, stage, s, speed, 0.0, 0.0)
+        if law.table.stages > 0:
+            speaks = speaks_by_table(law.table, stage, s, speed, 0.0, 0.0)
         else:
             speed = foretold(x, lane, speed, read, sensor, law)
             speaks = speaks_by_lines(law, stage, s, speed)
-        if law.lead_s != 0.0 or law.estimator_work.shape[1] > 0:
+        if law.lead_s != 0.0 or law.table.breaks > 0:
             # These look at the sensor within a chain, too, but there is no command there.
             speaks = there & speaks & (packs.gather(n, lane + PIECE) < pieces.resting)
         packs.keep(work.heard, told, speaks, speed)
@@ -96,21 +98,21 @@ def slope(x, lane, speed, period_s, filter_s):
 
 
 @borrowing_inline
-def speaks_by_table(law, stage, s_m, v_m_s, lower_rise, upper_rise):
-    """Whether the table has a command, by the arithmetic of `rule.decide`; a line that is not there is NaN.
+def speaks_by_table(table, stage, s_m, v_m_s, lower_rise, upper_rise):
+    """Whether the table has a command, by the arithmetic of `programs.decide`; a line that is not there is NaN.
 
     `lower_rise`, `upper_rise` float32: what the pressure adds to the lines; numbers for all lanes, or packs of them.
     For readings within the numbers of float32, which is all that the loop has; NaN: no command.
     """
     s, v = packs.narrow(s_m), packs.narrow(v_m_s)
-    s = packs.least(packs.greatest(s, law.valid[0]), law.valid[1])
-    terms = law.coefficients.shape[2]
+    s = packs.least(packs.greatest(s, table.path_min_m), table.path_max_m)
+    terms = table.coefficient.shape[2]
     below, above = stage * (2 * terms), stage * (2 * terms) + terms
-    lower = packs.gather(law.coefficients, below + (terms - 1))
-    upper = packs.gather(law.coefficients, above + (terms - 1))
+    lower = packs.gather(table.coefficient, below + (terms - 1))
+    upper = packs.gather(table.coefficient, above + (terms - 1))
     for power in range(terms - 2, -1, -1):
-        lower = lower * s + packs.gather(law.coefficients, below + power)
-        upper = upper * s + packs.gather(law.coefficients, above + power)
+        lower = lower * s + packs.gather(table.coefficient, below + power)
+        upper = upper * s + packs.gather(table.coefficient, above + power)
     return (v < lower + lower_rise) | (v > upper + upper_rise)
 
 
@@ -131,9 +133,8 @@ def speaks_by_lines(law, stage, s, v):
 def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, law: Rule, observed: Observed) -> None:
     """What the regulator does where it has a command (as in `closed_loop.run_pass`)."""
     s, stage, top = x[S + lane], n[STAGE + lane], pieces.command.shape[1] - 1
-    if law.coefficients.shape[0] > 0:
-        lines, limits = (law.coefficients, law.has_line, law.valid), (law.entrance_stage, law.farthest)
-        wanted = stage_by_table(*lines, limits, stage, s, speed_m_s)
+    if law.table.stages > 0:
+        wanted = stage_by_table(law.table, stage, s, speed_m_s, math.nan)
     else:
         wanted = stage_by_lines(
             law.lower, law.upper, law.start_m, law.spacing_m, law.farthest, stage, top, s, speed_m_s
@@ -144,5 +145,5 @@ def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, la
         n[STAGE + lane], n[PIECE + lane] = wanted, first
         n[SWITCHINGS + lane] += 1
         x[LEFT_S + lane] = pieces.duration_s[first]
-        if law.estimator_work.shape[1] > 0:
+        if law.table.breaks > 0:
             observed.passed_kpa[n[PASS + lane]] = pieces.mean_kpa[first]

@@ -1,8 +1,6 @@
 """Kernel of the regulator in the closed loop: what it measures, what it estimates, which stage it wants.
 
-The tables' own rule and estimator are compiled here unchanged, so that the loop is driven by what a controller runs:
-the one import that is neither numpy nor numba. Numba does not notice that an imported function has changed: the cache
-directory must be named by a hash that covers `tuning_tables/rule.py` and `estimator.py` too.
+The tables' own rule and estimator are compiled unchanged (`compiled_rules`).
 """
 
 from __future__ import annotations
@@ -10,11 +8,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from synth.kernels.compiled_rules import compiled_rule
 from synth.kernels.vector.borrowing import borrowing_inline
-from tuning_tables import estimator, rule
+from tuning_tables.programs.decide import decide, pressure_above
+from tuning_tables.programs.line_table import LineTable
+from tuning_tables.programs.observe import observe
 
 Floats = NDArray[np.float64]
 
@@ -28,34 +28,27 @@ class Sensor(NamedTuple):
 
 
 class Rule(NamedTuple):
-    """Switching rule: a polynomial table, or lines if the table has no stage (`coefficients` of size 0).
+    """Switching rule: a table, or lines if the table has no stage.
 
-    Table: `coefficients` float32 (K + 1, 2, r + 1), NaN where there is no line, `has_line` (K + 1, 2), `valid`
-    float32 (4,), `entrance_stage` the highest stage that may be commanded at s < 0. Lines: `lower`, `upper`
-    (K + 1, N + 1) over nodes `spacing_m` apart from `start_m` on. Either is asked again at the stage reached, as long
-    as it answers the same, until the command has gone `farthest` stages. The speed compared with lines is measured +
-    `lead_s`·slope, the slope filtered over `filter_s`. With `estimator_work` (3, B), B > 0, the speed compared is that
-    of `tuning_tables.estimator`.
+    `table`: coefficients are NaN where there is no line; with breaks the speed compared is that of its estimator.
+    Lines: `lower`, `upper` (K + 1, N + 1) over nodes `spacing_m` apart from `start_m` on. They are asked again at the
+    stage reached, as long as they answer the same, until the command has gone `farthest` stages. The speed compared
+    with lines is measured + `lead_s`·slope, the slope filtered over `filter_s`.
     """
 
-    coefficients: NDArray[np.float32]
-    has_line: NDArray[np.bool_]
-    valid: NDArray[np.float32]
-    entrance_stage: int
-    farthest: int
+    table: LineTable
     lower: Floats
     upper: Floats
     start_m: float
     spacing_m: float
+    farthest: int
     lead_s: float
     filter_s: float
-    estimator_parameters: NDArray[np.float32]
-    estimator_work: NDArray[np.float32]
 
 
-stage_by_table = njit(cache=True, nogil=True)(rule.decide)
-pressure_rises = njit(cache=True, nogil=True)(rule.rises)
-estimated_speed = njit(cache=True, nogil=True)(estimator.observe)
+stage_by_table = compiled_rule(decide)
+estimated_speed = compiled_rule(observe)
+pressure_above_stage = compiled_rule(pressure_above)
 
 
 @borrowing_inline

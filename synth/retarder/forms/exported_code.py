@@ -1,62 +1,39 @@
-"""Controller code that lies about: recognised with its layout, not read."""
+"""Controller code that lies about: recognised, not read."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tuning_tables.regular_file import first_bytes
-from tuning_tables.table_block import LAYOUT
 
-BEGINNING = b"Controller tables of a car retarder"
-PASSAGES_BEGINNING = b"Controller tables of a car retarder with point sensors"
-AIM_BEGINNING = b"Aim tables of a park position"
-UNLAID = {
-    AIM_BEGINNING: "aim tables in {}; verify compares them with the tables",
-    PASSAGES_BEGINNING: "tables for point sensors in {}; their self-test tells whether they are whole",
+BEGINNINGS = {
+    b"Aim tables of a park position": "aim tables in {}; verify compares them with the tables",
+    b"Controller tables of a car retarder with point sensors": (
+        "tables for point sensors in {}; their self-test tells whether they are whole"
+    ),
+    b"Controller tables of a car retarder": "{}; verify compares it with the tables",
 }
-"""What is said of code that has no layout, by its beginning."""
-LAYOUTS = {
-    "C99": re.compile(rb"#define \w+_LAYOUT (\d{1,6})u"),
-    "Structured Text": re.compile(rb"^   layout +(\d{1,6}) ", re.MULTILINE),
-}
+"""What is said of code, by its beginning."""
 LANGUAGES = {".h": "C99", ".c": "C99", ".st": "Structured Text"}
 FOLDERS = ("", "c", "st")
 PATTERNS = ("*_table.h", "*_passages.h", "*.st")
-MOST_BYTES = 65536
-"""The layout stands near the beginning."""
+MOST_BYTES = 4096
 
 
 @dataclass(frozen=True)
 class ExportedCode:
-    """An export of controller code, and its layout: 1 where it states none, None of tables that have none.
-
-    `beginning`: which of these it is, a key of `UNLAID`; empty for code with a layout.
-    """
+    """An export of controller code: where it is, in which language, and what is said of it."""
 
     path: Path
     language: str
-    layout: int | None
-    beginning: bytes = b""
-
-    @property
-    def sentence(self) -> str:
-        """What it is, and what to do if it is not of today's layout."""
-        if self.layout is None:
-            return UNLAID[self.beginning].format(self.language)
-        if self.layout > LAYOUT:
-            return f"{self.language}, layout {self.layout}; this version knows layout {LAYOUT}: update it"
-        if self.layout == LAYOUT:
-            return f"{self.language}, layout {LAYOUT}; verify compares it with the tables"
-        return f"{self.language}, layout 1, whose numbers of categories follow the order of the tables: export again"
+    sentence: str
 
     def document(self) -> dict[str, Any]:
         """The same for programs."""
-        told = {"path": str(self.path), "language": self.language}
-        return told if self.layout is None else {**told, "layout": self.layout, "current": LAYOUT}
+        return {"path": str(self.path), "language": self.language}
 
 
 def exported_code(path: Path) -> tuple[ExportedCode, ...]:
@@ -78,10 +55,7 @@ def recognised(file: Path) -> Iterator[ExportedCode]:
         text = first_bytes(head, MOST_BYTES)
     except OSError:  # whoever reads it for its tables tells why
         return
-    for beginning in UNLAID:
+    for beginning, sentence in BEGINNINGS.items():
         if beginning in text[: 2 * len(beginning)]:
-            yield ExportedCode(file, language, None, beginning)
+            yield ExportedCode(file, language, sentence.format(language))
             return
-    if BEGINNING in text[: 2 * len(BEGINNING)]:
-        found = LAYOUTS[language].search(text)
-        yield ExportedCode(file, language, int(found[1]) if found else 1)

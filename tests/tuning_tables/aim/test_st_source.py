@@ -12,8 +12,9 @@ import pytest
 
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
+from tests.tuning_tables.st.compiler import BINARY32, ROUNDINGS, Compiler, name_of
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Fault, Real
+from tests.tuning_tables.st.storage import Fault
 from tests.tuning_tables.st.syntax import faults, parse, walk
 from tests.tuning_tables.st.test_syntax import KEYWORDS
 from tuning_tables.aim import AimAxes, AimCategory, AimTable, AimTables
@@ -25,12 +26,12 @@ QUESTIONS = 200_000
 SOUND = {"DONE": 1, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
 
 
-@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_hard_questions_are_answered_as_by_python_to_the_last_bit(real: Real) -> None:
+@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+def test_hard_questions_are_answered_as_by_python_to_the_last_bit(compiler: Compiler) -> None:
     aims = sample_set()
     asked = hard_questions(aims, QUESTIONS, 20261123)
     asked["cars"] = np.clip(asked["cars"], -32768, 32767)  # an INT has 16 bits
-    program = Program(aim_st_files(aims)[AIM_FILE], real)
+    program = Program(aim_st_files(aims)[AIM_FILE], compiler)
     right = answers(aims, asked)
     for number in range(len(aims.tables)):
         here = asked[asked["table"] == number]
@@ -89,22 +90,22 @@ def small_set() -> AimTables:
 
 
 def run_all(
-    files: Mapping[str, bytes], calls: int, change: Callable[[str], str] = str, real: Real = np.float32
+    files: Mapping[str, bytes], calls: int, change: Callable[[str], str] = str, compiler: Compiler = BINARY32
 ) -> dict[str, int]:
     """The outputs after that many calls of AIM_SELF_TEST, with the text of the tables changed."""
     texts = change(files[AIM_FILE].decode("ascii")), files[AIM_SELF_TEST_FILE].decode("ascii")
-    program = Program("".join(texts).encode("ascii"), real)
+    program = Program("".join(texts).encode("ascii"), compiler)
     instance = program.new("AIM_SELF_TEST")
     for _ in range(calls):
         program.call("AIM_SELF_TEST", instance, Restart=False)
     return {name: int(instance[name].value) for name in SOUND}
 
 
-@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_nothing_is_wrong_with_the_export(real: Real) -> None:
+@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+def test_nothing_is_wrong_with_the_export(compiler: Compiler) -> None:
     for aims in (small_set(), AimTables(sample_set().tables[:8])):
         for ask in (golden_aims, few_golden_aims):
-            assert run_all(aim_st_files(aims, RETARDER, ask), len(aims.tables) + 1, real=real) == SOUND
+            assert run_all(aim_st_files(aims, RETARDER, ask), len(aims.tables) + 1, compiler=compiler) == SOUND
 
 
 def test_it_takes_a_call_a_table_and_can_be_repeated() -> None:

@@ -1,7 +1,6 @@
 """An evaluator of Structured Text: it reads the parse tree alone, and runs it for many inputs (lanes) at once.
 
-REAL is float32 after every operation, or, with `real=np.float64`, computed in double precision and rounded where it is
-assigned; INT has 16 bits. It knows nothing of tables.
+It runs a text as a given `Compiler` does; variables of REAL are float32, INT has 16 bits. It knows nothing of tables.
 """
 
 from __future__ import annotations
@@ -13,9 +12,10 @@ from typing import TypeVar
 
 import numpy as np
 
+from tests.tuning_tables.st.compiler import BINARY32, Compiler
 from tests.tuning_tables.st.expressions import Arithmetic, compile_expression
 from tests.tuning_tables.st.statements import Execute, StatementCompiler
-from tests.tuning_tables.st.storage import Array, Fault, Frame, Initial, Kind, Real, Record, Scalar, Value, variable
+from tests.tuning_tables.st.storage import Array, Fault, Frame, Initial, Kind, Record, Scalar, Value, variable
 from tests.tuning_tables.st.syntax import Node, faults, parse, part, parts, word
 
 Entry = TypeVar("Entry")
@@ -33,13 +33,16 @@ class Block:
 
 
 class Program:
-    """All types and function blocks of a text; the order of declaration counts. Raises `Fault`."""
+    """All types and function blocks of a text, as `compiler` runs them; the order of declaration counts.
 
-    def __init__(self, text: bytes, real: Real = np.float32) -> None:
+    Raises `Fault`.
+    """
+
+    def __init__(self, text: bytes, compiler: Compiler = BINARY32) -> None:
         root = parse(text)
         if faults(root):
             raise Fault(f"this is no Structured Text: {faults(root)}")
-        self.arithmetic = Arithmetic(real)
+        self.arithmetic = Arithmetic(compiler)
         self.types: dict[str, Kind] = {kind: Scalar(kind) for kind in ("REAL", "INT", "BOOL")}
         self.blocks: dict[str, Block] = {}
         for node in root.named_children:

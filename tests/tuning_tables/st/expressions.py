@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from tests.tuning_tables.st.compiler import BINARY32, Compiler
 from tests.tuning_tables.st.storage import (
     INT_LIMITS,
     Array,
@@ -20,7 +21,6 @@ from tests.tuning_tables.st.storage import (
     Frame,
     Kind,
     Mask,
-    Real,
     Record,
     Scalar,
     Value,
@@ -55,9 +55,9 @@ class Expression:
 
 @dataclass
 class Arithmetic:
-    """How REAL is computed between two assignments, and how often what was done: float32, or float64 to be rounded."""
+    """Who computes, and how often what was done."""
 
-    real: Real = np.float32
+    compiler: Compiler = BINARY32
     done: Counter[str] = field(default_factory=Counter)
 
 
@@ -121,7 +121,8 @@ def compile_element(node: Node, scope: Scope, arithmetic: Arithmetic) -> tuple[E
 
 def widened(value: Value, arithmetic: Arithmetic) -> Value:
     """A stored REAL in the width that is calculated in."""
-    return value if value.dtype == arithmetic.real else arithmetic.real(value)
+    between = arithmetic.compiler.between
+    return value if value.dtype == between else between(value)
 
 
 def _reader(row: Element, index: Evaluate, arithmetic: Arithmetic) -> Evaluate:
@@ -139,7 +140,7 @@ def _literal(node: Node, arithmetic: Arithmetic) -> Expression:
         value = np.bool_(text == "TRUE")
         return Expression("BOOL", lambda frame, mask: value)
     if node.type == "real_literal":
-        number = arithmetic.real(float(text))
+        number = arithmetic.compiler.literals(float(text))
         return Expression("REAL", lambda frame, mask: number)
     if not INT_LIMITS[0] <= int(text) <= INT_LIMITS[1]:
         raise Fault(f"{text} is no INT")
@@ -162,6 +163,11 @@ def _binary(node: Node, scope: Scope, arithmetic: Arithmetic) -> Expression:
     if left.kind != right.kind:
         raise Fault(f"{node.text!r} mixes {left.kind} and {right.kind}")
     kind = left.kind
+    if operator in ("+", "-") and kind == "REAL" and arithmetic.compiler.fuses:
+        for product, other, is_left in ((part(node, "left"), right, True), (part(node, "right"), left, False)):
+            factors = _factors(product, scope, arithmetic)
+            if factors is not None:
+                return Expression(kind, _fused(operator, factors, other.run, is_left, arithmetic))
     if operator in ARITHMETIC and kind != "BOOL" and (operator, kind) != ("/", "INT"):
         return Expression(kind, _calculation(operator, kind, left.run, right.run, arithmetic))
     if operator in COMPARISONS and kind != "BOOL":
@@ -184,11 +190,45 @@ def _calculation(operator: str, kind: str, left: Evaluate, right: Evaluate, arit
 
     def run(frame: Frame, mask: Mask) -> Value:
         arithmetic.done[f"{kind} {operator}"] += 1
-        value = operation(left(frame, mask), right(frame, mask))
-        low, high = INT_LIMITS
-        wrong = ~np.isfinite(value) if kind == "REAL" else (value < low) | (value > high)
-        if somewhere(wrong, mask):
-            raise Fault(f"{kind} {operator} has no {kind} result")
-        return value
+        return _required(operation(left(frame, mask), right(frame, mask)), operator, kind, mask)
+
+    return run
+
+
+def _required(value: Value, operator: str, kind: str, mask: Mask) -> Value:
+    """`value`, which must be a number of its kind where `mask` is true."""
+    low, high = INT_LIMITS
+    wrong = ~np.isfinite(value) if kind == "REAL" else (value < low) | (value > high)
+    if somewhere(wrong, mask):
+        raise Fault(f"{kind} {operator} has no {kind} result")
+    return value
+
+
+def _factors(node: Node, scope: Scope, arithmetic: Arithmetic) -> tuple[Evaluate, Evaluate] | None:
+    """Both sides of a product, also in brackets; None if `node` is none."""
+    if node.type == "parenthesized_expression":
+        return _factors(node.named_children[0], scope, arithmetic)
+    if node.type != "binary_expression" or word(part(node, "operator")) != "*":
+        return None
+    left, right = (compile_expression(part(node, side), scope, arithmetic) for side in ("left", "right"))
+    return left.run, right.run
+
+
+def _fused(
+    operator: str, factors: tuple[Evaluate, Evaluate], other: Evaluate, product_is_left: bool, arithmetic: Arithmetic
+) -> Evaluate:
+    """A product and a sum with one rounding, as `Compiler` says."""
+    operation = ARITHMETIC[operator]
+
+    def run(frame: Frame, mask: Mask) -> Value:
+        arithmetic.done["REAL *"] += 1
+        arithmetic.done[f"REAL {operator}"] += 1
+        first, second, summand = (np.asarray(each(frame, mask)) for each in (*factors, other))
+        narrow, kind = np.result_type(first, second), np.result_type(first, second, summand)
+        product = first.astype(np.float64) * second
+        if narrow != kind:  # a product of REALs that is widened before the sum
+            product = product.astype(narrow)
+        sides = (product, summand) if product_is_left else (summand, product)
+        return _required(operation(*sides).astype(kind)[()], operator, "REAL", mask)
 
     return run

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Mapping
 from enum import Enum
 from typing import Final, Protocol, TypeAlias
 
 import numpy as np
 
+from tests.tuning_tables.st.compiler import Loops
 from tests.tuning_tables.st.expressions import (
     Arithmetic,
     Evaluate,
@@ -16,7 +18,7 @@ from tests.tuning_tables.st.expressions import (
     compile_expression,
     resolve,
 )
-from tests.tuning_tables.st.storage import Fault, Frame, Kind, Mask, Record, Scalar, Value
+from tests.tuning_tables.st.storage import INT_LIMITS, Fault, Frame, Kind, Mask, Record, Scalar, Value
 from tests.tuning_tables.st.syntax import Node, part, parts, word
 
 Execute: TypeAlias = Callable[[Frame, Mask], None]
@@ -80,6 +82,7 @@ class StatementCompiler:
             "if_statement": self.branches,
             "case_statement": self.cases,
             "for_statement": self.loop,
+            "while_statement": self.repeated,
             "invocation_statement": self.invocation,
         }
         if node.type not in compilers:
@@ -177,19 +180,43 @@ class StatementCompiler:
         step_node = node.child_by_field_name("step")
         step = 1 if step_node is None else int(word(step_node))
         body = self.sequence(parts(node, "body"))
-        done = self.arithmetic.done
+        done, loops = self.arithmetic.done, self.arithmetic.compiler.loops
 
         def run(frame: Frame, mask: Mask) -> None:
             count, last, rest = start(frame, mask), end(frame, mask), mask
-            while True:
+            turns: Value = (last - count) // step + 1
+            if loops is Loops.NONE_AT_EQUAL_ENDS:
+                turns = np.where(count == last, 0, turns)
+            if loops is Loops.ONE_BEYOND_THE_END:
+                turns = np.maximum(turns, 1)
+            for turn in itertools.count():
                 done["turn"] += 1
-                here = narrowed(rest, count <= last if step > 0 else count >= last)
+                here = narrowed(rest, turn < turns)
                 if here is NOWHERE:
                     return
                 rest = here
                 control(frame).store(count, rest)
                 body(frame, rest)
                 count = count + step
+
+        return run
+
+    def repeated(self, node: Node) -> Execute:
+        """WHILE ... DO; one that turns more often than an INT counts is a fault."""
+        condition = self.expression(part(node, "condition"), "BOOL")
+        body = self.sequence(parts(node, "body"))
+        done = self.arithmetic.done
+
+        def run(frame: Frame, mask: Mask) -> None:
+            rest = mask
+            for _ in range(INT_LIMITS[1] + 1):
+                done["turn"] += 1
+                here = narrowed(rest, condition(frame, rest))
+                if here is NOWHERE:
+                    return
+                rest = here
+                body(frame, rest)
+            raise Fault("a WHILE loop does not end")
 
         return run
 

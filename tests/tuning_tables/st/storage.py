@@ -17,7 +17,6 @@ class Fault(Exception):
 Value: TypeAlias = Any
 """A numpy number for all lanes, or an array with one for each: float32 or float64, int64, bool_."""
 
-Real: TypeAlias = type[np.float32] | type[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_] | None
 """In which lanes something is executed, None for all."""
 

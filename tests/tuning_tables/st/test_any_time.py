@@ -10,8 +10,8 @@ import pytest
 from scripts.studies.in_the_loop.agreement import ask
 from tests.controller_code.sample_book import approaching_book, sample_book, surface_book, with_slopes
 from tests.controller_code.test_surface_code import mutants, pairs
+from tests.tuning_tables.st.compiler import ROUNDINGS, Compiler, name_of
 from tests.tuning_tables.st.conftest import program_of, shaped_book, texts_of
-from tests.tuning_tables.st.storage import Real
 from tests.tuning_tables.st.test_decide import answers, decisions, loaded
 from tests.tuning_tables.st.test_select import require_equal, select
 from tests.tuning_tables.st.test_self_test import another, calls_of, next_number, run_all, run_until_found
@@ -57,13 +57,13 @@ def test_the_largest_table_is_structured_text() -> None:
     require_structured_text(TableBook((with_slopes(shaped_book(32, 9).tables[0], -1e-5, -1e-5),)))
 
 
-@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_hard_readings_are_decided_alike(surfaces: TableBook, real: Real) -> None:
+@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+def test_hard_readings_are_decided_alike(surfaces: TableBook, compiler: Compiler) -> None:
     questions = ask(surfaces, 200_000, 10, 20261123)
-    assert np.count_nonzero(decisions(surfaces, questions.readings, real) != questions.decisions) == 0
+    assert np.count_nonzero(decisions(surfaces, questions.readings, compiler) != questions.decisions) == 0
     silent = questions.readings.copy()
     silent["pressure_kpa"] = np.nan
-    assert np.count_nonzero(decisions(surfaces, silent, real) != questions.decisions) > 20_000
+    assert np.count_nonzero(decisions(surfaces, silent, compiler) != questions.decisions) > 20_000
 
 
 def test_every_golden_vector_is_answered(surfaces: TableBook) -> None:

@@ -7,8 +7,8 @@ import pytest
 
 from scripts.studies.in_the_loop.agreement import ask
 from tests.controller_code.sample_book import approaching_book
+from tests.tuning_tables.st.compiler import ROUNDINGS, Compiler, name_of
 from tests.tuning_tables.st.conftest import program_of, texts_of
-from tests.tuning_tables.st.storage import Real
 from tests.tuning_tables.st.test_decide import decisions, loaded
 from tests.tuning_tables.st.test_select import require_equal, select
 from tests.tuning_tables.st.test_self_test import another, calls_of, next_number, run_all, run_until_found
@@ -40,14 +40,14 @@ def test_it_is_structured_text_and_its_self_test_finds_nothing_wrong(approached:
         assert outputs == {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
 
 
-@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_hard_readings_are_decided_alike(approached: TableBook, real: Real) -> None:
+@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+def test_hard_readings_are_decided_alike(approached: TableBook, compiler: Compiler) -> None:
     questions = ask(approached, 200_000, 10, 20261122)
     before = (questions.readings["s_m"] < 0.0) & (questions.readings["s_m"] > -10.0)
     far = (questions.decisions - questions.readings["stage"])[before]
     assert min(np.count_nonzero(far < 0), np.count_nonzero(far == 0), np.count_nonzero(far > 0)) > 2_000
     assert np.count_nonzero(far > 1) > 200
-    assert np.count_nonzero(decisions(approached, questions.readings, real) != questions.decisions) == 0
+    assert np.count_nonzero(decisions(approached, questions.readings, compiler) != questions.decisions) == 0
 
 
 def test_the_choice_is_that_of_python(approached: TableBook) -> None:

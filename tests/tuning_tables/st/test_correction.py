@@ -10,9 +10,9 @@ import numpy.typing as npt
 import pytest
 
 from tests.controller_code.test_correction_code import CORRECTION, asked, right
+from tests.tuning_tables.st.compiler import ROUNDINGS, Compiler, name_of
 from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Real
 from tests.tuning_tables.st.syntax import faults, parse, walk
 from tests.tuning_tables.st.test_syntax import KEYWORDS
 from tuning_tables.export_prefix import ExportPrefix
@@ -41,10 +41,10 @@ def answers_of(program: Program, questions: npt.NDArray[np.void]) -> npt.NDArray
     return np.stack([np.broadcast_to(each, error.shape).astype(np.float32) for each in found], axis=1)
 
 
-@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_every_question_is_answered_as_by_python(real: Real) -> None:
+@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+def test_every_question_is_answered_as_by_python(compiler: Compiler) -> None:
     with np.errstate(invalid="ignore"):  # a signalling NaN is widened
-        found = answers_of(Program(FILES[CORRECTION_FILE], real), asked())
+        found = answers_of(Program(FILES[CORRECTION_FILE], compiler), asked())
     # 0 has no sign in Structured Text.
     assert np.array_equal(found, right(), equal_nan=True)
 

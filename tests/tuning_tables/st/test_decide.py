@@ -7,9 +7,10 @@ import numpy.typing as npt
 import pytest
 
 from scripts.studies.in_the_loop.agreement import ask
+from tests.tuning_tables.st.compiler import ROUNDINGS, Compiler, name_of
 from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Fault, Frame, Real
+from tests.tuning_tables.st.storage import Fault, Frame
 from tuning_tables import decide_many
 from tuning_tables.golden_vectors import golden_vectors
 from tuning_tables.st_source import TABLE_FILE
@@ -18,11 +19,11 @@ from tuning_tables.table_book import TableBook
 READINGS = 1_000_000
 
 
-@pytest.fixture(scope="module", params=[np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def real(request: pytest.FixtureRequest) -> Real:
+@pytest.fixture(scope="module", params=ROUNDINGS, ids=name_of)
+def compiler(request: pytest.FixtureRequest) -> Compiler:
     """How the controller calculates with REAL between two assignments."""
-    kind: Real = request.param
-    return kind
+    each: Compiler = request.param
+    return each
 
 
 def loaded(program: Program, number: int) -> Frame:
@@ -49,9 +50,9 @@ def answers(
     return wanted
 
 
-def decisions(book: TableBook, readings: npt.NDArray[np.void], real: Real) -> npt.NDArray[np.int64]:
+def decisions(book: TableBook, readings: npt.NDArray[np.void], compiler: Compiler) -> npt.NDArray[np.int64]:
     """What the Structured Text of the book answers to readings, dtype READING."""
-    program = Program(texts_of(book)[TABLE_FILE], real)
+    program = Program(texts_of(book)[TABLE_FILE], compiler)
     found = np.full(len(readings), -(2**31))
     for number in np.unique(readings["table"]).tolist():
         here = readings["table"] == number
@@ -64,18 +65,18 @@ def decisions(book: TableBook, readings: npt.NDArray[np.void], real: Real) -> np
     return found
 
 
-def test_a_million_hard_readings_are_decided_alike(book: TableBook, real: Real) -> None:
+def test_a_million_hard_readings_are_decided_alike(book: TableBook, compiler: Compiler) -> None:
     questions = ask(book, READINGS, 10, 20261121)
-    found = decisions(book, questions.readings, real)
+    found = decisions(book, questions.readings, compiler)
     assert np.count_nonzero(found != questions.decisions) == 0
     far = found - questions.readings["stage"]
     assert min(np.count_nonzero(far < 0), np.count_nonzero(far == 0), np.count_nonzero(far > 0)) > 50_000
     assert np.count_nonzero(abs(far) > 1) > 20_000
 
 
-def test_the_default_book_is_decided_alike(default_book: TableBook, real: Real) -> None:
+def test_the_default_book_is_decided_alike(default_book: TableBook, compiler: Compiler) -> None:
     questions = ask(default_book, 200_000, 10, 5)
-    assert np.count_nonzero(decisions(default_book, questions.readings, real) != questions.decisions) == 0
+    assert np.count_nonzero(decisions(default_book, questions.readings, compiler) != questions.decisions) == 0
 
 
 def test_every_golden_vector_is_answered(default_book: TableBook) -> None:

@@ -12,9 +12,9 @@ import pytest
 from scripts.studies.in_the_loop.controller_process import ANSWER_WORDS
 from scripts.studies.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
 from scripts.studies.in_the_loop.observed import observed
+from tests.tuning_tables.st.compiler import ROUNDINGS, Compiler, name_of
 from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Real
 from tests.tuning_tables.st.test_decide import loaded
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.held_numbers import HELD_NUMBERS, held_numbers
@@ -73,9 +73,9 @@ def differing(program: Program, tracks: Followed, numbers: Iterable[int]) -> int
     return count
 
 
-@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_hard_samples_are_estimated_alike(estimating_book: TableBook, tracks: Followed, real: Real) -> None:
-    program = Program(texts_of(estimating_book)[TABLE_FILE], real)
+@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+def test_hard_samples_are_estimated_alike(estimating_book: TableBook, tracks: Followed, compiler: Compiler) -> None:
+    program = Program(texts_of(estimating_book)[TABLE_FILE], compiler)
     numbers = np.unique(tracks[0]["table"]).tolist()
     assert len(numbers) == len(estimating_book.tables)
     assert differing(program, tracks, numbers) == 0

@@ -10,9 +10,9 @@ import numpy.typing as npt
 import pytest
 
 from scripts.studies.in_the_loop.agreement import Questions, ask
+from tests.tuning_tables.st.compiler import BINARY32, ROUNDINGS, Compiler, name_of
 from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Real
 from tuning_tables import ControllerTable, Stage, decide_many
 from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, block_size
@@ -27,12 +27,12 @@ COMMANDS = 8_000
 def select(
     book: TableBook,
     commands: npt.NDArray[np.void],
-    real: Real = np.float32,
+    compiler: Compiler = BINARY32,
     text: bytes | None = None,
     prefix: str = "RETARDER",
 ) -> tuple[npt.NDArray[np.int64], Chosen]:
     """Statuses of the commands, and the tables chosen, as a dictionary of arrays with a row a command."""
-    program = Program(text or texts_of(book)[TABLE_FILE], real)
+    program = Program(text or texts_of(book)[TABLE_FILE], compiler)
     selector, table = program.new(f"{prefix}_SELECT"), program.new(f"{prefix}_TABLE")
     program.call(
         f"{prefix}_SELECT",
@@ -66,11 +66,11 @@ def require_equal(book: TableBook, questions: Questions, statuses: npt.NDArray[n
     assert not table["STAGES"][~chosen].any()
 
 
-@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_the_choice_is_that_of_python(book: TableBook, default_book: TableBook, real: Real) -> None:
+@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+def test_the_choice_is_that_of_python(book: TableBook, default_book: TableBook, compiler: Compiler) -> None:
     for each in (book, default_book):
         questions = ask(each, 60_000, COMMANDS, 20261122)
-        require_equal(each, questions, *select(each, questions.commands, real))
+        require_equal(each, questions, *select(each, questions.commands, compiler))
 
 
 def test_every_status_occurs(book: TableBook) -> None:

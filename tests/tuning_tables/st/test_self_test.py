@@ -9,9 +9,10 @@ from typing import TypeAlias
 import numpy as np
 import pytest
 
+from tests.tuning_tables.st.compiler import BINARY32, DOUBLE, ROUNDINGS, Compiler, name_of
 from tests.tuning_tables.st.conftest import shaped_book, texts_of
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Fault, Real
+from tests.tuning_tables.st.storage import Fault
 from tuning_tables.distinct_estimators import distinct_estimators
 from tuning_tables.golden_vectors import FEW, few_golden_vectors, golden_vectors
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
@@ -33,11 +34,11 @@ def run_all(
     files: Mapping[str, bytes],
     calls: int,
     change: Change = lambda tables, test: (tables, test),
-    real: Real = np.float32,
+    compiler: Compiler = BINARY32,
 ) -> dict[str, int]:
     """The outputs after that many calls of RETARDER_SELF_TEST, with the two texts changed."""
     texts = change(files[TABLE_FILE].decode("ascii"), files[SELF_TEST_FILE].decode("ascii"))
-    program = Program("".join(texts).encode("ascii"), real)
+    program = Program("".join(texts).encode("ascii"), compiler)
     instance = program.new("RETARDER_SELF_TEST")
     for _ in range(calls):
         program.call("RETARDER_SELF_TEST", instance, Restart=False)
@@ -59,11 +60,13 @@ def run_until_found(files: Mapping[str, bytes], calls: int, change: Change) -> d
     return {name: instance[name].value.item() for name in OUTPUTS}
 
 
-@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_nothing_is_wrong_with_the_export(default_book: TableBook, estimating_book: TableBook, real: Real) -> None:
+@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+def test_nothing_is_wrong_with_the_export(
+    default_book: TableBook, estimating_book: TableBook, compiler: Compiler
+) -> None:
     sound = {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
     for book in (default_book, estimating_book):
-        assert run_all(texts_of(book), calls_of(book), real=real) == sound
+        assert run_all(texts_of(book), calls_of(book), compiler=compiler) == sound
 
 
 def test_nothing_is_wrong_with_other_shapes(book: TableBook) -> None:
@@ -216,7 +219,7 @@ def test_a_fused_multiplication_and_addition_is_found(default_book: TableBook) -
 
     files, calls = texts_of(default_book), calls_of(default_book)
     assert run_all(files, calls, change)["FAILED"] == 0  # two roundings, as the statement is written
-    assert run_all(files, calls, change, np.float64)["FAILED"] == len(default_book.tables)
+    assert run_all(files, calls, change, DOUBLE)["FAILED"] == len(default_book.tables)
 
 
 SAME = {

@@ -1,0 +1,128 @@
+"""The controller code of tables with lines against the tables: the same members in C99 and in Structured Text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from synth.checker.category_number import YARD
+from synth.checker.code_records import (
+    Numbers,
+    c_members,
+    c_numbers,
+    c_records,
+    checksum_fault,
+    st_records,
+)
+from synth.checker.code_records import differences as record_differences
+from synth.checker.table_reading import Table
+
+CATEGORY: Final = re.compile(r"#define RETARDER_CATEGORY_(\w+) (\d{1,6}) /\* (.*?) \*/")
+
+Differences = Iterator[tuple[str, str]]
+
+
+def c_differences(source: str, header: str, tables: Sequence[Table]) -> Differences:
+    """(about, sentence) for each disagreement of `retarder_table.c`; `tables` in the order of the book, "" the code."""
+    members = c_members(header, "retarder_table")
+    blocks = c_records(source, members, "retarder_tables", "retarder_table_count")
+    yield from (("", sentence) for sentence in category_differences(tables, header))
+    if len(blocks) != len(tables):
+        yield "", f"it holds {len(blocks)} tables, but there are {len(tables)}"
+        return
+    for number, (block, table) in enumerate(zip(blocks, tables, strict=True)):
+        fault = checksum_fault(number, block)
+        if fault is not None:
+            yield table.id, fault
+        yield from (
+            (table.id, each) for each in record_differences(number, c_numbers(members, block), held(table, tables))
+        )
+
+
+def st_differences(text: str, tables: Sequence[Table]) -> Differences:
+    """(about, sentence) for each disagreement of the Structured Text."""
+    records = st_records(text, "RETARDER_TABLE", "RETARDER_LOAD")
+    yield from (("", fault) for fault in records.faults)
+    if len(records.tables) != len(tables):
+        yield "", f"it holds {len(records.tables)} tables, but there are {len(tables)}"
+        return
+    for number, (numbers, table) in enumerate(zip(records.tables, tables, strict=True)):
+        yield from ((table.id, each) for each in record_differences(number, numbers, held(table, tables)))
+
+
+def held(table: Table, tables: Sequence[Table]) -> Numbers:
+    """What a controller holds of a table, with room for all of its book; what it has not is 0."""
+    stages, powers = max(len(each.lines) for each in tables), max(each.degree for each in tables) + 1
+    found: dict[str, Sequence[float]] = {
+        "category": [table.category_number or 0],
+        "axles": [len(table.axle_offsets_m)],
+        "stages": [len(table.lines)],
+        "powers": [table.degree + 1],
+        "atanytime": [int(table.at_any_time)],
+        "entrancestage": [table.entrance_stage],
+        "masst": [table.mass_t],
+        "targetms": [table.target_m_s],
+        "pathminm": [table.path_m[0]],
+        "pathmaxm": [table.path_m[1]],
+        "approachm": [table.approach_m],
+        "touchkpa": [table.estimator.touch_pressure_kpa if table.estimator else 0.0],
+    }
+    pairs = [*table.lines, *[(None, None)] * (stages - len(table.lines))]
+    found["hasline"] = [int(line is not None) for both in pairs for line in both]
+    found["coefficient"] = [
+        c for both in pairs for line in both for c in [*(line or ()), *[0.0] * (powers - len(line or ()))]
+    ]
+    if any(each.has_gauge for each in tables):
+        found |= gauge(table, stages)
+    breaks = most_breaks(tables)
+    return found | estimator(table, breaks) if breaks else found
+
+
+def gauge(table: Table, stages: int) -> dict[str, Sequence[float]]:
+    """What the lines depend on the pressure by; a table without gauge has its pressures, too, and no slopes."""
+    slopes = [slope or 0.0 for both in table.slopes for slope in both]
+    return {
+        "hasgauge": [int(table.has_gauge)],
+        "highestkpa": [table.pressures_kpa[table.top_stage]],
+        "pressurekpa": [*table.pressures_kpa, *[0.0] * (stages - len(table.pressures_kpa))],
+        "slope": [*slopes, *[0.0] * (2 * stages - len(slopes))],
+    }
+
+
+def most_breaks(tables: Sequence[Table]) -> int:
+    """Breaks that each table of an export has room for: 0 if none of its tables has an estimator."""
+    return max(len(table.estimator.s_m) if table.estimator else 0 for table in tables)
+
+
+def estimator(table: Table, breaks: int) -> dict[str, Sequence[float]]:
+    """The numbers and the work of an estimator, 0 for a table without."""
+    names = ("speedvariance", "factorvariance", "pathvariance", "excessvariance", "leapms", "frozen", "doubted",
+             "lostvariance", "caution", "unlikely")  # fmt: skip
+    if table.estimator is None:
+        numbers: dict[str, Sequence[float]] = {name: [0.0] for name in names}
+        return {"breaks": [0], **numbers, **{name: [0.0] * breaks for name in ("placem", "drive", "brake")}}
+    held_numbers, *rows = table.estimator.held
+    numbers = {name: [value] for name, value in zip(names, held_numbers, strict=True)}
+    work = {
+        name: [*row, *[0.0] * (breaks - len(row))] for name, row in zip(("placem", "drive", "brake"), rows, strict=True)
+    }
+    return {"breaks": [len(table.estimator.s_m)], **numbers, **work}
+
+
+def category_differences(tables: Sequence[Table], header: str) -> Iterator[str]:
+    """What is wrong with the constants of the weight categories: those of the yard are always there."""
+    found = [(number, comment) for _, number, comment in CATEGORY.findall(header)]
+    numbers = YARD | {table.category: table.category_number or 0 for table in tables}
+    by_number = sorted(numbers.items(), key=lambda each: each[1])
+    wanted = [(str(number), ascii_comment(name)) for name, number in by_number]
+    if found != wanted:
+        yield f"its header defines the categories {found}, but the tables have {wanted}"
+    if len({name for name, _, _ in CATEGORY.findall(header)}) < len(found):
+        yield "its header gives two categories one name"
+
+
+def ascii_comment(text: str) -> str:
+    """A name as the export writes it into comments."""
+    plain = "".join(x if x.isascii() and (x.isalnum() or x in " ._+,()-") else f"<U+{ord(x):04X}>" for x in text)
+    return plain.replace("RETARDER_", "RETARDER<U+005F>").replace("retarder_", "retarder<U+005F>")

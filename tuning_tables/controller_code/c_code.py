@@ -1,0 +1,293 @@
+"""A controller code as C99: header and source. Freestanding, no heap, no library call, no state but the caller's."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+from typing import Final
+
+from tuning_tables.c_template import part
+from tuning_tables.category_names import comment_text
+from tuning_tables.controller_code.code import ControllerCode, HeldTable, Rule, crc32_of, words_of
+from tuning_tables.language.alike import alike_program
+from tuning_tables.language.c99 import CNames, c_function, c_prototype
+from tuning_tables.language.c99_data import c_comment, c_constants, c_content, c_type
+from tuning_tables.language.tree import Program
+from tuning_tables.language.walking import constants_of
+
+WIDTH: Final = 116
+
+GUARD: Final = """\
+#ifndef {macro}
+#define {macro}
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
+"""
+FOOT: Final = """\
+#ifdef __cplusplus
+}
+#endif
+
+#endif
+"""
+
+HELPERS: Final = {
+    "larger(": """\
+/* A NaN as first argument stays: so does the reference. */
+static float larger(float value, float least)
+{
+    return least > value ? least : value;
+}
+""",
+    "smaller(": """\
+static float smaller(float value, float most)
+{
+    return most < value ? most : value;
+}
+""",
+    "is_equal(": """\
+static int is_equal(float one, float other)
+{
+    return one >= other && one <= other;
+}
+""",
+}
+"""What some programs use of the language, by how it begins where it is used."""
+
+STATUSES: Final = """\
+/* How a choice ended; below 0 no table was chosen. */
+#define RETARDER_TUNED (0)      /* a table for this very speed */
+#define RETARDER_BETWEEN (1)    /* what lies between two tables */
+#define RETARDER_SLOWER (2)     /* the nearest table that aims at less than was commanded */
+#define RETARDER_NO_CLASS (-1)  /* no table for this category and number of axles */
+#define RETARDER_NO_TARGET (-2) /* no number, or below the lowest target: every table would let the cut out too fast */
+"""
+
+SELECT_NOTE: Final = """\
+Fill `chosen` with the table for a cut of this category and number of axles that shall leave with commanded_m_s.
+Candidates are the tables of the category and number of axles; of several masses the largest. Between two targets it is
+what lies between the two tables, where they differ in nothing but target and lines; else, and above the highest target,
+the table of the next target below the command: the cut never leaves faster than commanded. Returns how it ended. Where
+that is below 0, or `chosen` is null, `chosen` is left as it was: then whoever commands must decide, for no table here is
+known to be safe."""
+
+SELECT: Final = """\
+int32_t {select}(int32_t category, int32_t axles, float commanded_m_s, {type} *chosen)
+{{
+    int32_t slower;
+    int32_t faster;
+    int32_t status;
+    choose(category, axles, commanded_m_s, &status, &slower, &faster);
+    if (chosen == 0) {{
+        return RETARDER_NO_CLASS;
+    }}
+    if (status >= 0) {{
+        *chosen = {tables}[slower];
+    }}
+    if (status == RETARDER_BETWEEN) {{
+{between}
+    }}
+    return status;
+}}
+"""
+
+BLENDED: Final = """\
+        if (alike(&{tables}[slower], &{tables}[faster])) {{
+            blend(chosen, &{tables}[faster], commanded_m_s);
+            chosen->target_m_s = commanded_m_s;
+            chosen->crc32 = table_crc32(chosen);
+        }} else {{
+            status = RETARDER_SLOWER;
+        }}"""
+SLOWER: Final = """\
+        status = RETARDER_SLOWER;"""
+
+
+def c_names(code: ControllerCode) -> CNames:
+    """The names of the export."""
+    return CNames(
+        types={record: f"retarder_{name}" for record, name in code.records.items()},
+        functions={rule.function.__name__: f"retarder_{rule.name}" for rule in code.rules},
+        without={rule.function.__name__: rule.without for rule in code.rules},
+        arrays={"tables": tables_of(code)} if code.chooses else {},
+    )
+
+
+def tables_of(code: ControllerCode) -> str:
+    """The array of all tables."""
+    return f"retarder_{code.table_name}s"
+
+
+def table_type(code: ControllerCode) -> str:
+    """The type of a table."""
+    return f"retarder_{code.table_name}"
+
+
+def c_header(code: ControllerCode) -> str:
+    """The text of retarder_STEM.h."""
+    names, macro = c_names(code), f"RETARDER_{code.stem.upper()}_H"
+    return "\n".join(
+        [
+            *head_comment(code),
+            GUARD.format(macro=macro),
+            *(STATUSES.split("\n") if code.chooses else []),
+            "/* Weight categories: their numbers are the same in every export, and so they may be kept elsewhere. */",
+            *(f"#define RETARDER_CATEGORY_{each.macro} {each.number} /* {comment_text(each.category)} */"
+              for each in code.categories),
+            "",
+            f"#define {tag_name(code)} 0x{code.tag:08x}u /* of all files of one export, so that they cannot be mixed */",
+            "",
+            *record_types(code),
+            f"extern const int32_t {table_type(code)}_count;",
+            f"extern const {table_type(code)} {tables_of(code)}[];",
+            "",
+            *(line for rule in code.rules for line in declared(code, rule, names)),
+            *([*c_comment(SELECT_NOTE.replace("\n", " ")),
+               f"int32_t {select_of(code)}(int32_t category, int32_t axles, float commanded_m_s, "
+               f"{table_type(code)} *chosen);", ""] if code.chooses else []),
+            f"/* 1 if the checksum of the table is right (in ROM, or the copy that {select_of(code)} has made), else 0. */",
+            f"int32_t {table_type(code)}_intact(const {table_type(code)} *table);",
+            "",
+            '/* CRC-32 (ISO 3309; zlib, Ethernet) of `count` bytes; the bytes "123456789" give 0xCBF43926. */',
+            f"uint32_t {crc32_name(code)}(const unsigned char *bytes, uint32_t count);",
+            "",
+            FOOT,
+        ]
+    )  # fmt: skip
+
+
+def select_of(code: ControllerCode) -> str:
+    """The name of the choice."""
+    return f"retarder_select{code.ending}"
+
+
+def crc32_name(code: ControllerCode) -> str:
+    """The name of the checksum."""
+    return f"retarder{code.ending}_crc32"
+
+
+def tag_name(code: ControllerCode) -> str:
+    """The macro that tells one export from another."""
+    return f"RETARDER_{code.stem.upper()}_EXPORT"
+
+
+def head_comment(code: ControllerCode) -> list[str]:
+    """The comment at the head of the header."""
+    first = (
+        f"{code.title} Generated: do not edit, export again. This text may be used, changed and passed on without any "
+        "condition."
+    )
+    paragraphs = [first, None, *code.head]
+    lines: list[str] = []
+    for paragraph in paragraphs:
+        rows = list(code.origin) if paragraph is None else textwrap.wrap(paragraph, WIDTH - 3)
+        lines += [*([""] if lines else []), *rows]
+    return [f"/* {lines[0]}", *(f" * {line}".rstrip() for line in lines[1:]), " */"]
+
+
+def record_types(code: ControllerCode) -> Iterator[str]:
+    """The types of the table and of the states."""
+    for record in (code.table, *code.states):
+        yield from c_comment(f"{record.record.meaning} Every member is 32 bits wide.")
+        text = c_type(record, f"retarder_{code.records[record.record.name]}")
+        if record is code.table:
+            checksum = "    uint32_t crc32; /* CRC-32 of all words before it, each taken from its lowest byte to its highest */\n}"
+            text = text.replace("\n}", f"\n{checksum}")
+        yield text
+
+
+def declared(code: ControllerCode, rule: Rule, names: CNames) -> Iterator[str]:
+    """A function of the header, with its docstring and what its parameters mean."""
+    program = code.program(rule)
+    yield from note_lines(program, rule.without)
+    yield f"{c_prototype(program, names)};"
+    yield ""
+
+
+def note_lines(program: Program, without: str) -> Iterator[str]:
+    """The docstring as a comment, a paragraph after the other, then the parameters."""
+    lines: list[str] = []
+    for paragraph in program.note.split("\n\n"):
+        lines += [*([""] if lines else []), *textwrap.wrap(paragraph.replace("\n", " "), WIDTH - 3)]
+    taken = [each for each in program.parameters if each.record is None]
+    if taken:
+        width = max(len(each.name) for each in taken)
+        lines += ["", *(f"{each.name:{width}}  {each.meaning}" for each in taken)]
+    if without:
+        lines += ["", f"Without a record (a null pointer): {without}."]
+    rows = [f"/* {lines[0]}", *(f" * {line}".rstrip() for line in lines[1:])]
+    yield from [*rows[:-1], f"{rows[-1]} */"]
+
+
+def c_source(code: ControllerCode) -> str:
+    """The text of retarder_STEM.c."""
+    names = c_names(code)
+    programs = list(code.programs)
+    if code.blends:
+        programs.append(alike_program(code.table))
+    functions = [c_function(program, names) for program in programs]
+    text = "\n".join(functions)
+    words = code.table.words() + 1
+    return "\n".join(
+        [
+            *c_comment(f"{code.title} Generated: do not edit, export again. See retarder_{code.stem}.h."),
+            f'#include "retarder_{code.stem}.h"',
+            "",
+            "#include <float.h>",
+            "",
+            *same_export(code),
+            part("binary32.c"),
+            "#define CRC_START 0xFFFFFFFFu",
+            f"#define TABLE_WORDS {words}u",
+            f"typedef char {table_type(code)}_has_no_gaps[(sizeof({table_type(code)}) == 4u * TABLE_WORDS) ? 1 : -1];",
+            "",
+            c_constants(constants_of(tuple(programs))),
+            "",
+            f"const int32_t {table_type(code)}_count = {len(code.tables)};",
+            "",
+            f"const {table_type(code)} {tables_of(code)}[] = {{",
+            ",\n".join(initialiser(code, number, table) for number, table in enumerate(code.tables)),
+            "};",
+            "",
+            part("rounded.c"),
+            *(helper for begin, helper in HELPERS.items() if begin in text),
+            part("crc32.c").replace("retarder_table", table_type(code)).replace("retarder_crc32", crc32_name(code)),
+            text,
+            *([select(code)] if code.chooses else []),
+            f"int32_t {table_type(code)}_intact(const {table_type(code)} *table)",
+            "{",
+            "    return table != 0 && table_crc32(table) == table->crc32;",
+            "}",
+            "",
+        ]
+    )  # fmt: skip
+
+
+def select(code: ControllerCode) -> str:
+    """The function that chooses a table."""
+    between = BLENDED.format(tables=tables_of(code)) if code.blends else SLOWER
+    return SELECT.format(select=select_of(code), type=table_type(code), tables=tables_of(code), between=between)
+
+
+def same_export(code: ControllerCode) -> list[str]:
+    """What refuses a header of another export."""
+    return [
+        f"#if {tag_name(code)} != 0x{code.tag:08x}u",
+        f'#error "retarder_{code.stem}.h is of another export: take all files from one"',
+        "#endif",
+        "",
+    ]
+
+
+def initialiser(code: ControllerCode, number: int, table: HeldTable) -> str:
+    """A table of the array."""
+    rows = c_content(code.table, table.values)
+    crc32 = crc32_of(words_of(code.table, table.values))
+    lines = [*rows, f"0x{crc32:08x}u /* crc32 */"]
+    return "\n".join(
+        [f"    /* {number}: {comment_text(table.id)} */", "    {", *(f"        {line}" for line in lines), "    }"]
+    )

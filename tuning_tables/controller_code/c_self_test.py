@@ -1,0 +1,237 @@
+"""The self-test of a controller code in C99: checksums, golden questions, golden choices, and what is no table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+import numpy as np
+
+from tuning_tables.c_template import part
+from tuning_tables.controller_code.c_choice_test import choosing, golden_choices
+from tuning_tables.controller_code.c_code import (
+    FOOT,
+    GUARD,
+    c_names,
+    crc32_name,
+    same_export,
+    select_of,
+    table_type,
+    tables_of,
+)
+from tuning_tables.controller_code.code import ControllerCode, Questions, Rule, kinds_of
+from tuning_tables.language.records import Kind
+
+FIRST_ANSWER: Final = 4
+"""The fault of the first kind of questions; before it: sound, the arithmetic of the checksum, a table, a choice."""
+
+
+def test_stem(code: ControllerCode) -> str:
+    """The stem of the self-test's names: retarder_self_test for tables with lines."""
+    return f"{code.ending}_self_test".lstrip("_")
+
+
+def c_test_header(code: ControllerCode) -> str:
+    """The text of retarder_..._self_test.h."""
+    stem = test_stem(code)
+    macro = f"RETARDER_{stem.upper()}"
+    asked = ", ".join(f"{len(each.rows)} golden {each.about}" for each in code.questions)
+    faults = [
+        ("SOUND", 0, ""),
+        ("BAD_CRC", 1, 'the checksum of "123456789" is wrong'),
+        ("BAD_TABLE", 2, "a table is not as exported"),
+        ("BAD_CHOICES", 3, "a golden choice is another"),
+        *((f"BAD_{each.about.upper()}", FIRST_ANSWER + place, f"one of the golden {each.about} is another")
+          for place, each in enumerate(code.questions)),
+        ("BAD_NOTHING", FIRST_ANSWER + len(code.questions), "a function without a record answers otherwise"),
+    ]  # fmt: skip
+    return "\n".join(
+        [
+            f"/* Self-test of retarder_{code.stem}.c. Generated: do not edit, export again.",
+            " *",
+            " * Proves on the processor at hand, with the compiler and switches at hand, that tables and rules are as exported:",
+            f" * arithmetic of the checksum, checksums of all tables, {asked}, {len(code.commands)} golden choices. */",
+            GUARD.format(macro=f"{macro}_H").replace("#include <stdint.h>", f'#include "retarder_{code.stem}.h"'),
+            *(
+                f"#define {macro_prefix(code)}{name} ({number})" + f" /* {note} */" * bool(note)
+                for name, number, note in faults
+            ),
+            "",
+            "/* The first fault found; `*where`, unless null, becomes the number of the table, choice or question. */",
+            f"int32_t retarder_{stem}(uint32_t *where);",
+            "",
+            FOOT,
+        ]
+    )
+
+
+def macro_prefix(code: ControllerCode) -> str:
+    """How the names of faults begin."""
+    return f"RETARDER{code.ending.upper()}_"
+
+
+def c_test_source(code: ControllerCode) -> str:
+    """The text of retarder_..._self_test.c."""
+    stem = test_stem(code)
+    checks = [line for place, each in enumerate(code.questions) for line in asking(code, place, each)]
+    return "\n".join(
+        [
+            f"/* Self-test of retarder_{code.stem}.c. Generated: do not edit, export again. See retarder_{stem}.h. */",
+            f'#include "retarder_{stem}.h"',
+            "",
+            *same_export(code),
+            part("float_bits.c"),
+            *(row_type(code, place, each) for place, each in enumerate(code.questions)),
+            *(golden_choices(code) if code.commands else []),
+            part("found.c"),
+            *(is_right(code, place, each) for place, each in enumerate(code.questions)),
+            nothing_is_safe(code),
+            f"int32_t retarder_{stem}(uint32_t *where)",
+            "{",
+            "    static const unsigned char digits[9] = {0x31u, 0x32u, 0x33u, 0x34u, 0x35u, 0x36u, 0x37u, 0x38u, 0x39u};",
+            "    uint32_t number;",
+            *(f"    retarder_{code.records[each.record.name]} {each.record.name} = {{{filling(each.record.members)}}};"
+              for each in code.states),
+            f"    if ({crc32_name(code)}(digits, 9u) != 0xCBF43926u) {{",
+            f"        return found({macro_prefix(code)}BAD_CRC, 0u, where);",
+            "    }",
+            f"    for (number = 0u; number < {len(code.tables)}u; ++number) {{",
+            f"        if ({table_type(code)}_intact(&{tables_of(code)}[number]) != 1) {{",
+            f"            return found({macro_prefix(code)}BAD_TABLE, number, where);",
+            "        }",
+            "    }",
+            *(choosing(code) if code.commands else []),
+            *checks,
+            "    if (nothing_is_safe() != 1) {",
+            f"        return found({macro_prefix(code)}BAD_NOTHING, 0u, where);",
+            "    }",
+            f"    return found({macro_prefix(code)}SOUND, 0u, where);",
+            "}",
+            "",
+        ]
+    )  # fmt: skip
+
+
+def filling(members: Mapping[str, object]) -> str:
+    """Numbers for a state that has not begun: what it forgets must be something."""
+    return ", ".join(f"{place}.0f" for place in range(1, len(members) + 1))
+
+
+def row_type(code: ControllerCode, place: int, questions: Questions) -> str:
+    """The type of a question with its answers, and all of them; a REAL is its bits, as not every one has a literal."""
+    kinds = kinds_of(code, questions)
+    rows = [f"    {'uint32_t' if kind is Kind.REAL else 'int32_t'} {name};" for name, kind in kinds.items()]
+    columns = [
+        [f"0x{word:08x}u" for word in np.ascontiguousarray(questions.rows[name]).view(np.uint32)]
+        if kind is Kind.REAL
+        else [str(int(value)) for value in questions.rows[name]]
+        for name, kind in kinds.items()
+    ]
+    lines = [f"    {{{', '.join(row)}}}" for row in zip(*columns, strict=True)]
+    head = f"typedef struct golden_{place} {{\n" + "\n".join(rows) + f"\n}} golden_{place};\n"
+    array = f"static const golden_{place} golden_{questions.about}[{len(lines)}] = {{"
+    return "\n".join([f"/* Golden {questions.about}. */", head, array, ",\n".join(lines), "};", ""])
+
+
+def is_right(code: ControllerCode, place: int, questions: Questions) -> str:
+    """The function that asks one question and compares its answers."""
+    names, kinds = c_names(code), kinds_of(code, questions)
+    programs = [code.program(rule) for rule in questions.rules]
+    states = [each for each in code.states if any(each.record.name in program.records for program in programs)]
+    shared = "".join(f", retarder_{code.records[each.record.name]} *{each.record.name}" for each in states)
+    lines = []
+    if "table" in kinds:
+        lines.append(f"    const {table_type(code)} *table = &{tables_of(code)}[golden->table];")
+    for each in states:
+        lines += [
+            "    if (golden->begins == 1) {",
+            f"        {begin_of(code, each.record.name)}({each.record.name});",
+            "    }",
+        ]
+    tests = []
+    for program in programs:
+        given = []
+        for taken in program.parameters:
+            if taken.record is not None:
+                given.append("table" if not taken.record.is_state else taken.name)
+            elif taken.name not in kinds:
+                given.append("0.0f" if taken.kind is Kind.REAL else "0")
+            else:
+                given.append(f"float_of(golden->{taken.name})" if taken.kind is Kind.REAL else f"golden->{taken.name}")
+        (answer,) = program.answers
+        call = f"{names.function(program)}({', '.join(given)})"
+        tests.append(
+            f"bits_of({call}) == golden->{answer.name}"
+            if answer.kind is Kind.REAL
+            else f"{call} == golden->{answer.name}"
+        )
+    told = {answer.name for program in programs for answer in program.answers}
+    tests += [f"bits_of({state.record.name}->{name}) == golden->{name}" for state in states for name in questions.expected
+              if name not in told]  # fmt: skip
+    joined = "\n        && ".join(tests)
+    return "\n".join(
+        [
+            f"static int is_right_{place}(const golden_{place} *golden{shared})",
+            "{",
+            *lines,
+            f"    return {joined};",
+            "}",
+            "",
+        ]
+    )
+
+
+def begin_of(code: ControllerCode, state: str) -> str:
+    """The function that begins a state."""
+    rule = next(each for each in code.rules if each.name.startswith("begin") and state in code.program(each).records)
+    return f"retarder_{rule.name}"
+
+
+def asking(code: ControllerCode, place: int, questions: Questions) -> Iterator[str]:
+    """The loop over questions of one kind."""
+    programs = [code.program(rule) for rule in questions.rules]
+    states = [
+        each.record.name for each in code.states if any(each.record.name in program.records for program in programs)
+    ]
+    given = "".join(f", &{name}" for name in states)
+    yield f"    for (number = 0u; number < {len(questions.rows)}u; ++number) {{"
+    yield f"        if (is_right_{place}(&golden_{questions.about}[number]{given}) == 0) {{"
+    yield f"            return found({macro_prefix(code)}BAD_{questions.about.upper()}, number, where);"
+    yield "        }"
+    yield "    }"
+
+
+def nothing_is_safe(code: ControllerCode) -> str:
+    """The function that asks every rule without one of its records, and the choice and checksum without a table."""
+    tests = [test for rule in code.rules for test in without_records(code, rule)]
+    tests.append(f"{table_type(code)}_intact(0) == 0")
+    if code.chooses:
+        tests.append(f"{select_of(code)}(0, 0, 1.0f, 0) < 0")
+    states = [f"    retarder_{code.records[each.record.name]} {each.record.name} = {{{filling(each.record.members)}}};"
+              for each in code.states]  # fmt: skip
+    joined = "\n        && ".join(tests)
+    table = f"    const {table_type(code)} *const table = &{tables_of(code)}[0];"
+    uses = [table] if "(table" in joined else []
+    begun = [f"    {begin_of(code, each.record.name)}(0);" for each in code.states]
+    return "\n".join(
+        ["static int nothing_is_safe(void)", "{", *uses, *states, *begun, f"    return {joined};", "}", ""]
+    )
+
+
+def without_records(code: ControllerCode, rule: Rule) -> Iterator[str]:
+    """What a rule must answer where one of its records is missing."""
+    program = code.program(rule)
+    if not rule.without:
+        return
+    kinds = {each.name: each.kind for each in program.parameters if each.record is None}
+    value = {name: "1.0f" if kind is Kind.REAL else "1" for name, kind in kinds.items()}
+    safe = value.get(rule.without, rule.without)
+    for missing in program.records:
+        given = [
+            value.get(each.name)
+            or ("0" if each.name == missing else f"&{each.name}" if each.record and each.record.is_state else "table")
+            for each in program.parameters
+        ]
+        call = f"retarder_{rule.name}({', '.join(given)})"
+        is_real = program.answers[0].kind is Kind.REAL
+        yield f"bits_of({call}) == bits_of({safe})" if is_real else f"{call} == {safe}"

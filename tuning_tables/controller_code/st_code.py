@@ -1,0 +1,282 @@
+"""A controller code as Structured Text: types, a block for each rule, the tables as constants, and the choice."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from tuning_tables.category_names import comment_text
+from tuning_tables.controller_code.code import ControllerCode
+from tuning_tables.language.alike import alike_program
+from tuning_tables.language.records import Kind, Member, st_name
+from tuning_tables.language.st_data import of_tables, st_type
+from tuning_tables.language.structured_text import StNames, st_block
+from tuning_tables.st_literals import int_array, real_array
+
+WIDTH: Final = 110
+
+ARITHMETIC: Final = (
+    "Arithmetic. Every operation on REAL stands in a statement of its own, so that its result is rounded to REAL (binary32) "
+    "before the next. A controller that calculates in double precision and rounds when it assigns gives the same results: "
+    "rounding + - * / of binary32 numbers to 53 bits first and to 24 afterwards never differs from rounding once, as "
+    "53 >= 2 * 24 + 2 (Figueroa 1995). Constants that are compared or calculated with stand in VAR CONSTANT as REAL, because "
+    "many compilers hold a bare literal in double precision. Loops are WHILE loops, because compilers differ in a FOR of "
+    "one pass, or of none.",
+    "Which compilers have run it, and which have not, stands in docs/structured-text.md. Run the self-test on the controller.",
+)
+
+SELECT: Final = """\
+FUNCTION_BLOCK {select}
+(* The table for a cut. Candidates are the tables of its category and number of axles; of several masses the largest.
+   Between two targets: what lies between the two tables, where they differ in nothing but target and lines. Otherwise
+   the table of the next target below the command: the cut never leaves faster than commanded. *)
+VAR_INPUT
+    Category : INT; (* number as in the head of this file *)
+    Axles : INT;
+    Commanded_m_s : REAL; (* exit speed wanted, m/s *)
+END_VAR
+VAR_IN_OUT
+    Table : {type}; (* filled; without a table its Stages become 0: nothing is commanded *)
+END_VAR
+VAR_OUTPUT
+    Status : INT; (* 0 tuned, 1 between two tables, 2 slower; no table: -1 no such class, -2 none slow enough *)
+END_VAR
+VAR
+    Chooser : {prefix}CHOOSE;
+    Loader : {load};
+{more}END_VAR
+
+Chooser(Category := Category, Axles := Axles, Commanded_m_s := Commanded_m_s);
+Status := Chooser.Status;
+Table.Stages := 0;
+IF Status >= 0 THEN
+    Loader(TableNo := Chooser.Slower, Table := Table);
+END_IF;
+IF Status = 1 THEN
+{between}
+END_IF;
+END_FUNCTION_BLOCK
+"""
+
+BLENDED: Final = """\
+    Loader(TableNo := Chooser.Faster, Table := Faster);
+    Comparer(Slower := Table, Faster := Faster);
+    IF Comparer.Same THEN
+        Blender(Table := Table, Faster := Faster, Commanded_m_s := Commanded_m_s);
+        Table.Target_m_s := Commanded_m_s;
+    ELSE
+        Status := 2;
+    END_IF;"""
+BLENDERS: Final = """\
+    Comparer : {prefix}ALIKE;
+    Blender : {prefix}BLEND;
+    Faster : {type};
+"""
+SLOWER: Final = """\
+    Status := 2;"""
+
+CATEGORIES: Final = """\
+FUNCTION_BLOCK RETARDER_CATEGORIES
+(* Names for the numbers of the weight categories, the same in every export. One instance does, and it need not be
+   called. *)
+VAR_OUTPUT
+{declared}
+END_VAR
+
+{assigned}
+END_FUNCTION_BLOCK
+"""
+
+LOAD_HEAD: Final = """\
+FUNCTION_BLOCK {load}
+(* A table of the book as it stands. *)
+VAR_INPUT
+    TableNo : INT; (* 0 to {last} *)
+END_VAR
+VAR_IN_OUT
+    Table : {type}; (* filled; where there is no such table its Stages become 0: nothing is commanded *)
+END_VAR
+VAR_OUTPUT
+    Found : BOOL; (* there is such a table *)
+END_VAR
+VAR
+    Index : INT;
+END_VAR
+VAR CONSTANT
+"""
+
+
+def st_names(code: ControllerCode) -> StNames:
+    """The names of the export."""
+    prefix = f"RETARDER{code.ending.upper()}_"
+    arrays = choice_arrays(code) if code.chooses else []
+    return StNames(
+        types={record: f"RETARDER_{name.upper()}" for record, name in code.records.items()},
+        blocks={rule.function.__name__: f"RETARDER_{rule.name.upper()}" for rule in code.rules},
+        prefix=prefix,
+        arrays={"tables": arrays},
+    )
+
+
+def load_of(code: ControllerCode) -> str:
+    """The block that fills a table."""
+    return f"RETARDER_LOAD{code.ending.upper()}"
+
+
+def select_block_of(code: ControllerCode) -> str:
+    """The block that chooses a table."""
+    return f"RETARDER_SELECT{code.ending.upper()}"
+
+
+def table_type(code: ControllerCode) -> str:
+    """The type of a table."""
+    return st_names(code).types[code.declared[0].name]
+
+
+def st_units(code: ControllerCode) -> list[str]:
+    """Types and blocks, each a text of its own, none before one that it needs."""
+    names = st_names(code)
+    programs = [st_block(program, names, code.sized) for program in code.programs]
+    types = [st_type(record, names.types[record.record.name]) for record in (code.table, *code.states)]
+    alike = [st_block(alike_program(code.table), names, code.sized)] if code.blends else []
+    choice = [select_block(code)] if code.chooses else []
+    # Tables with lines alone have it, so that others fit into the same controller.
+    categories = [categories_block(code)] if code.stem == "table" else []
+    return [*types, *categories, load_block(code), *programs, *alike, *choice]
+
+
+def select_block(code: ControllerCode) -> str:
+    """The block that chooses a table."""
+    words = {"type": table_type(code), "prefix": st_names(code).prefix}
+    more, between = (BLENDERS.format(**words), BLENDED) if code.blends else ("", SLOWER)
+    return SELECT.format(select=select_block_of(code), load=load_of(code), more=more, between=between, **words)
+
+
+def head(code: ControllerCode) -> str:
+    """The comment at the beginning."""
+    names = st_names(code)
+    blocks = [f"{names.block(code.program(rule))}: {first_sentence(code.program(rule).note)}" for rule in code.rules]
+    if code.chooses:
+        blocks.insert(
+            0,
+            f"{select_block_of(code)}: once for a cut, when its class and exit speed are known: fills a {table_type(code)}",
+        )
+    paragraphs: list[str | None] = [
+        f"{code.title} IEC 61131-3 Structured Text. Generated: do not edit, export again. This text may be used, changed and "
+        "passed on without any condition.",
+        None,
+        *(text.replace("has_gauge", "HasGauge").replace("at_any_time", "AtAnyTime").replace("entrance_stage", "EntranceStage")
+          .replace("approach_m", "Approach_m").replace("s_m", "Path_m") for text in code.head),
+        *ARITHMETIC,
+    ]  # fmt: skip
+    lines: list[str] = []
+    for paragraph in paragraphs:
+        if paragraph is None:
+            categories = [
+                f"{each.number:9d}  {each.macro}, in tables {comment_text(each.category)}" for each in code.categories
+            ]
+            rows = [*code.origin, "categories, whose numbers are the same in every export:", *categories, "", "Blocks"]
+            rows += [line for text in blocks for line in textwrap.wrap(text, WIDTH - 5, subsequent_indent="    ")]
+        else:
+            rows = textwrap.wrap(paragraph, WIDTH - 5)
+        lines += [*([""] if lines else []), *rows]
+    return "\n".join([f"(* {lines[0]}", *(f"   {line}".rstrip() for line in lines[1:-1]), f"   {lines[-1]} *)", ""])
+
+
+def first_sentence(note: str) -> str:
+    """The first paragraph of a docstring."""
+    return note.split("\n\n")[0].replace("\n", " ")
+
+
+def categories_block(code: ControllerCode) -> str:
+    """RETARDER_CATEGORIES: an output for every category, with its number from the start on."""
+    return CATEGORIES.format(
+        declared="\n".join(
+            f"    Category_{each.macro} : INT := {each.number}; (* {comment_text(each.category)} *)"
+            for each in code.categories
+        ),
+        assigned="\n".join(f"Category_{each.macro} := {each.number};" for each in code.categories),
+    )
+
+
+def choice_arrays(code: ControllerCode) -> list[str]:
+    """What the choice looks at of every table, as constant arrays."""
+    looked_at = next(each for each in code.declared if each.name == "tables").members
+    return [scalar_array(code, name, member) for name, member in looked_at.items()]
+
+
+def scalar_array(code: ControllerCode, name: str, member: Member) -> str:
+    """A number of every table as a constant array."""
+    values = [table.values[name] for table in code.tables]
+    return real_array(of_tables(name), values) if member.kind is Kind.REAL else int_array(of_tables(name), values)
+
+
+def member_array(name: str, member: Member, values: Any) -> str:
+    """An array of a table as a constant array of one axis, a row of its last axis a line."""
+    array = np.asarray(values)
+    if member.kind is Kind.REAL:
+        return real_array(name, array.ravel(), array.shape[-1] if array.ndim > 1 else 0)
+    return int_array(name, array.ravel())
+
+
+def load_block(code: ControllerCode) -> str:
+    """The block that fills a table from constants: numbers by table; arrays once each, however many tables share them."""
+    members = code.table.members
+    numbers = {name: member for name, member in members.items() if not member.axes}
+    declared = [scalar_array(code, name, member) for name, member in numbers.items()]
+    body = [f"Table.{st_name(name)} := {of_tables(name)}[TableNo];" for name in numbers]
+    for part in dict.fromkeys(member.part for member in members.values() if member.axes):
+        group = [name for name, member in members.items() if member.axes and member.part == part]
+        more, cases = part_of_tables(code, part or "lines", group)
+        declared += more
+        body += cases
+    last = len(code.tables) - 1
+    lines = [
+        *declared,
+        "END_VAR",
+        "",
+        f"Found := (TableNo >= 0) AND (TableNo <= {last});",
+        "Table.Stages := 0;",
+        "IF Found THEN",
+        *(f"    {line}" for line in body),
+        "END_IF;",
+        "END_FUNCTION_BLOCK",
+        "",
+    ]
+    return LOAD_HEAD.format(load=load_of(code), last=last, type=table_type(code)) + "\n".join(lines)
+
+
+def part_of_tables(code: ControllerCode, part: str, group: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Declarations and statements for arrays that tables share or not: each content once, by its number."""
+    found: dict[bytes, int] = {}
+    number_of, declared, cases = [], [], []
+    for number, table in enumerate(code.tables):
+        content = b"".join(np.ascontiguousarray(table.values[name]).tobytes() for name in group)
+        if content not in found:
+            place = found[content] = len(found)
+            declared.append(f"    (* {place}: {comment_text(table.id)} *)")
+            declared += [member_array(f"{st_name(name).partition('_')[0]}_{place}", code.table.members[name], table.values[name])
+                         for name in group]  # fmt: skip
+            cases += [f"{place}:", *(f"    {line}" for line in copied(code, group, place))]
+        number_of.append(found[content])
+    name = f"{part.capitalize()}Part"
+    return [int_array(name, number_of), *declared], [
+        f"CASE {name}[TableNo] OF",
+        *(f"    {line}" for line in cases),
+        "END_CASE;",
+    ]
+
+
+def copied(code: ControllerCode, group: Sequence[str], place: int) -> Iterator[str]:
+    """Loops that copy the arrays of a group, those of one length together."""
+    for length in dict.fromkeys(code.table.length(name) for name in group):
+        yield "Index := 0;"
+        yield f"WHILE Index < {length} DO"
+        for name in group:
+            if code.table.length(name) == length:
+                yield f"    Table.{st_name(name)}[Index] := {st_name(name).partition('_')[0]}_{place}[Index];"
+        yield "    Index := Index + 1;"
+        yield "END_WHILE;"

@@ -1,0 +1,219 @@
+"""The self-test of a controller code in Structured Text: a block for the constants of each table, for the golden
+questions, and for the choices; one block runs them all, one a call.
+
+Only questions that have a portable literal are in it: no NaN, no infinity, no denormal number (a controller may take
+those for 0), no -0.0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.category_names import comment_text
+from tuning_tables.controller_code.code import ControllerCode, Questions, Rule, kinds_of
+from tuning_tables.controller_code.st_choice_test import choice_tests
+from tuning_tables.controller_code.st_code import load_of, st_names, table_type
+from tuning_tables.controller_code.st_test_block import TestBlock, block_text, check, compared, loop, test_name
+from tuning_tables.language.records import Kind, st_name
+from tuning_tables.st_literals import LONGEST_ARRAY, int_array, is_portable, real_array
+
+HEAD: Final = """\
+(* Self-test of {file}, for the controller that is to run it. Generated: do not edit, export again.
+
+   Call one instance of {block} once a cycle until Done; Failed must be 0. It compares every constant with a
+   second copy, and the answers of the blocks with those of the reference implementation. Questions that are not finite
+   or denormal are left out, because they have no portable literal. REAL numbers are compared for equality on purpose:
+   every bit is due. Remove the blocks after the test if memory is short. *)
+"""
+
+RUN_ALL: Final = """\
+FUNCTION_BLOCK {name}
+(* Call it once a cycle until Done: each call runs one block of the test. *)
+VAR_INPUT
+    Restart : BOOL; (* begin again *)
+END_VAR
+VAR_OUTPUT
+    Done : BOOL;
+    Failed : INT; (* blocks in which something is wrong; 0 when Done: all is as exported *)
+    FirstFailed : INT; (* the number of the first of them, -1: none *)
+    FirstFault : INT; (* FirstFailed of that block *)
+END_VAR
+VAR
+    Loader : {load};
+{instances}
+    Table : {type};
+    Number : INT;
+    Begun : BOOL;
+    Faults : INT;
+    Fault : INT;
+END_VAR
+
+IF Restart OR NOT Begun THEN
+    Begun := TRUE;
+    Done := FALSE;
+    Number := 0;
+    Failed := 0;
+    FirstFailed := -1;
+    FirstFault := -1;
+END_IF;
+IF NOT Done THEN
+    Faults := 0;
+    Fault := -1;
+    CASE Number OF
+{cases}
+    END_CASE;
+    IF Faults > 0 THEN
+        IF Failed = 0 THEN
+            FirstFailed := Number;
+            FirstFault := Fault;
+        END_IF;
+        Failed := Failed + 1;
+    END_IF;
+    Done := Number >= {last};
+    Number := Number + 1;
+END_IF;
+END_FUNCTION_BLOCK
+"""
+
+
+def self_test_name(code: ControllerCode) -> str:
+    """The block that runs all."""
+    return f"RETARDER{code.ending.upper()}_SELF_TEST"
+
+
+def st_test_units(code: ControllerCode, line_checks: int) -> list[str]:
+    """The blocks, none before one that it needs; `line_checks`: how many choices are compared by every number."""
+    blocks = [
+        *(constants_test(code, number) for number in range(len(code.tables))),
+        *(test for questions in code.questions for test in questions_tests(code, questions)),
+        *(choice_tests(code, line_checks) if code.commands else []),
+    ]
+    return [*(block.text for block in blocks), run_all(code, blocks)]
+
+
+def constants_test(code: ControllerCode, number: int) -> TestBlock:
+    """The numbers of a table once more."""
+    table = code.tables[number]
+    name = f"{test_name(code)}_{number}"
+    constants, body = compared(code, table.values)
+    note = f"Table {number}, {comment_text(table.id)}: its numbers once more."
+    return TestBlock(name, block_text(code, name, note, True, ["Index : INT"], constants, body), number)
+
+
+def questions_tests(code: ControllerCode, questions: Questions) -> Iterator[TestBlock]:
+    """The golden questions, those of a table in a block, no more in one than an array may hold."""
+    kept = questions.rows[portable(questions)]
+    tables = kept["table"] if "table" in (kept.dtype.names or ()) else np.zeros(len(kept), int)
+    for number in dict.fromkeys(tables.tolist()):
+        rows = kept[tables == number]
+        for part, start in enumerate(range(0, len(rows), LONGEST_ARRAY)):
+            name = f"{test_name(code)}_{questions.about.upper()}_{number}" + f"_{part}" * bool(part)
+            yield TestBlock(
+                name, questions_text(code, name, questions, rows[start : start + LONGEST_ARRAY], number), number
+            )
+
+
+def portable(questions: Questions) -> npt.NDArray[np.bool_]:
+    """Which rows have portable numbers; of questions that begin a state, those of the sequences that have them all."""
+    names = [name for name in questions.rows.dtype.names or () if questions.rows.dtype[name].kind == "f"]
+    # What nothing looks at may be anything.
+    fine = np.ones(len(questions.rows), dtype=bool)
+    for name in names:
+        column = np.ascontiguousarray(questions.rows[name])
+        fine &= is_portable(column) | (np.isnan(column).all() if name in questions.asked else False)
+    if "begins" in (questions.rows.dtype.names or ()):
+        sequence = np.cumsum(questions.rows["begins"])
+        whole = {each for each in np.unique(sequence) if fine[sequence == each].all()}
+        fine = np.isin(sequence, list(whole))
+    return fine
+
+
+def questions_text(
+    code: ControllerCode, name: str, questions: Questions, rows: npt.NDArray[np.void], number: int
+) -> str:
+    """The block of some questions."""
+    names, kinds = st_names(code), kinds_of(code, questions)
+    programs = [code.program(rule) for rule in questions.rules]
+    states = [each for each in code.states if any(each.record.name in program.records for program in programs)]
+    constants = [
+        real_array(held(each), rows[each]) if kind is Kind.REAL else int_array(held(each), rows[each])
+        for each, kind in kinds.items() if each != "table"
+    ]  # fmt: skip
+    variables = [
+        f"{instance(rule)} : {names.block(program)}" for rule, program in zip(questions.rules, programs, strict=True)
+    ]
+    body, differs = [], []
+    for each in states:
+        rule = begin_rule(code, each.record.name)
+        state = st_name(each.record.name)
+        variables += [
+            f"{instance(rule)} : {names.block(code.program(rule))}",
+            f"{state} : {names.types[each.record.name]}",
+        ]
+        body += ["IF Begins[Index] = 1 THEN", f"    {instance(rule)}({state} := {state});", "END_IF;"]
+    for rule, program in zip(questions.rules, programs, strict=True):
+        given = []
+        for parameter in program.parameters:
+            if parameter.record is not None:
+                value = "Table" if not parameter.record.is_state else st_name(parameter.name)
+            elif parameter.name in kinds:
+                value = f"{held(parameter.name)}[Index]"
+            else:
+                continue
+            given.append(f"{st_name(parameter.name)} := {value}")
+        body.append(f"{instance(rule)}({', '.join(given)});")
+        differs += [f"({instance(rule)}.{st_name(each.name)} <> {held(each.name)}[Index])" for each in program.answers]
+    told = {answer.name for program in programs for answer in program.answers}
+    differs += [f"({st_name(state.record.name)}.{st_name(each)} <> {held(each)}[Index])" for state in states
+                for each in questions.expected if each not in told]  # fmt: skip
+    body = loop(len(rows), [*body, *check(" OR ".join(differs))])
+    note = f"{len(rows)} golden {questions.about} of table {number}, {comment_text(code.tables[number].id)}."
+    return block_text(code, name, note, True, [*variables, "Index : INT"], constants, body)
+
+
+def held(name: str) -> str:
+    """The constant array of a column."""
+    return f"{st_name(name).partition('_')[0]}s" if name != "begins" else "Begins"
+
+
+def instance(rule: Rule) -> str:
+    """The instance of a rule's block."""
+    return f"{st_name(rule.name)}Block"
+
+
+def begin_rule(code: ControllerCode, state: str) -> Rule:
+    """The rule that begins a state."""
+    return next(each for each in code.rules if each.name.startswith("begin") and state in code.program(each).records)
+
+
+def run_all(code: ControllerCode, blocks: list[TestBlock]) -> str:
+    """The block that runs one block a call."""
+    cases = []
+    for number, block in enumerate(blocks):
+        given = "" if block.table is None else "Table := Table"
+        load = [] if block.table is None else [f"Loader(TableNo := {block.table}, Table := Table);"]
+        lines = [
+            *load,
+            f"Test_{number}({given});",
+            f"Faults := Test_{number}.Failed;",
+            f"Fault := Test_{number}.FirstFailed;",
+        ]
+        cases += [f"        {number}:", *(f"            {line}" for line in lines)]
+    return RUN_ALL.format(
+        name=self_test_name(code), load=load_of(code), type=table_type(code), cases="\n".join(cases), last=len(blocks) - 1,
+        instances="\n".join(f"    Test_{number} : {block.name};" for number, block in enumerate(blocks)),
+    )  # fmt: skip
+
+
+def self_test_head(code: ControllerCode) -> str:
+    """The comment at the beginning of the self-test."""
+    return HEAD.format(file=f"retarder_{code.stem}.st", block=self_test_name(code))
+
+
+def calls(code: ControllerCode, line_checks: int) -> int:
+    """How many calls the whole test takes."""
+    return len(st_test_units(code, line_checks)) - 1

@@ -1,0 +1,99 @@
+"""The frame of a block of the self-test in Structured Text: what it counts, its loops, checks of a whole table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from tuning_tables.controller_code.code import ControllerCode, Values
+from tuning_tables.controller_code.st_code import table_type
+from tuning_tables.language.records import Kind, st_name
+from tuning_tables.st_literals import int_array, real_array
+
+CHECK: Final = """\
+IF {differs} THEN
+    IF Failed = 0 THEN
+        FirstFailed := Number;
+    END_IF;
+    Failed := Failed + 1;
+END_IF;
+Number := Number + 1;"""
+
+BLOCK: Final = """\
+FUNCTION_BLOCK {name}
+(* {note} *)
+{shared}VAR_OUTPUT
+    Failed : INT; (* checks that are wrong *)
+    FirstFailed : INT; (* the first of them, counted from 0; -1: none *)
+END_VAR
+VAR
+{variables}
+    Number : INT;
+END_VAR
+VAR CONSTANT
+{constants}
+END_VAR
+
+Failed := 0;
+FirstFailed := -1;
+Number := 0;
+{body}
+END_FUNCTION_BLOCK
+"""
+
+
+@dataclass(frozen=True)
+class TestBlock:
+    """A block of the self-test: its name and text, and the table that it takes, None for none."""
+
+    name: str
+    text: str
+    table: int | None
+
+
+def test_name(code: ControllerCode) -> str:
+    """How the names of the self-test's blocks begin."""
+    return f"RETARDER{code.ending.upper()}_TEST"
+
+
+def block_text(
+    code: ControllerCode, name: str, note: str, table: bool, variables: list[str], constants: list[str], body: list[str]
+) -> str:
+    """A block of the test."""
+    shared = f"VAR_IN_OUT\n    Table : {table_type(code)};\nEND_VAR\n" if table else ""
+    return BLOCK.format(
+        name=name, note=note, shared=shared, variables="\n".join(f"    {each};" for each in variables),
+        constants="\n".join(constants), body="\n".join(body),
+    )  # fmt: skip
+
+
+def check(differs: str, depth: int = 0) -> list[str]:
+    """A check that counts."""
+    return [" " * 4 * depth + line for line in CHECK.format(differs=differs).split("\n")]
+
+
+def loop(length: int, body: list[str]) -> list[str]:
+    """A loop over Index from 0."""
+    return [
+        "Index := 0;",
+        f"WHILE Index < {length} DO",
+        *(f"    {line}" for line in body),
+        "    Index := Index + 1;",
+        "END_WHILE;",
+    ]
+
+
+def compared(code: ControllerCode, values: Values) -> tuple[list[str], list[str]]:
+    """Constants and checks of all numbers of `Table`."""
+    constants, numbers, body = [], [], []
+    for name, member in code.table.members.items():
+        array = np.atleast_1d(np.asarray(values[name])).ravel()
+        twin = st_name(name).partition("_")[0]
+        constants.append(real_array(twin, array) if member.kind is Kind.REAL else int_array(twin, array))
+        if member.axes:
+            body += loop(len(array), check(f"Table.{st_name(name)}[Index] <> {twin}[Index]"))
+        else:
+            numbers.append(f"(Table.{st_name(name)} <> {twin}[0])")
+    return constants, [*check("\n    OR ".join(numbers)), *body]

@@ -1,0 +1,53 @@
+"""Records, comments and numbers as Structured Text writes them."""
+
+from __future__ import annotations
+
+import textwrap
+
+import numpy as np
+
+from tuning_tables.language.records import SizedRecord, st_name
+
+WIDTH = 110
+
+
+def real(value: float | np.floating) -> str:
+    """`value`, finite, as a REAL literal of ten digits, from which every compiler gets the same float32 number.
+
+    A float32 number is known from nine digits; ten leave no doubt also where the literal is read in double precision
+    first. The sign of -0.0 is not written: no comparison and no sum of the rules can tell.
+    """
+    number = np.float32(value)
+    return "0.0" if number == 0 else f"{float(number):.9E}"
+
+
+def of_tables(member: str) -> str:
+    """The constant array of a member by the number of the table."""
+    return st_name(member).partition("_")[0] + "Of"
+
+
+def st_comment(text: str, pad: str = "") -> list[str]:
+    """The text as a comment."""
+    lines = textwrap.wrap(text.replace("*)", "* )").replace("(*", "( *"), WIDTH - 6 - len(pad))
+    return [f"{pad}(* {lines[0]}", *(f"{pad}   {line}" for line in lines[1:-1])][: max(len(lines) - 1, 0)] + [
+        f"{pad}{'(*' if len(lines) == 1 else '  '} {lines[-1]} *)"
+    ]
+
+
+def st_declared(name: str, kind: str, note: str, depth: int = 1) -> list[str]:
+    """A declaration with what it means beside it, or above it where there is no room."""
+    pad = " " * 4 * depth
+    beside = f"{pad}{name} : {kind};" + (f" (* {note} *)" if note else "")
+    return [beside] if len(beside) <= WIDTH or not note else [*st_comment(note, pad), f"{pad}{name} : {kind};"]
+
+
+def st_type(record: SizedRecord, name: str) -> str:
+    """The declaration of a record."""
+    rows = []
+    for member, declared in record.members.items():
+        kind = declared.kind.st
+        if declared.axes:
+            kind = f"ARRAY[0..{record.length(member) - 1}] OF {kind}"
+        rows += st_declared(st_name(member), kind, declared.meaning, 2)
+    note = st_comment(record.record.meaning, "    ")
+    return "\n".join(["TYPE", *note, f"    {name} : STRUCT", *rows, "    END_STRUCT;", "END_TYPE", ""])

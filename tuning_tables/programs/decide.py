@@ -1,0 +1,132 @@
+"""Which stage to command: the decision rule of a table with switching lines.
+
+At the stage commanded last, with the path s of the first axle and the speed v:
+
+    lower   if the stage has a  lower line and  v < lower(s)
+    raise   if the stage has an upper line and  v > upper(s), but before the entrance only below the entrance stage
+    hold    otherwise; so a tie, v equal to the line, holds
+
+After lower or raise the same question is asked again at the next stage down or up, with the same s and v. It ends at
+hold, at the opposite answer, or when the command has gone as far as it may: at rest to any stage; at any time one
+stage, as the next sample asks again.
+
+In a table with slopes the lines are surfaces: slope (P - P_k) is added to lower(s) and to upper(s). P is the pressure
+of the gauge, clamped into the pressures from stage 0 to the highest stage that the table raises to; P_k is that of the
+stage asked for. A pressure that is not finite counts as P_k: the gauge is silent, and the valves are going there.
+
+Before the entrance is s < 0, after rounding and clamping; 0.0 and -0.0 are at the entrance. The entrance stage bounds
+what the rule commands there. It lowers nothing: a cut that is taken over at a higher stage breaks the interlock.
+
+All arithmetic is float32, one rounding an operation. The speed is compared as it is, however far outside the range of
+speeds the lines were fitted on: far too fast must still brake.
+
+Safe answer. A reading that cannot be true moves no valve: where path or speed is NaN, infinite or beyond the float32
+numbers, where the speed is negative, or the stage does not exist, the answer is the stage asked for. A single false
+reading is then harmless, as the pressure in force was right a sampling period ago; a lasting fault is for the
+supervision above this rule, which alone knows whether braking fully or releasing is the safe side.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from tuning_tables.language.records import real, whole
+from tuning_tables.programs.line_table import LOWER, UPPER, LineTable
+from tuning_tables.programs.numbers import (
+    LARGEST_NUMBER,
+    LEAST_NUMBER,
+    NOUGHT,
+    Answer,
+    ObservedSpeed,
+    Path,
+    PathReading,
+    Pressure,
+    Speed,
+    Stage,
+    f32,
+)
+
+
+def line_speed(
+    table: LineTable,
+    stage: Stage,
+    side: Annotated[int, whole("0: the lower line, 1: the upper one")],
+    s: Path,
+) -> Answer:
+    """Speed of a line at path s, by Horner's rule from the highest power down."""
+    power = table.powers - 1
+    line = table.coefficient[stage, side, power]
+    while power > 0:
+        power = power - 1
+        line = line * s + table.coefficient[stage, side, power]
+    return line
+
+
+def pressure_above(table: LineTable, stage: Stage, pressure_kpa: Pressure) -> Answer:
+    """By how much the pressure, clamped, exceeds that of the stage, kPa; 0 where the gauge is silent."""
+    above = NOUGHT
+    # No comparison with a NaN is true.
+    if LEAST_NUMBER <= pressure_kpa <= LARGEST_NUMBER:
+        pressure = min(max(f32(pressure_kpa), table.pressure_kpa[0]), table.highest_kpa)
+        above = pressure - table.pressure_kpa[stage]
+    return above
+
+
+def answer_at(
+    table: LineTable,
+    stage: Stage,
+    s: Path,
+    v: Speed,
+    lower_rise: Annotated[Any, real("what the pressure adds to the lower line, m/s")],
+    upper_rise: Annotated[Any, real("what it adds to the upper one, m/s")],
+) -> Answer:
+    """What the rule answers at one stage: -1 lower, 0 hold, 1 raise."""
+    answer = 0
+    if table.has_line[stage, LOWER] == 1:
+        lower = line_speed(table, stage, LOWER, s)
+        if table.has_gauge == 1:
+            lower = lower + lower_rise
+        if v < lower:
+            answer = -1
+    # Before the entrance a stage is raised only below the entrance stage.
+    if answer == 0 and table.has_line[stage, UPPER] == 1 and (s >= NOUGHT or stage < table.entrance_stage):
+        upper = line_speed(table, stage, UPPER, s)
+        if table.has_gauge == 1:
+            upper = upper + upper_rise
+        if v > upper:
+            answer = 1
+    return answer
+
+
+def decide(table: LineTable, stage: Stage, s_m: PathReading, v_m_s: ObservedSpeed, pressure_kpa: Pressure) -> Answer:
+    """The stage to command; the stage itself: command nothing."""
+    wanted = stage
+    # The sizes are looked at, too, so that no index leaves a damaged table.
+    has_stage = (
+        0 <= stage < table.stages <= table.coefficient.shape[0] and 1 <= table.powers <= table.coefficient.shape[2]
+    )
+    is_credible = LEAST_NUMBER <= s_m <= LARGEST_NUMBER and NOUGHT <= v_m_s <= LARGEST_NUMBER
+    if has_stage and is_credible:
+        s = min(max(f32(s_m), table.path_min_m), table.path_max_m)
+        v = f32(v_m_s)
+        lower_rise = NOUGHT
+        upper_rise = NOUGHT
+        if table.has_gauge == 1:
+            above = pressure_above(table, stage, pressure_kpa)
+            lower_rise = table.slope[stage, LOWER] * above
+            upper_rise = table.slope[stage, UPPER] * above
+        remaining = table.stages - 1
+        if table.at_any_time == 1:
+            remaining = 1
+        before = 0
+        while remaining > 0:
+            remaining = remaining - 1
+            answer = answer_at(table, wanted, s, v, lower_rise, upper_rise)
+            after = wanted + answer
+            # A damaged table may ask for a stage that it has not.
+            if answer == 0 or answer + before == 0 or after < 0 or after >= table.stages:
+                remaining = 0
+            else:
+                wanted = after
+                before = answer
+    return wanted
