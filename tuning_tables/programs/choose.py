@@ -45,6 +45,8 @@ def choose(
     status = NO_CLASS
     slower = -1
     faster = -1
+    slower_m_s = NOUGHT
+    faster_m_s = NOUGHT
     heaviest = MINUS_ONE
     number = 0
     while number < tables.category.shape[0]:
@@ -55,16 +57,19 @@ def choose(
                 slower = -1
                 faster = -1
             if tables.mass_t[number] >= heaviest:
+                target = tables.target_m_s[number]
                 # A later table of equal target does not replace an earlier one.
-                if tables.target_m_s[number] <= commanded_m_s:
-                    if slower < 0 or tables.target_m_s[number] > tables.target_m_s[slower]:
+                if target <= commanded_m_s:
+                    if slower < 0 or target > slower_m_s:
                         slower = number
-                elif faster < 0 or tables.target_m_s[number] < tables.target_m_s[faster]:
+                        slower_m_s = target
+                elif faster < 0 or target < faster_m_s:
                     faster = number
+                    faster_m_s = target
         number = number + 1
     if slower >= 0 and NOUGHT < commanded_m_s <= LARGEST_NUMBER:
         status = SLOWER
-        if tables.target_m_s[slower] >= commanded_m_s:
+        if slower_m_s >= commanded_m_s:
             status = TUNED
         elif faster >= 0:
             status = BETWEEN
