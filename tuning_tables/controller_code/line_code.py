@@ -89,6 +89,8 @@ def held_values(book: TableBook, number: int, record: SizedRecord, lines: Active
         axles=len(source.cut.axle_offsets_m),
         mass_t=np.float32(source.cut.mass_t),
     )
+    if held.has_gauge == 0:  # a difference of pressures that nobody looks at must not keep two tables apart
+        held = held._replace(highest_kpa=np.float32(0.0), pressure_kpa=np.zeros_like(held.pressure_kpa))
     return {name: sized(getattr(held, name), record.shape(name)) for name in record.members}
 
 
