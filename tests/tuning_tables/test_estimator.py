@@ -299,10 +299,9 @@ def test_the_rule_is_asked_with_the_estimated_speed(estimated_table: ControllerT
         speed = speed_for(estimated_table, state, *reading)
         assert speed == float(observe(lines_apart(estimator), direct, *reading))
         assert speed == speed_for(active(estimated_table), state.copy(), reading[0] - 30.0, np.nan, 0.0)
-        assert (
-            speed_for(replace(estimated_table, estimator=None, predicted=Predicted(0, 0, 0, 0)), state, *reading)
-            == np.float32(reading[1])
-        )
+        assert speed_for(
+            replace(estimated_table, estimator=None, predicted=Predicted(0, 0, 0, 0)), state, *reading
+        ) == np.float32(reading[1])
 
 
 def test_lines_are_taken_between_tables_of_one_estimator_only(estimated_table: ControllerTable) -> None:
