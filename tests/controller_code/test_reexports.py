@@ -14,7 +14,7 @@ from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
 from tuning_tables import ControllerTable
 from tuning_tables.category_names import category_names
-from tuning_tables.golden_choices import GoldenChoice, golden_choices
+from tuning_tables.golden_choices import golden_choices
 from tuning_tables.table_book import TableBook
 
 MASSES = {"Л": 23.0, "ЛС": 36.0, "С": 52.0, "СТ": 66.0, "Т": 85.0}
@@ -48,12 +48,13 @@ AFTER = [
 """Reordered, with classes added before, between and behind, with classes removed."""
 
 
-def choices_by_class(of: TableBook) -> dict[int, list[GoldenChoice]]:
-    """The golden choices with a table, by number of the category; the numbers of tables are those of the book."""
-    found: dict[int, list[GoldenChoice]] = {}
+def choices_by_class(of: TableBook) -> dict[int, list[tuple[object, ...]]]:
+    """By number of the category the golden choices with a table: command, status, target speed and coefficients."""
+    found: dict[int, list[tuple[object, ...]]] = {}
     for choice in golden_choices(of):
-        if choice.status >= 0:
-            found.setdefault(choice.category, []).append(replace(choice, numbers=()))
+        if choice.table is not None:
+            chosen = choice.table.target_speed_m_s, choice.table.coefficients.tobytes()
+            found.setdefault(choice.category, []).append((choice.commanded_m_s, choice.status, *chosen))
     return found
 
 
