@@ -17,7 +17,7 @@ from synth.checker.finding import DamagedError, Kind
 from synth.checker.table_reading import Table, read_table
 from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
 from tests.controller_code.sample_book import FOUR_AXLES, surface_book, table_of
-from tests.controller_code.test_surface_code import at_rest
+from tests.controller_code.unlike_pairs import at_rest
 from tuning_tables import ControllerTable, Decisions, to_json
 from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import ExportPrefix

@@ -42,6 +42,9 @@ HEAD: Final = (
     "the pressure that is there, and not by the stage that was commanded. Where the gauge fails, hand over what "
     "is no number (NaN): then the lines at the pressure of the stage count. Other tables do not look at the "
     "pressure; hand over 0.",
+    "A reading of 0 of a table without estimator is believed: the cut stands, so the brake is released. If the "
+    "radar shows 0 where it has lost its target, hand over -1 in place of that 0. The state counts in `unseen` for "
+    "how many samples no reading was believed; the supervision compares it with a limit of its own, and acts.",
     "Alarms. 1: the speed is known too badly, and `observe` answers less than the estimate; 2: readings of the "
     "radar are doubted, or one repeats itself; 4, 8: the brake works more, or less, on this cut than on any of "
     "its category.",
