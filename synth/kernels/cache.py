@@ -38,9 +38,7 @@ _KERNEL_SOURCES = (
     "scripts/studies/**/kernels/**/*.py",
     "synth/**/kernels/**/*.py",
     "tuning_tables/estimator.py",
-    "tuning_tables/passages/regulator.py",
-    "tuning_tables/passages/rule.py",
-    "tuning_tables/passages/tracker.py",
+    "tuning_tables/programs/*.py",
     "tuning_tables/rule.py",
 )
 """Patterns of the files that kernels are compiled from; tests/architecture finds these by itself and compares.
