@@ -80,12 +80,13 @@ def held(table: Table, tables: Sequence[Table]) -> Numbers:
 
 
 def gauge(table: Table, stages: int) -> dict[str, Sequence[float]]:
-    """What the lines depend on the pressure by; a table without gauge has its pressures, too, and no slopes."""
+    """What the lines depend on the pressure by; a table without gauge has neither pressures nor slopes."""
     slopes = [slope or 0.0 for both in table.slopes for slope in both]
+    pressures = table.pressures_kpa if table.has_gauge else ()
     return {
         "hasgauge": [int(table.has_gauge)],
-        "highestkpa": [table.pressures_kpa[table.top_stage]],
-        "pressurekpa": [*table.pressures_kpa, *[0.0] * (stages - len(table.pressures_kpa))],
+        "highestkpa": [table.pressures_kpa[table.top_stage] if table.has_gauge else 0.0],
+        "pressurekpa": [*pressures, *[0.0] * (stages - len(pressures))],
         "slope": [*slopes, *[0.0] * (2 * stages - len(slopes))],
     }
 

@@ -91,9 +91,9 @@ class Commanded:
 class ControllerCode:
     """An export: a book of tables of one kind.
 
-    `stem`: of its files, "table" in retarder_table.c; tables with lines have it, and their names are the short ones. `head`: paragraphs for the head of each file. `records`: of the
-    table, then of the states, each with the name of its type. `chooses`: the rule `choose`, and
-    `blend` where there is something between two tables.
+    `stem`: of its files, "table" in retarder_table.c; tables with lines have it, and their names are the short ones.
+    `head`: paragraphs for the head of each file. `records`: of the table, then of the states, each with the name of its
+    type. `chooses`: the rule `choose`, and `blend` where there is something between two tables.
     """
 
     stem: str

@@ -31,16 +31,20 @@ ALARMS: Final = Rule(alarms, "alarms", "0")
 CHOOSES: Final = (Rule(choose, "choose"), Rule(blend, "blend"))
 
 HEAD: Final = (
-    "The first axle is at s_m, 0 at the entrance of the first retarder, negative before it. The interlock is the caller's: "
-    "the regulator may take over a cut, approach_m before the entrance, only when the cut ahead has left the position, its "
-    "last axle out of the last retarder, and then only when the stage commanded is at most entrance_stage.",
-    "When to ask. A table whose at_any_time is 1 is asked at every sample, also while the pressure still changes, with the "
-    "stage commanded last. Every other table is asked only when the pressure of the stage is reached.",
-    "The gauge. The lines of a table whose has_gauge is 1 depend on the pressure, because a cut is braked by the pressure "
-    "that is there, and not by the stage that was commanded. Where the gauge fails, hand over what is no number (NaN): then "
-    "the lines at the pressure of the stage count. Other tables do not look at the pressure; hand over 0.",
-    "Alarms. 1: the speed is known too badly, and the answer of the observer is lower than the estimate; 2: readings of the "
-    "radar are doubted, or one repeats itself; 4, 8: the brake works more, or less, on this cut than on any of its category.",
+    "The first axle is at `s_m`, 0 at the entrance of the first retarder, negative before it. The interlock is "
+    "the caller's: the regulator may take over a cut, `approach_m` before the entrance, only when the cut ahead "
+    "has left the position, its last axle out of the last retarder, and then only when the stage commanded is at "
+    "most `entrance_stage`.",
+    "When to ask. A table whose `at_any_time` is 1 is asked at every sample, also while the pressure still "
+    "changes, with the stage commanded last. Every other table is asked only when the pressure of the stage is "
+    "reached.",
+    "The gauge. The lines of a table whose `has_gauge` is 1 depend on the pressure, because a cut is braked by "
+    "the pressure that is there, and not by the stage that was commanded. Where the gauge fails, hand over what "
+    "is no number (NaN): then the lines at the pressure of the stage count. Other tables do not look at the "
+    "pressure; hand over 0.",
+    "Alarms. 1: the speed is known too badly, and `observe` answers less than the estimate; 2: readings of the "
+    "radar are doubted, or one repeats itself; 4, 8: the brake works more, or less, on this cut than on any of "
+    "its category.",
 )
 
 
@@ -85,6 +89,8 @@ def held_values(book: TableBook, number: int, record: SizedRecord, lines: Active
         axles=len(source.cut.axle_offsets_m),
         mass_t=np.float32(source.cut.mass_t),
     )
+    if held.has_gauge == 0:  # a difference of pressures that nobody looks at must not keep two tables apart
+        held = held._replace(highest_kpa=np.float32(0.0), pressure_kpa=np.zeros_like(held.pressure_kpa))
     return {name: sized(getattr(held, name), record.shape(name)) for name in record.members}
 
 
@@ -150,7 +156,9 @@ def origin_lines(book: TableBook) -> Iterator[str]:
 
 def line_tables(book: TableBook) -> Tables:
     """What the choice looks at of every table of a book."""
-    held = [(book.number_of(table.cut.category), len(table.cut.axle_offsets_m), table.cut.mass_t, table.target_speed_m_s)
-            for table in book.tables]  # fmt: skip
+    held = [
+        (book.number_of(table.cut.category), len(table.cut.axle_offsets_m), table.cut.mass_t, table.target_speed_m_s)
+        for table in book.tables
+    ]
     category, axles, mass_t, target = zip(*held, strict=True)
     return Tables(np.array(category), np.array(axles), np.array(mass_t, np.float32), np.array(target, np.float32))
