@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tuning_tables.table_block import LAYOUT, block_of, block_size
 
 from scripts.studies.in_the_loop.agreement import ask, choices_of, differences, follow
 from scripts.studies.in_the_loop.controller_process import COMMAND, sources_of
@@ -15,7 +16,6 @@ from tests.controller_code.sample_book import approaching_book, table_of, with_a
 from tuning_tables import Approach, Status
 from tuning_tables.c_source import c_files
 from tuning_tables.self_test_size import FULL, SMALL
-from tuning_tables.table_block import LAYOUT, block_of, block_size
 from tuning_tables.table_book import TableBook
 
 LIGHT = 1

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tuning_tables.table_block import LAYOUT
 
 from scripts.studies.in_the_loop.agreement import choices_of
 from scripts.studies.in_the_loop.controller_process import COMMAND, build_controller
@@ -15,7 +16,6 @@ from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimator_of, table_of
 from tuning_tables import Estimator, Status
 from tuning_tables.st_source import TABLE_FILE, st_files
-from tuning_tables.table_block import LAYOUT
 from tuning_tables.table_book import TableBook
 
 LIGHT = 1

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tuning_tables.table_block import block_of, block_size
 
 from scripts.studies.in_the_loop.controller_process import (
     CONTRACT,
@@ -23,7 +24,6 @@ from tuning_tables import InvalidTable, decide_for, from_json, read_book, to_jso
 from tuning_tables.c_literals import hex_float
 from tuning_tables.c_source import c_files, export_tag
 from tuning_tables.self_test_size import FULL, SMALL
-from tuning_tables.table_block import block_of, block_size
 from tuning_tables.table_book import TableBook
 
 PEDANTIC = (

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tuning_tables.table_block import block_of, block_size
 
 from scripts.studies.in_the_loop.builds import SANITIZED
 from scripts.studies.in_the_loop.controller_process import CONTRACT, compile_with, sources_of, write_sources
@@ -22,7 +23,6 @@ from tuning_tables import alarms_for, speed_for, unseen_samples
 from tuning_tables.c_source import c_files
 from tuning_tables.estimator import begin
 from tuning_tables.golden_tracks import golden_tracks
-from tuning_tables.table_block import block_of, block_size
 from tuning_tables.table_book import TableBook
 
 SWAPPED = {

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tuning_tables.table_block import LAYOUT, block_of, block_size
 
 from scripts.studies.in_the_loop.agreement import ask, choices_of, differences, follow
 from scripts.studies.in_the_loop.controller_process import (
@@ -24,7 +25,6 @@ from tests.controller_code.sample_book import approaching_book, sample_book, sur
 from tuning_tables import ControllerTable, Decisions, Status, ValidRange
 from tuning_tables.c_source import c_files
 from tuning_tables.self_test_size import FULL, SMALL
-from tuning_tables.table_block import LAYOUT, block_of, block_size
 from tuning_tables.table_book import TableBook
 
 LIGHT = 1

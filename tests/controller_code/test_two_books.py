@@ -10,6 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 
 import pytest
+from tuning_tables.table_block import block_size
 
 from scripts.studies.in_the_loop.agreement import Questions, Tracks, ask, differences, follow
 from scripts.studies.in_the_loop.controller_process import CONTRACT, Controller, compile_with
@@ -19,7 +20,6 @@ from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.self_test_size import FULL, SMALL
 from tuning_tables.st_source import st_files, st_unit_files
-from tuning_tables.table_block import block_size
 from tuning_tables.table_book import TableBook
 
 POSITIONS = {"bunch": estimating_book(), "park": park_book()}

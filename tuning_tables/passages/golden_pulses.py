@@ -20,7 +20,8 @@ from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.pulse_sequences import heard_cuts
 from tuning_tables.programs.at_pulse import at_pulse
-from tuning_tables.programs.tracker import LONGEST_WAIT_S, NONE, TRACKER, begin_cut, believed_passage
+from tuning_tables.programs.passage_table import NONE
+from tuning_tables.programs.tracker import LONGEST_WAIT_S, TRACKER, begin_cut, believed_passage
 
 State: TypeAlias = tuple[float, ...]
 Pulse: TypeAlias = tuple[State, bool, int, float, float, int, bool]

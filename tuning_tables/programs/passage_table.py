@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +11,9 @@ from tuning_tables.language.records import real, record_of, whole
 
 Floats = npt.NDArray[np.float32]
 Whole = npt.NDArray[Any]
+
+NONE: Final = -1
+"""No passage."""
 
 
 class HeldPassages(NamedTuple):

@@ -32,7 +32,7 @@ import numpy.typing as npt
 
 from tuning_tables.language.records import Record, reading, real, whole
 from tuning_tables.programs.numbers import HALF, MINUS_ONE, NOUGHT, ONE, Answer, Speed, f32
-from tuning_tables.programs.passage_table import HeldPassages
+from tuning_tables.programs.passage_table import NONE, HeldPassages
 
 PASSAGE, SPEED_M_S, TIME_S, RIVAL, RIVAL_SPEED_M_S, RIVAL_TIME_S = range(6)
 
@@ -52,9 +52,6 @@ TRACKER: Final = Record(
 
 Tracker: TypeAlias = Annotated[npt.NDArray[np.float32], TRACKER]
 """float32 (6,)."""
-
-NONE: Final = -1
-"""No passage."""
 
 LONGEST_WAIT_S: Final = np.float32(1e6)
 """Times stop there."""
