@@ -24,18 +24,18 @@ from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_any_book, read_book, write_book
 from tuning_tables.json_file import from_json, read_json, to_json, write_json
 from tuning_tables.passages.csv_file import to_passage_csv, write_passage_csv
+from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_book import PassageBook, PassageChoice
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.plausible_motion import PlausibleMotion
-from tuning_tables.passages.regulator import PassageRule, at_pulse, rule_of
-from tuning_tables.passages.rule import wanted_stage
 from tuning_tables.passages.schema import passage_schema
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
-from tuning_tables.passages.tracker import begin_cut, believed_passage
 from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM, table_after
+from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
 from tuning_tables.programs.decide import decide
 from tuning_tables.programs.observe import observe
+from tuning_tables.programs.tracker import begin_cut, believed_passage
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.rule import alarms_for, decide_for, decide_many, speed_for
 from tuning_tables.schema import table_schema
@@ -66,7 +66,6 @@ __all__ = [
     "PassageBook",
     "PassageChoice",
     "PassageRow",
-    "PassageRule",
     "PassageTable",
     "PlausibleMotion",
     "Predicted",
@@ -89,6 +88,7 @@ __all__ = [
     "decide_many",
     "from_json",
     "from_table_json",
+    "held_by",
     "observe",
     "passage_schema",
     "read_any_book",
@@ -97,7 +97,6 @@ __all__ = [
     "read_table",
     "replacing",
     "round_coefficients",
-    "rule_of",
     "speed_for",
     "table_after",
     "table_schema",

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Protocol
 
+from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN
 from tuning_tables.errors import InvalidTable
 from tuning_tables.provenance import CutId
 
@@ -22,6 +23,17 @@ class OfClass(Protocol):
     def cut(self) -> CutId:
         """The class of cuts."""
         ...
+
+
+def exported_number(table: OfClass) -> int:
+    """What stands for the table's category in C and Structured Text; `InvalidTable` for one without number."""
+    if table.cut.number is None:
+        raise InvalidTable(
+            f"{table.id} is for the category {table.cut.category}, which has no number, but controller code chooses by "
+            f"number: give the table a cut.category_number in [{LEAST_OWN}, {LARGEST_OWN}] (CutId of tuning_tables), "
+            "then export it."
+        )
+    return table.cut.number
 
 
 def category_numbers(tables: Sequence[OfClass]) -> Mapping[str, int | None]:

@@ -32,9 +32,8 @@ from typing import Final
 import numpy as np
 
 from tuning_tables.active_table import ActiveTable, active, between, interpolable
-from tuning_tables.book_categories import category_numbers
+from tuning_tables.book_categories import category_numbers, exported_number
 from tuning_tables.book_classes import tables_by_class
-from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN
 from tuning_tables.errors import InvalidTable
 from tuning_tables.line_order import UNIT_ROUNDOFF
 from tuning_tables.programs import choose
@@ -108,15 +107,7 @@ class TableBook:
 
     def number_of(self, category: str) -> int:
         """What stands for a category of the book in C and Structured Text; `InvalidTable` for one without number."""
-        number = self.category_numbers[category]
-        if number is None:
-            table = next(table for table in self.tables if table.cut.category == category)
-            raise InvalidTable(
-                f"{table.id} is for the category {category}, which has no number, but controller code chooses by "
-                f"number: give the table a cut.category_number in [{LEAST_OWN}, {LARGEST_OWN}] (CutId of "
-                "tuning_tables), then export it."
-            )
-        return number
+        return exported_number(next(table for table in self.tables if table.cut.category == category))
 
     def exported_numbers(self) -> Mapping[str, int]:
         """`number_of` every category of the book; raises as that."""

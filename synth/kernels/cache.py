@@ -37,11 +37,14 @@ _KERNEL_SOURCES = (
     "plant_models/valve_drive.py",
     "scripts/studies/**/kernels/**/*.py",
     "synth/**/kernels/**/*.py",
-    "tuning_tables/estimator.py",
-    "tuning_tables/passages/regulator.py",
-    "tuning_tables/passages/rule.py",
-    "tuning_tables/passages/tracker.py",
-    "tuning_tables/rule.py",
+    "tuning_tables/programs/at_pulse.py",
+    "tuning_tables/programs/decide.py",
+    "tuning_tables/programs/estimate.py",
+    "tuning_tables/programs/line_table.py",
+    "tuning_tables/programs/numbers.py",
+    "tuning_tables/programs/observe.py",
+    "tuning_tables/programs/passage_table.py",
+    "tuning_tables/programs/tracker.py",
 )
 """Patterns of the files that kernels are compiled from; tests/architecture finds these by itself and compares.
 

@@ -17,7 +17,7 @@ from synth.kernels.loop.passage_pulses import read_speed_m_s
 from synth.kernels.loop.passage_regulator import DECIDED, believed_passage, outcome_of, stage_at_passage
 from synth.simulation.passage_controller import PassageController
 from synth.simulation.passage_loop import PassageLoop
-from tuning_tables.passages.tracker import begin_cut
+from tuning_tables.programs.tracker import TRACKER, begin_cut
 
 if TYPE_CHECKING:
     from control import NonlinearIOSystem
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 STAGE, MODE, RESTS_S, BELIEVED = range(4)
 """Places in the regulator's state; from `BELIEVED` on the six numbers of the tracker."""
 
-TRACKED = 6
+TRACKED = len(TRACKER.members)
 
 
 def passage_regulator_system(loop: PassageLoop, controller: PassageController) -> NonlinearIOSystem:
@@ -46,7 +46,7 @@ def passage_regulator_system(loop: PassageLoop, controller: PassageController) -
         read, passage = float(read_speed_m_s(pulses, over_base, 0.0)), int(pulses.number[source])
         if controller.tracks:
             sensor = int(pulses.sensor[source])
-            passage = believed_passage(law.path_m, law.sensor_of, law.limits, known, sensor, since, read)
+            passage = believed_passage(law, known, sensor, since, read)
         if outcome_of(law, passage, time - 0.5 * over_base >= float(x[RESTS_S])) == DECIDED:
             stage = stage_at_passage(law, passage, stage, read)
         return stage, known

@@ -8,12 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, PointSensors, deciding_passages, every_axle, passages
-from synth.simulation.controllers import fixed
+from tuning_tables.passages.held_passages import LIMITS, held_by, held_passages
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.passages.regulator import PassageRule, rule_of
-
-LIMITS = 6
-"""Numbers that the tracker's `limits` has."""
+from tuning_tables.programs.passage_table import HeldPassages
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,12 +18,11 @@ class PassageController:
     """The rule that a controller holds, and whether it `tracks`.
 
     With the tracker the regulator hears every axle and finds out itself which passage a pulse pair is; each pair goes
-    through `tuning_tables.passages.regulator.at_pulse`. Without it hears only the passages at which is decided, and is
-    told which each pair is, as if no sensor ever failed. The arrays of `rule` become read-only. `ValueError` for arrays
-    that do not fit.
+    through `tuning_tables.programs.at_pulse`. Without it hears only the passages at which is decided, and is
+    told which each pair is, as if no sensor ever failed. `ValueError` for arrays that do not fit.
     """
 
-    rule: PassageRule
+    rule: HeldPassages
     tracks: bool
 
     def __post_init__(self) -> None:
@@ -36,14 +32,14 @@ class PassageController:
             raise ValueError(f"passage controller: switching_m_s has shape {shape}; it must be (M, K + 1, K), K >= 1")
         if np.isnan(rule.switching_m_s).any() or (rule.switching_m_s[..., 1:] < rule.switching_m_s[..., :-1]).any():
             raise ValueError("passage controller: switching_m_s must not fall along a row and have no NaN")
-        heard = rule.passage_of.shape
-        if rule.path_m.shape != heard or rule.sensor_of.shape != heard or (np.diff(rule.path_m) < 0.0).any():
-            raise ValueError("passage controller: path_m (rising), sensor_of and passage_of must be of one length")
-        if not np.array_equal(rule.passage_of[rule.passage_of != -1], np.arange(shape[0])):
-            raise ValueError(f"passage controller: passage_of must name each of {shape[0]} passages once, in order")
-        if rule.limits.shape != (LIMITS,) or not np.all(np.isfinite(rule.limits) & (rule.limits >= 0.0)):
+        heard = rule.deciding.shape
+        if rule.path_m.shape != heard or rule.sensor.shape != heard or (np.diff(rule.path_m) < 0.0).any():
+            raise ValueError("passage controller: path_m (rising), sensor and deciding must be of one length")
+        if not np.array_equal(rule.deciding[rule.deciding != -1], np.arange(shape[0])):
+            raise ValueError(f"passage controller: deciding must name each of {shape[0]} passages once, in order")
+        limits = np.array([getattr(rule, name) for name in LIMITS])
+        if not np.all(np.isfinite(limits) & (limits >= 0.0)):
             raise ValueError("passage controller: limits must be six numbers that are not negative")
-        object.__setattr__(self, "rule", for_kernel(rule))
 
     @property
     def stages(self) -> int:
@@ -51,42 +47,28 @@ class PassageController:
         return int(self.rule.switching_m_s.shape[1])
 
 
-def for_kernel(rule: PassageRule) -> PassageRule:
-    """`rule` as the kernel takes it."""
-    return PassageRule(
-        fixed(rule.switching_m_s, np.float32),
-        int(rule.entrance_stage),
-        int(rule.before_entrance),
-        fixed(rule.path_m, np.float32),
-        fixed(rule.sensor_of, np.int64),
-        fixed(rule.passage_of, np.int64),
-        fixed(rule.limits, np.float32),
-        np.float32(rule.base_m),
-    )
-
-
 def of_speeds(
     plant: Plant, sensors: PointSensors, switching_m_s: NDArray[np.floating], limits: tuple[float, ...] = ()
 ) -> PassageController:
     """The regulator with `switching_m_s` (M, K + 1, K) at the passages at which the cut of `plant` decides.
 
-    With the six `limits` of a tracker (`tuning_tables.passages.tracker`) it tracks, else it is told each passage.
+    With the six `limits` of a tracker (`PlausibleMotion.numbers`) it tracks, else it is told each passage.
     """
     met = deciding_passages(sensors, plant.cut, plant.exit_m)
     heard = passages(replace(sensors, axles=every_axle), plant.cut)
-    rule = PassageRule(
-        switching_m_s.astype(np.float32),
-        plant.entrance_stage,
-        sum(each.path_m < 0.0 for each in met),
-        np.array([each.path_m for each in heard], dtype=np.float32),
-        np.array([each.sensor for each in heard], dtype=np.int64),
-        np.array([met.index(each) if each in met else -1 for each in heard], dtype=np.int64),
-        np.array(limits or [0.0] * LIMITS, dtype=np.float32),
-        np.float32(sensors.base_m),
+    rule = held_passages(
+        switching_m_s,
+        np.array([each.path_m for each in heard]),
+        np.array([each.sensor for each in heard]),
+        np.array([met.index(each) if each in met else -1 for each in heard]),
+        limits or [0.0] * len(LIMITS),
+        base_m=sensors.base_m,
+        entrance_stage=plant.entrance_stage,
+        before_entrance=sum(each.path_m < 0.0 for each in met),
     )
     return PassageController(rule, tracks=bool(limits))
 
 
 def of_table(table: PassageTable, tracking: bool) -> PassageController:
     """The regulator that runs `table`; `tracking`: with the tracker, as in a controller, else told each passage."""
-    return PassageController(rule_of(table), tracking)
+    return PassageController(held_by(table), tracking)

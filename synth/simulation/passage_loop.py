@@ -115,7 +115,7 @@ class PassageLoop:
             return
         if faults is not None:
             raise ValueError("passage loop: a regulator without tracker cannot be run with faults")
-        known, here = np.flatnonzero(controller.rule.passage_of >= 0), self.deciding
+        known, here = np.flatnonzero(controller.rule.deciding >= 0), self.deciding
         if not np.array_equal(known, here.number) or (
             np.abs(controller.rule.path_m[known] - here.path_m).max(initial=0.0) > PATH_ERROR_M
         ):

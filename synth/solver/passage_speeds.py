@@ -20,7 +20,7 @@ SMALLEST_GAP_M_S = 1e-3
 class PassageSpeeds:
     """`switching_m_s` (M, K + 1, K): at passage m with stage k in force, t[j] parts wanting stage j from stage j + 1.
 
-    No row falls; −∞ for j < k: never lower so far, +∞ for j ≥ k: never raise so far (`tuning_tables.passages.rule`).
+    No row falls; −∞ for j < k: never lower so far, +∞ for j ≥ k: never raise so far (`programs.at_pulse`).
     """
 
     switching_m_s: NDArray[np.float64]

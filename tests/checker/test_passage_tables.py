@@ -22,7 +22,7 @@ from tests.checker.planted_fault import Document, found, judged, look, rewrite
 from tests.controller_code.passage_tables import every_axle_book, passage_book
 from tests.tuning_tables.passages.made_tables import passage_tables as any_tables
 from tests.tuning_tables.passages.made_tables import table_of
-from tuning_tables import wanted_stage
+from tuning_tables import held_by, wanted_stage
 from tuning_tables.passages.csv_file import to_passage_csv
 from tuning_tables.passages.json_file import to_passage_json
 from tuning_tables.passages.passage_table import PassageTable
@@ -63,14 +63,13 @@ def test_sound_tables_and_exports_are_confirmed(exported_once: Path, capsys: pyt
 
 @pytest.mark.parametrize("table", (*passage_book().tables, *every_axle_book().tables)[:4], ids=lambda table: table.id)
 def test_the_checkers_rule_is_the_rule_to_the_last_bit(table: PassageTable) -> None:
-    read, rng = read_passage_table(to_passage_json(table)), np.random.default_rng(5)
+    read, held, rng = read_passage_table(to_passage_json(table)), held_by(table), np.random.default_rng(5)
     speeds = np.unique(table.switching_m_s[np.isfinite(table.switching_m_s)]).astype(float)
     near = [0.0, *speeds, *np.nextafter(speeds.astype(np.float32), np.float32(99)).astype(float), 50.0, -1.0, np.nan]
     for _ in range(4000):
         passage, stage = int(rng.integers(-1, len(table.passages) + 1)), int(rng.integers(-1, 11))
         v = float(rng.choice(near) if rng.random() < 0.5 else rng.uniform(0.0, 12.0))
-        entrance, before = table.entrance_stage, table.before_entrance
-        right = wanted_stage(table.switching_m_s, entrance, before, passage, stage, v)
+        right = wanted_stage(held, passage, stage, v)
         assert wanted(read, passage, stage, v) == right
     heard = passages_heard(read.sensors_m, read.axle_offsets_m)
     assert [np.float32(path) for path, _, _ in heard] == table.heard_path_m.tolist()

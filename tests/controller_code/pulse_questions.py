@@ -2,34 +2,33 @@
 
 from __future__ import annotations
 
-from types import FunctionType
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from tuning_tables.passages import regulator
+from synth.kernels.compiled_rules import compiled_rule
+from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.pulse_sequences import heard_cuts
-from tuning_tables.passages.regulator import PassageRule, at_pulse, rule_of
-from tuning_tables.passages.rule import wanted_stage
-from tuning_tables.passages.tracker import LONGEST_WAIT_S, NONE, believed_passage
+from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
+from tuning_tables.programs.passage_table import HeldPassages
+from tuning_tables.programs.tracker import LONGEST_WAIT_S, begin_cut, believed_passage
 
 ON, BEGIN, GIVEN, PAIR = range(4)
 """The tracker goes on, begins, or is given; PAIR: it is given, and asked alone with the reading `v_m_s`."""
 
 QUESTION = np.dtype(
-    [("table", "i4"), ("mode", "i4"), ("tracker", "u4", 6), ("sensor", "i4"), ("since_s", "f4"), ("over_base_s", "f4"),
+    [("table", "i4"), ("mode", "i4"), ("tracker", "f4", 6), ("sensor", "i4"), ("since_s", "f4"), ("over_base_s", "f4"),
      ("stage", "i4"), ("ended", "i4"), ("passage", "i4"), ("v_m_s", "f4")]
 )  # fmt: skip
-"""`tracker`: passages as whole numbers, else bits. `passage`, `stage` and `v_m_s` are put to the rule alone, too."""
+"""`passage`, `stage` and `v_m_s` are put to the rule alone, too."""
 
-ANSWER = np.dtype([("stage", "i4"), ("tracker", "u4", 6), ("wanted", "i4")])
+ANSWER = np.dtype([("stage", "i4"), ("tracker", "f4", 6), ("wanted", "i4")])
 """`stage`: of the step, or for PAIR the passage."""
 
 Rows = npt.NDArray[np.void]
-WHOLE = (0, 3)
 
 
 def asked(tables: tuple[PassageTable, ...], count: int, seed: int) -> Rows:
@@ -77,17 +76,18 @@ def _arbitrary(table: PassageTable, count: int, seed: int) -> Rows:
 
     found["mode"] = rng.choice([GIVEN, PAIR], count)
     for first in (0, 3):
-        found["tracker"][:, first] = rng.integers(-1, heard, count).astype(np.int32).view(np.uint32)
-        found["tracker"][:, first + 1] = numbers(least, greatest, (0.0, greatest))
-        found["tracker"][:, first + 2] = numbers(0.0, 4.0, (0.0, LONGEST_WAIT_S))
-    wrong = rng.random(count) < 0.02
-    found["tracker"][wrong, 0] = rng.choice(np.array([-2, heard, 32767], np.int32), wrong.sum()).view(np.uint32)
+        found["tracker"][:, first] = rng.integers(-1, heard, count)
+        found["tracker"][:, first + 1] = numbers(least, greatest, (0.0, greatest)).view(np.float32)
+        found["tracker"][:, first + 2] = numbers(0.0, 4.0, (0.0, float(LONGEST_WAIT_S))).view(np.float32)
+        wrong = rng.random(count) < 0.02
+        impossible = (-2.0, -0.5, 0.5, heard - 0.5, heard, 32767.0, 1e30, np.nan, np.inf)
+        found["tracker"][wrong, first] = rng.choice(impossible, wrong.sum())
     found["sensor"] = rng.integers(-1, len(table.sensors.path_m) + 1, count)
-    found["since_s"] = numbers(0.0, 4.0, (0.0, LONGEST_WAIT_S, np.inf)).view(np.float32)
+    found["since_s"] = numbers(0.0, 4.0, (0.0, float(LONGEST_WAIT_S), np.inf)).view(np.float32)
     speeds = numbers(0.7 * least, 1.1 * greatest, (least, greatest)).view(np.float32)
     with np.errstate(all="ignore"):
         bases = np.float32(table.sensors.base_m) / speeds
-    shortest = numbers(0.0, 2.0, (0.0, 2.0**-20, LONGEST_WAIT_S, np.inf)).view(np.float32)
+    shortest = numbers(0.0, 2.0, (0.0, 2.0**-20, float(LONGEST_WAIT_S), np.inf)).view(np.float32)
     found["over_base_s"] = np.where(rng.random(count) < 0.2, shortest, bases)
     _decisions(table, found, rng)
     return found
@@ -114,50 +114,37 @@ def _decisions(table: PassageTable, found: Rows, rng: np.random.Generator) -> No
         found[name][wrong] = rng.choice(outside, wrong.sum())
 
 
-def compiled_step() -> tuple[Any, Any, Any]:
-    """Tracker, rule and step, compiled from the Python text."""
-    believed, wanted = njit(believed_passage), njit(wanted_stage)
-    parts = {"believed_passage": believed, "wanted_stage": wanted}
-    return believed, wanted, njit(FunctionType(at_pulse.__code__, {**vars(regulator), **parts}))
-
-
 def right(tables: tuple[PassageTable, ...], questions: Rows) -> Rows:
     """The answers of the Python text to `questions`."""
-    believed, wanted, step = compiled_step()
+    believed, wanted, step, begin = map(compiled_rule, (believed_passage, wanted_stage, at_pulse, begin_cut))
 
     @njit
-    def all_answers(rule: PassageRule, whole: Any, numbers: Any, states: Any, stages: Any, trackers: Any) -> None:
+    def all_answers(table: HeldPassages, whole: Any, numbers: Any, states: Any, stages: Any, trackers: Any) -> None:
         state = np.zeros(6, np.float32)
         for i in range(len(whole)):
             mode, sensor, stage, ended, passage = whole[i]
             since_s, over_base_s, v_m_s = numbers[i]
             if mode == BEGIN:
-                state[:] = np.float32(0.0)
-                state[0], state[3] = np.float32(NONE), np.float32(NONE)
+                begin(state)
             elif mode != ON:
                 state[:] = states[i]
             if mode == PAIR:
-                stages[i, 0] = believed(rule.path_m, rule.sensor_of, rule.limits, state, sensor, since_s, v_m_s)
+                stages[i, 0] = believed(table, state, sensor, since_s, v_m_s)
             else:
-                stages[i, 0] = step(rule, state, sensor, since_s, over_base_s, stage, ended != 0)
-            stages[i, 1] = wanted(rule.switching_m_s, rule.entrance_stage, rule.before_entrance, passage, stage, v_m_s)
+                stages[i, 0] = step(table, state, sensor, since_s, over_base_s, stage, ended != 0)
+            stages[i, 1] = wanted(table, passage, stage, v_m_s)
             trackers[i] = state
 
     answers = np.zeros(len(questions), ANSWER)
     for number, table in enumerate(tables):
         chosen = questions["table"] == number
         part = questions[chosen]
-        states = part["tracker"].copy().view(np.float32)
-        whole_numbers = part["tracker"].copy().view(np.int32)
-        states[:, WHOLE] = whole_numbers[:, WHOLE]
         whole = np.stack([part[name].astype(np.int64) for name in ("mode", "sensor", "stage", "ended", "passage")], 1)
         with np.errstate(invalid="ignore"):  # a signalling NaN is widened
             numbers = np.stack([part[name].astype(np.float64) for name in ("since_s", "over_base_s", "v_m_s")], 1)
         stages, trackers = np.zeros((len(part), 2), np.int64), np.zeros((len(part), 6), np.float32)
-        all_answers(rule_of(table), whole, numbers, states, stages, trackers)
-        words = trackers.view(np.uint32).copy()
-        words[:, WHOLE] = trackers[:, WHOLE].astype(np.int32).view(np.uint32)
+        all_answers(held_by(table), whole, numbers, part["tracker"].copy(), stages, trackers)
         here = np.zeros(len(part), ANSWER)
-        here["stage"], here["tracker"], here["wanted"] = stages[:, 0], words, stages[:, 1]
+        here["stage"], here["tracker"], here["wanted"] = stages[:, 0], trackers, stages[:, 1]
         answers[chosen] = here
     return answers

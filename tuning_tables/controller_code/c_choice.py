@@ -17,11 +17,16 @@ STATUSES: Final = """\
 
 SELECT_NOTE: Final = """\
 Fill chosen with the table for a cut of this category and number of axles that shall leave with commanded_m_s.
-Candidates are the tables of the category and number of axles; of several masses the largest. Between two targets it
-is what lies between the two tables, where they differ in nothing but target and lines; else, and above the highest
-target, the table of the next target below the command: the cut never leaves faster than commanded. Returns how it
-ended. Where that is below 0, or chosen is null, chosen is left as it was: then whoever commands must decide, for no
-table here is known to be safe."""
+Candidates are the tables of the category and number of axles; of several masses the largest. {between} the
+table of the next target below the command: the cut never leaves faster than commanded. Returns how it ended. Where that
+is below 0, or chosen is null, chosen is left as it was: then whoever commands must decide, for no table here is known
+to be safe."""
+
+BLENDED_NOTE: Final = (
+    "Between two targets it is what lies between the two tables, where they differ in nothing but target and lines; "
+    "else, and above the highest target,"
+)
+SLOWER_NOTE: Final = "Between two targets, and above the highest, it is"
 
 SELECT: Final = """\
 int32_t {select}(int32_t category, int32_t axles, float commanded_m_s, {type} *chosen)
@@ -68,6 +73,11 @@ def table_type(code: ControllerCode) -> str:
 def select_of(code: ControllerCode) -> str:
     """The name of the choice."""
     return f"retarder_select{code.ending}"
+
+
+def select_note(code: ControllerCode) -> str:
+    """What the choice does."""
+    return SELECT_NOTE.format(between=BLENDED_NOTE if code.blends else SLOWER_NOTE).replace("\n", " ")
 
 
 def select(code: ControllerCode) -> str:

@@ -10,9 +10,9 @@ from typing import Final
 from tuning_tables.c_template import part
 from tuning_tables.category_names import comment_text
 from tuning_tables.controller_code.c_choice import (
-    SELECT_NOTE,
     STATUSES,
     select,
+    select_note,
     select_of,
     table_type,
     tables_of,
@@ -105,7 +105,7 @@ def c_header(code: ControllerCode) -> str:
             f"extern const {table_type(code)} {tables_of(code)}[];",
             "",
             *(line for rule in code.rules for line in declared(code, rule, names)),
-            *([*c_comment(SELECT_NOTE.replace("\n", " ")),
+            *([*c_comment(select_note(code)),
                f"int32_t {select_of(code)}(int32_t category, int32_t axles, float commanded_m_s, "
                f"{table_type(code)} *chosen);", ""] if code.chooses else []),
             "/* 1 if the checksum of the table is right, in ROM or of a copy, else 0. */",

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,19 +33,3 @@ def golden_passages(table: PassageTable) -> GoldenPassages:
 def few_golden_passages(table: PassageTable) -> GoldenPassages:
     """What a small controller holds."""
     return GoldenPassages(few_golden_stages(table), few_golden_pairs(table), few_golden_pulses(table))
-
-
-def row_words(number: int, rows: npt.NDArray[np.void]) -> npt.NDArray[np.uint32]:
-    """The rows of table `number` as words, its number first: uint32 (n, 1 + fields); every field is 32 bits wide."""
-    words = np.ascontiguousarray(rows).view(np.uint32).reshape(len(rows), -1)
-    return np.column_stack([np.full(len(rows), number, dtype=np.uint32), words])
-
-
-def golden_crc(golden: Sequence[GoldenPassages]) -> int:
-    """CRC-32 of the checksums of all rows of stages, of pairs, and of pulses, each word from its lowest byte up."""
-    kinds = zip(*((each.stages, each.pairs, each.pulses) for each in golden), strict=True)
-    sums = [
-        zlib.crc32(b"".join(row_words(number, rows).astype("<u4").tobytes() for number, rows in enumerate(kind)))
-        for kind in kinds
-    ]
-    return zlib.crc32(np.array(sums, dtype="<u4").tobytes())

@@ -1,6 +1,6 @@
 """Golden pulses of a table: pulse pairs where a wrong tracker or a wrong step shows, with the right answers.
 
-A row stands for itself: state before, pair, state after, answer. Equal rows one by one make equal sequences of any
+A row stands for itself: state before, pair, answer, state after. Equal rows one by one make equal sequences of any
 length. There are two kinds: for the whole step (`at_pulse`), the pairs of cuts, whole and with faults; for the tracker
 alone (`believed_passage`), waits at which a pair is just believed and just not, and states and numbers that cannot be.
 """
@@ -16,42 +16,47 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.golden_vectors import LARGEST, SMALLEST
+from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.pulse_sequences import heard_cuts
-from tuning_tables.passages.regulator import at_pulse, rule_of
-from tuning_tables.passages.tracker import LONGEST_WAIT_S, NONE, begin_cut, believed_passage
+from tuning_tables.programs.at_pulse import at_pulse
+from tuning_tables.programs.passage_table import NONE
+from tuning_tables.programs.tracker import LONGEST_WAIT_S, TRACKER, begin_cut, believed_passage
 
 State: TypeAlias = tuple[float, ...]
+Pulse: TypeAlias = tuple[State, bool, int, float, float, int, bool]
+"""State before, whether it begins then, sensor, since, over base, stage, whether the change to it had ended."""
 Floats: TypeAlias = npt.NDArray[np.float32]
 
-STATE_FIELDS: Final = ("passage", "v_m_s", "time_s", "rival", "rival_m_s", "rival_s")
-NEW_FIELDS: Final = tuple(f"new_{name}" for name in STATE_FIELDS)
-WHOLE: Final = ("passage", "rival", "new_passage", "new_rival", "sensor", "stage", "ended", "answer")
-"""Fields that are whole numbers; the others are float32."""
+MEMBERS: Final = tuple(TRACKER.members)
+STATES: Final = [(f"before_{name}", "f4") for name in MEMBERS], [(name, "f4") for name in MEMBERS]
 
 PULSE_ROW: Final = np.dtype(
-    [(name, np.int32 if name in WHOLE else np.float32)
-     for name in (*STATE_FIELDS, "sensor", "since_s", "over_base_s", "stage", "ended", *NEW_FIELDS, "answer")]
+    [*STATES[0], ("begins", "i4"), ("sensor", "i4"), ("since_s", "f4"), ("over_base_s", "f4"), ("stage", "i4"),
+     ("transient_ended", "i4"), *STATES[1], ("wanted", "i4")]
 )  # fmt: skip
+"""State before, whether it begins then, what `at_pulse` is asked, by its parameters, state afterwards, its answer."""
 PAIR_ROW: Final = np.dtype(
-    [(name, np.int32 if name in WHOLE else np.float32)
-     for name in (*STATE_FIELDS, "sensor", "since_s", "reading_m_s", *NEW_FIELDS, "answer")]
-)  # fmt: skip
+    [*STATES[0], ("sensor", "i4"), ("since_s", "f4"), ("reading_m_s", "f4"), *STATES[1], ("found", "i4")]
+)
+"""Likewise of `believed_passage`."""
 
 BEGUN: Final[State] = (NONE, 0.0, 0.0, NONE, 0.0, 0.0)
+USED: Final[State] = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0)
+LONGEST_S: Final = float(LONGEST_WAIT_S)
 ROUNDS, FEW_ROUNDS = 3, 1
 MOST_PULSES, FEW_PULSES = 600, 80
 MOST_WAYS, FEW_WAYS = 24, 10
 
 
 def golden_pulses(table: PassageTable) -> npt.NDArray[np.void]:
-    """Rows of `PULSE_ROW`, at most `MOST_PULSES`, evenly spread over `ROUNDS` cuts for each fault."""
-    return _spread(_pulses(table, ROUNDS), MOST_PULSES)
+    """Rows of `PULSE_ROW`, about `MOST_PULSES`, evenly spread over `ROUNDS` cuts for each fault."""
+    return np.append(_spread(_pulses(table, ROUNDS), MOST_PULSES), _silent_begin(table))
 
 
 def few_golden_pulses(table: PassageTable) -> npt.NDArray[np.void]:
-    """The same for a small controller: at most `FEW_PULSES` of one cut for each fault."""
-    return _spread(_pulses(table, FEW_ROUNDS), FEW_PULSES)
+    """The same for a small controller: about `FEW_PULSES` of one cut for each fault."""
+    return np.append(_spread(_pulses(table, FEW_ROUNDS), FEW_PULSES), _silent_begin(table))
 
 
 def golden_pairs(table: PassageTable) -> npt.NDArray[np.void]:
@@ -66,26 +71,25 @@ def few_golden_pairs(table: PassageTable) -> npt.NDArray[np.void]:
 
 def paired(table: PassageTable, asked: list[tuple[State, int, float, float]]) -> npt.NDArray[np.void]:
     """(state before, sensor, since, reading) with what the tracker makes of each."""
-    rows = np.zeros(len(asked), dtype=PAIR_ROW)
+    held, rows = held_by(table), np.zeros(len(asked), dtype=PAIR_ROW)
     for row, (before, sensor, since_s, v_m_s) in zip(rows, asked, strict=True):
         row["sensor"], row["since_s"], row["reading_m_s"] = sensor, since_s, v_m_s
         state = _begin_row(row, before)
-        given = (float(row["since_s"]), float(row["reading_m_s"]))
-        row["answer"] = believed_passage(table.heard_path_m, table.heard_sensor, table.limits, state, sensor, *given)
+        row["found"] = believed_passage(held, state, sensor, row["since_s"], row["reading_m_s"])
         _end_row(row, state)
     return rows
 
 
-def stepped(table: PassageTable, asked: list[tuple[State, int, float, float, int, bool]]) -> npt.NDArray[np.void]:
-    """(state before, sensor, since, time over the base, stage, ended) with what the step makes of each."""
-    rows = np.zeros(len(asked), dtype=PULSE_ROW)
-    rule = rule_of(table)
-    for row, (before, sensor, since_s, over_base_s, stage, ended) in zip(rows, asked, strict=True):
-        row["sensor"], row["since_s"], row["over_base_s"] = sensor, since_s, over_base_s
-        row["stage"], row["ended"] = stage, ended
+def stepped(table: PassageTable, asked: list[Pulse]) -> npt.NDArray[np.void]:
+    """The pulses with what the step makes of each."""
+    held, rows = held_by(table), np.zeros(len(asked), dtype=PULSE_ROW)
+    for row, (before, begins, sensor, since_s, over_base_s, stage, ended) in zip(rows, asked, strict=True):
+        row["begins"], row["sensor"], row["since_s"], row["over_base_s"] = begins, sensor, since_s, over_base_s
+        row["stage"], row["transient_ended"] = stage, ended
         state = _begin_row(row, before)
-        given = (float(row["since_s"]), float(row["over_base_s"]))
-        row["answer"] = at_pulse(rule, state, sensor, *given, stage, ended)
+        if begins:
+            begin_cut(state)
+        row["wanted"] = at_pulse(held, state, sensor, row["since_s"], row["over_base_s"], stage, ended)
         _end_row(row, state)
     return rows
 
@@ -95,32 +99,38 @@ def _spread(rows: npt.NDArray[np.void], most: int) -> npt.NDArray[np.void]:
 
 
 def _begin_row(row: np.void, before: State) -> Floats:
-    for name, value in zip(STATE_FIELDS, before, strict=True):
-        row[name] = value
-    return np.array([row[name] for name in STATE_FIELDS], dtype=np.float32)
+    for name, value in zip(MEMBERS, before, strict=True):
+        row[f"before_{name}"] = value
+    return np.array([row[f"before_{name}"] for name in MEMBERS], dtype=np.float32)
 
 
 def _end_row(row: np.void, state: Floats) -> None:
-    for name, value in zip(NEW_FIELDS, state, strict=True):
+    for name, value in zip(MEMBERS, state, strict=True):
         row[name] = value
 
 
 def _pulses(table: PassageTable, rounds: int) -> npt.NDArray[np.void]:
-    """Rounds of cuts with every fault in turn, each from `begin_cut` on; a stage commanded is in force at once."""
-    rule, rows = rule_of(table), []
+    """Rounds of cuts with every fault in turn, each after the one before; a stage commanded is in force at once."""
+    held, rows, state = held_by(table), [], np.array(USED, dtype=np.float32)
     for random, pairs in heard_cuts(table, rounds):
-        state, stage, heard_s = np.zeros(6, dtype=np.float32), table.initial_stage, 0.0
-        begin_cut(state)
-        for pair in pairs:
+        stage, heard_s = table.initial_stage, 0.0
+        for place, pair in enumerate(pairs):
             if random.random() < 0.3:
                 stage = int(random.random() * len(table.pressure_kpa))
             since_s, heard_s, ended = pair.time_s - heard_s, pair.time_s, random.random() < 0.8
-            rows.append((tuple(state.tolist()), pair.sensor, since_s, pair.over_base_s, stage, ended))
+            rows.append((tuple(state.tolist()), place == 0, pair.sensor, since_s, pair.over_base_s, stage, ended))
+            if place == 0:
+                begin_cut(state)
             with np.errstate(over="ignore"):
-                given = (float(np.float32(since_s)), float(np.float32(pair.over_base_s)))
-            stage = at_pulse(rule, state, pair.sensor, *given, stage, ended)
+                given = np.float32(since_s), np.float32(pair.over_base_s)
+            stage = at_pulse(held, state, pair.sensor, *given, stage, ended)
     with np.errstate(over="ignore"):
         return stepped(table, rows)
+
+
+def _silent_begin(table: PassageTable) -> npt.NDArray[np.void]:
+    """A cut that begins with a pair of which one pulse is missing: the state shows that all of it was forgotten."""
+    return stepped(table, [(USED, True, 0, 0.25, 0.0, table.initial_stage, True)])
 
 
 def _edges(table: PassageTable, most: int) -> Iterator[tuple[State, int, float, float]]:
@@ -140,7 +150,7 @@ def _edges(table: PassageTable, most: int) -> Iterator[tuple[State, int, float, 
         sensor = int(table.heard_sensor[there])
         other = (NONE, 0.0, 0.0) if place % 2 else (count - 1, least, 1.0)
         last = (here, before_m_s, 0.0)
-        waits = [0.0, *np.geomspace(1e-3, 1e3, 61).tolist(), _way(table, here, there) / now_m_s, LONGEST_WAIT_S]
+        waits = [0.0, *np.geomspace(1e-3, 1e3, 61).tolist(), _way(table, here, there) / now_m_s, LONGEST_S]
         for since_s in _turning(partial(_is_believed, table, last, there, v_m_s=now_m_s), waits):
             yield (*last, *other) if place % 3 else (NONE, 0.0, 0.0, *last), sensor, since_s, now_m_s
     for here, there in sorted(ways, key=lambda each: _way(table, *each))[:3]:
@@ -157,8 +167,8 @@ def _way(table: PassageTable, here: int, there: int) -> float:
 def _is_believed(table: PassageTable, last: State, there: int, since_s: float, v_m_s: float) -> bool:
     """Whether a pair of the sensor of `there` is believed where `last` alone was passed."""
     state = np.array((*last, NONE, 0.0, 0.0), dtype=np.float32)
-    given = (int(table.heard_sensor[there]), since_s, float(np.float32(v_m_s)))
-    return believed_passage(table.heard_path_m, table.heard_sensor, table.limits, state, *given) != NONE
+    given = (int(table.heard_sensor[there]), np.float32(since_s), np.float32(v_m_s))
+    return bool(believed_passage(held_by(table), state, *given) != NONE)
 
 
 def _turning(is_so: Callable[[float], bool], values: list[float]) -> Iterator[float]:
@@ -189,8 +199,8 @@ def _odd_pairs(table: PassageTable) -> Iterator[tuple[State, int, float, float]]
     speeds = [least, greatest, _beside(least, 0.0), _beside(greatest, np.inf), -0.0, 0.0, -1.0, LARGEST, SMALLEST]
     for v in (*speeds, np.nan, np.inf, -np.inf):
         yield from ((state, sensor, 0.5, v) for state in (BEGUN, known))
-    over = _beside(LONGEST_WAIT_S, np.inf)
-    for since_s in (0.0, -0.0, SMALLEST, -SMALLEST, LONGEST_WAIT_S, over, LARGEST, np.nan, np.inf, -np.inf):
+    over = _beside(LONGEST_S, np.inf)
+    for since_s in (0.0, -0.0, SMALLEST, -SMALLEST, LONGEST_S, over, LARGEST, np.nan, np.inf, -np.inf):
         yield from ((state, sensor, since_s, greatest) for state in (BEGUN, known))
     for other in (-1, -32768, 32767, len(table.sensors.path_m)):
         yield known, other, 0.5, greatest
@@ -200,7 +210,9 @@ def _odd_pairs(table: PassageTable) -> Iterator[tuple[State, int, float, float]]
     for place in range(6):
         for value in wrong[place % 3]:
             yield (*sound[:place], value, *sound[place + 1 :]), sensor, 0.25, middle
-    yield sound, sensor, LONGEST_WAIT_S, _beside(greatest, np.inf)
+    yield sound, sensor, LONGEST_S, _beside(greatest, np.inf)
+    for place in (0, 3):
+        yield (*sound[:place], 0.5, *sound[place + 1 :]), sensor, 0.25, middle
 
 
 def _beside(value: float, towards: float) -> float:

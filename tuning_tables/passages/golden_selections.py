@@ -7,21 +7,21 @@ from itertools import pairwise
 
 import numpy as np
 
+from tuning_tables.book_categories import exported_number
 from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN
-from tuning_tables.passages.passage_block import exported_number
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.table_book import Status
 
 
 @dataclass(frozen=True)
 class GoldenSelection:
-    """A command, and how the choice ends: status, and the number of the table; that of all tables stands for none."""
+    """A command, and how the choice ends: status, and the number of the table, None for none."""
 
     category: int
     axles: int
     commanded_m_s: np.float32
     status: Status
-    table: int
+    table: int | None
 
 
 def golden_selections(book: PassageBook) -> tuple[GoldenSelection, ...]:
@@ -39,12 +39,11 @@ def golden_selections(book: PassageBook) -> tuple[GoldenSelection, ...]:
     target = np.float32(book.tables[0].target_speed_m_s)
     found.append(_answered(book, category, max(axles for _, axles in book.by_class) + 1, target))
     lacking = sorted({0, 6, LARGEST_OWN, *KNOWN_NUMBERS.values()} - {table.cut.number for table in book.tables})
-    found += [GoldenSelection(number, axles, target, Status.NO_CLASS, len(book.tables)) for number in lacking]
+    found += [GoldenSelection(number, axles, target, Status.NO_CLASS, None) for number in lacking]
     return tuple(found)
 
 
 def _answered(book: PassageBook, category: str, axles: int, commanded_m_s: np.float32) -> GoldenSelection:
     choice = book.choose(category, axles, float(commanded_m_s))
-    number = len(book.tables) if choice.number is None else choice.number
     category_number = next(exported_number(table) for table in book.tables if table.cut.category == category)
-    return GoldenSelection(category_number, axles, commanded_m_s, choice.status, number)
+    return GoldenSelection(category_number, axles, commanded_m_s, choice.status, choice.number)

@@ -12,13 +12,15 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.golden_vectors import LARGEST, LEAST_NORMAL, SMALLEST, STAGE_LIMITS
+from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.passages.rule import wanted_stage
+from tuning_tables.programs.at_pulse import wanted_stage
 
 Reading: TypeAlias = tuple[int, int, float]
 """Passage, stage in force, speed in m/s."""
 
-STAGE_ROW: Final = np.dtype([("passage", np.int32), ("stage", np.int32), ("v_m_s", np.float32), ("answer", np.int32)])
+STAGE_ROW: Final = np.dtype([("passage", "i4"), ("stage", "i4"), ("reading_m_s", "f4"), ("wanted", "i4")])
+"""What `wanted_stage` is asked, by its parameters, and its answer."""
 
 MOST_ROWS: Final = 4000
 """Readings beside switching speeds; of a table with more of these, speeds evenly spread over it are taken."""
@@ -38,13 +40,10 @@ def few_golden_stages(table: PassageTable) -> npt.NDArray[np.void]:
 
 def answered(table: PassageTable, readings: list[Reading]) -> npt.NDArray[np.void]:
     """The readings with the stages that the rule wants."""
-    rows = np.zeros(len(readings), dtype=STAGE_ROW)
+    held, rows = held_by(table), np.zeros(len(readings), dtype=STAGE_ROW)
     for row, (passage, stage, v_m_s) in zip(rows, readings, strict=True):
-        row["passage"], row["stage"], row["v_m_s"] = passage, stage, v_m_s
-        v = float(row["v_m_s"])
-        row["answer"] = wanted_stage(
-            table.switching_m_s, table.entrance_stage, table.before_entrance, passage, stage, v
-        )
+        row["passage"], row["stage"], row["reading_m_s"] = passage, stage, v_m_s
+        row["wanted"] = wanted_stage(held, passage, stage, row["reading_m_s"])
     return rows
 
 

@@ -18,7 +18,7 @@ from synth.simulation.nominal_response import NominalResponse
 from synth.simulation.passage_controller import PassageController
 from synth.simulation.passage_loop import PassageLoop
 from synth.simulation.structure.diagram import Diagram
-from tuning_tables.passages.tracker import begin_cut
+from tuning_tables.programs.tracker import begin_cut
 
 
 class Coil(NamedTuple):

@@ -29,7 +29,7 @@ from synth.kernels.loop.passage_pulses import (
 )
 from synth.kernels.loop.passage_regulator import NOT_HEARD, begin_cut, outcome_of, stage_after_pair
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
-from tuning_tables.passages.regulator import PassageRule
+from tuning_tables.programs.passage_table import HeldPassages
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -112,7 +112,7 @@ def note_pair(
 @borrowing
 def run_passage_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: PieceDrive, pulses: Pulses, after_s: Floats, told_m_s: Floats,
-    law: PassageRule, tracks: bool, start_m_s: float, noise_z: NDArray[np.float32], memory: Memory, outcomes: Outcomes,
+    law: HeldPassages, tracks: bool, start_m_s: float, noise_z: NDArray[np.float32], memory: Memory, outcomes: Outcomes,
     events: Floats, seen: Floats,
 ) -> Any:  # fmt: skip
     """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events, pairs).
@@ -188,7 +188,7 @@ def run_passage_pass(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def run_passage_passes(
-    path: Path, drive: PieceDrive, pulses: Pulses, heard: Heard, law: PassageRule, tracks: bool, draws: Draws,
+    path: Path, drive: PieceDrive, pulses: Pulses, heard: Heard, law: HeldPassages, tracks: bool, draws: Draws,
     memory: Memory, exits: Exits, outcomes: Outcomes, events: Floats, seen: Floats,
 ) -> Any:  # fmt: skip
     """Simulate all passes of `draws` into `exits` and `outcomes` (n, M); returns (events, pairs) of the last pass."""

@@ -77,9 +77,9 @@ def measuring_parts(
         Part(
             "relay element of the path", "РЭ3", Block.MEASURING, "tells which passage it was: the number of the place",
             passage_regulator.believed_passage,
-            takes=(("sensor", "m[n]"), ("since_s", "Δt[n]"), ("v_m_s", "V*[n]"), ("state", "believed")),
+            takes=(("sensor", "m[n]"), ("since_s", "Δt[n]"), ("reading_m_s", "V*[n]"), ("tracker", "believed")),
             gives=("S*[n]",),
-            given=(("path_m", rule.path_m), ("sensor_of", rule.sensor_of), ("limits", rule.limits)),
+            given=(("table", rule),),
             undrawn=("believed",), numbers=(Number("passages", len(rule.path_m)),),
         ),
     )  # fmt: skip

@@ -17,9 +17,10 @@ from synth.retarder.sensors.pictures.passes_with_readings import passes_figure
 from synth.retarder.sensors.pictures.switching_speeds import colour_of, columns_m, switching_speeds, wanted_edges_m_s
 from synth.simulation.passage_sample import DECIDED, UNFINISHED, PassageTrace, PassReadings
 from tests.controller_code.passage_tables import passage_table
+from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.passages.rule import wanted_stage
 from tuning_tables.passages.sensor_layout import DecidesOn
+from tuning_tables.programs.at_pulse import wanted_stage
 
 FIRST = passage_table()
 EVERY = passage_table(decides_on=DecidesOn.EVERY_AXLE)
@@ -31,7 +32,7 @@ def test_a_column_shows_the_stage_that_the_rule_wants(data: st.DataObject, v: fl
     passage = data.draw(st.integers(0, len(FIRST.passages) - 1))
     stage = data.draw(st.integers(0, len(FIRST.pressure_kpa) - 1))
     edges = wanted_edges_m_s(FIRST, passage, stage, WINDOW_M_S)
-    wanted = wanted_stage(FIRST.switching_m_s, FIRST.entrance_stage, FIRST.before_entrance, passage, stage, v)
+    wanted = wanted_stage(held_by(FIRST), passage, stage, v)
     assert edges[wanted] <= v <= edges[wanted + 1]
     assert (np.diff(edges) >= 0.0).all()
 
@@ -48,7 +49,7 @@ def test_stages_above_the_highest_are_never_asked_for() -> None:
     top = highest_stage(FIRST)
     speeds = (0.5, 3.0, 6.0, 20.0)
     asked = {
-        wanted_stage(FIRST.switching_m_s, FIRST.entrance_stage, FIRST.before_entrance, passage, stage, v)
+        wanted_stage(held_by(FIRST), passage, stage, v)
         for passage in range(len(FIRST.passages))
         for stage in range(top + 1)
         for v in speeds

@@ -19,8 +19,9 @@ from synth.simulation.structure.passage_diagram import passage_diagram
 from synth.simulation.structure.radar_diagram import radar_diagram
 from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule, with_approach
 from tests.synth.test_control_system import table_for
-from tuning_tables.passages.regulator import PassageRule, at_pulse
-from tuning_tables.passages.tracker import NONE, begin_cut
+from tuning_tables.programs.at_pulse import at_pulse
+from tuning_tables.programs.passage_table import NONE, HeldPassages
+from tuning_tables.programs.tracker import begin_cut
 from tuning_tables.stage import Line
 from tuning_tables.table import ControllerTable
 
@@ -124,8 +125,8 @@ def test_the_controller_of_point_sensors_counts_the_speeds_below(points: Diagram
     """
     part = points["digital controller"]
     law = given(part, "law")
-    assert isinstance(law, PassageRule)
-    speeds, [heard], other = law.switching_m_s[3, 0], np.flatnonzero(law.passage_of == 3), int(law.passage_of.argmin())
+    assert isinstance(law, HeldPassages)
+    speeds, [heard], other = law.switching_m_s[3, 0], np.flatnonzero(law.deciding == 3), int(law.deciding.argmin())
     for v in np.linspace(0.5, 8.0, 301):
         wanted = part.run({"S*[n]": heard, "U[n]": 2, "V*[n]": v})["U[n]"]
         assert wanted == int(np.sum(np.float32(v) > speeds))
@@ -136,7 +137,7 @@ def test_the_parts_of_point_sensors_are_the_step_of_a_controller(points: Diagram
     """РЭ2, РЭ3 and D(z) one after the other against `at_pulse` in Python, on pulse pairs of which many are believed."""
     rng, believed, changed = np.random.default_rng(4), 0, 0
     rule = given(points["digital controller"], "law")
-    assert isinstance(rule, PassageRule)
+    assert isinstance(rule, HeldPassages)
     for _ in range(100):
         state, stage = np.zeros(6, dtype=np.float32), 2
         begin_cut(state)

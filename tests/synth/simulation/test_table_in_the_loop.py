@@ -7,7 +7,7 @@ import pytest
 
 from plant_models import PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
-from synth.kernels.loop.passage_regulator import STATE_FIELDS, TAKEN_FOR, at_pulse, begin_cut
+from synth.kernels.loop.passage_regulator import begin_cut, stage_after_pair
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
@@ -21,8 +21,9 @@ from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.sensor_passages import with_point_sensors
 from tests.synth.conftest import pilot_plant
 from tuning_tables import Generator
-from tuning_tables.passages import regulator, tracker
+from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.programs import at_pulse, tracker
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.1, friction_nodes=3, path_levels=1, resistance_nodes=1)
 
@@ -59,18 +60,20 @@ def test_hearing_every_axle_commands_what_being_told_commands(mass_t: float, axl
 def test_the_kernel_runs_the_step_of_a_controller() -> None:
     """The pairs of a pass, given to the step as Python runs it: the same stages, pair by pair, and the same belief."""
     table, loop = solved(52.0, first_axle)
-    rule, passes = regulator.rule_of(table), random_passes(7, 0, 4)
+    held, passes = held_by(table), random_passes(7, 0, 4)
     for i in range(4):
         heard = loop.follow(of_table(table, True), loop.draws(passes.part(i, i + 1))).readings
-        state, compiled = np.zeros(6, dtype=np.float32), np.zeros(STATE_FIELDS, dtype=np.float32)
+        state, compiled = np.zeros(6, dtype=np.float32), np.ones(6, dtype=np.float32)
         tracker.begin_cut(state)
         begin_cut(compiled)
         before_s, stage = -60.0, table.initial_stage
         for at, time_s in enumerate(heard.time_s):
             over_s = table.sensors.base_m / heard.reading_m_s[at]
             ended = bool(heard.outcome[at] != UNFINISHED)
-            wanted = regulator.at_pulse(rule, state, heard.told_sensor[at], time_s - before_s, over_s, stage, ended)
-            again = at_pulse(rule, compiled, heard.told_sensor[at], time_s - before_s, over_s, stage, ended)
+            asked = heard.told_sensor[at], time_s - before_s, over_s
+            wanted = at_pulse.at_pulse(held, state, *asked, stage, ended)
+            again, taken_for = stage_after_pair(held, True, compiled, *asked, heard.reading_m_s[at], -1, stage, ended)
             assert wanted == again == heard.stage[at]
-            assert int(state[0]) == heard.believed[at] == int(compiled[TAKEN_FOR])
+            assert int(state[0]) == heard.believed[at] == taken_for
+            assert np.array_equal(state, compiled)
             before_s, stage = time_s, wanted

@@ -10,11 +10,13 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.tuning_tables.passages.true_passes import LIMITS
+from tests.tuning_tables.passages.true_passes import LIMITS, tracking
 from tuning_tables import PassageTable, from_table_json
+from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passages_document import PASSAGE_KEYS, PLAUSIBLE_KEYS, SENSOR_KEYS
-from tuning_tables.passages.regulator import at_pulse, rule_of
-from tuning_tables.passages.tracker import NONE, begin_cut, believed_passage
+from tuning_tables.programs.at_pulse import at_pulse
+from tuning_tables.programs.passage_table import NONE
+from tuning_tables.programs.tracker import begin_cut, believed_passage
 
 PAGE = (Path(__file__).parents[3] / "docs" / "table-format.md").read_text(encoding="utf-8")
 SECTION = PAGE.partition("## Version 4")[2].partition("## HDF5 book")[0]
@@ -41,18 +43,18 @@ def test_the_example_is_a_table_and_every_key_is_told() -> None:
 def test_the_worked_steps_are_those_of_the_code() -> None:
     table, state = example(), np.zeros(6, np.float32)
     begin_cut(state)
-    rule = rule_of(table)
+    held = held_by(table)
     steps = [row.split(" | ") for row in re.findall(r"^\| (\d.*\d) \|$", SECTION, re.MULTILINE)]
     assert len(steps) == 7
     for since, sensor, over, speed, heard, passage, stage, wanted in steps:
         v = float(np.float32(0.2) / np.float32(float(over)))
         assert f"{v:.3f}" == speed
         copy = state.copy()
-        found = believed_passage(rule.path_m, rule.sensor_of, rule.limits, copy, int(sensor), float(since), v)
+        found = believed_passage(held, copy, int(sensor), float(since), v)
         assert found == (NONE if heard == "none" else int(heard))
-        decided = NONE if found == NONE else int(rule.passage_of[found])
+        decided = NONE if found == NONE else int(held.deciding[found])
         assert decided == (NONE if passage == "none" else int(passage))
-        assert at_pulse(rule, state, int(sensor), float(since), float(over), int(stage), True) == int(wanted)
+        assert at_pulse(held, state, int(sensor), float(since), float(over), int(stage), True) == int(wanted)
 
 
 @given(st.floats(0.0, 20.0), st.floats(0.4, 14.9), st.floats(0.4, 14.9), st.floats(0.0, 60.0))
@@ -64,6 +66,5 @@ def test_what_follows_is_what_the_page_computes(elapsed: float, before: float, n
     names |= {"a": a, "d": d, "e": e, "f": f, "s_p": np.float32(way), "s_h": np.float32(0.0)}
     exec(block("python"), names)
     state = np.array([0.0, before, elapsed, NONE, 0.0, 0.0], np.float32)
-    path = np.array([0.0, way], np.float32)
-    found = believed_passage(path, np.array([0, 1]), LIMITS, state, 1, 0.0, now)
+    found = believed_passage(tracking(np.array([0.0, way]), np.array([0, 1])), state, 1, 0.0, now)
     assert (found == 1) == bool(names["follows"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from types import FunctionType
+import itertools
 from typing import Any
 
 import numpy as np
@@ -10,14 +10,14 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numba import njit
 
+from synth.kernels.compiled_rules import compiled_rule
 from tests.controller_code.passage_tables import passage_table, passage_tables
-from tuning_tables.passages import regulator
+from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.passages.regulator import at_pulse, rule_of
-from tuning_tables.passages.rule import wanted_stage
-from tuning_tables.passages.tracker import LONGEST_WAIT_S, NONE, begin_cut, believed_passage
+from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
+from tuning_tables.programs.passage_table import NONE
+from tuning_tables.programs.tracker import LONGEST_WAIT_S, begin_cut, believed_passage
 
 TABLES = passage_tables()
 WORDS = st.integers(0, 2**32 - 1)
@@ -38,13 +38,7 @@ def state_of(values: list[float]) -> npt.NDArray[np.float32]:
         return np.array(values, dtype=np.float32)
 
 
-def compiled_step() -> Any:
-    """The step with its parts, compiled as the docstring says."""
-    parts = {"believed_passage": njit(believed_passage), "wanted_stage": njit(wanted_stage)}
-    return njit(FunctionType(at_pulse.__code__, {**vars(regulator), **parts}))
-
-
-COMPILED = compiled_step()
+COMPILED: Any = compiled_rule(at_pulse)
 
 
 def first_over(table: PassageTable, sensor: int) -> int:
@@ -54,7 +48,7 @@ def first_over(table: PassageTable, sensor: int) -> int:
 
 def pulse(table: PassageTable, state: npt.NDArray[np.float32], sensor: int, since_s: float, v_m_s: float) -> int:
     """The stage after a pair of a cut at v_m_s while stage 2 is in force and at rest."""
-    return at_pulse(rule_of(table), state, sensor, since_s, 0.2 / v_m_s, 2, True)
+    return at_pulse(held_by(table), state, sensor, since_s, 0.2 / v_m_s, 2, True)
 
 
 def test_a_believed_pair_is_decided_by_its_row() -> None:
@@ -69,10 +63,10 @@ def test_a_believed_pair_is_decided_by_its_row() -> None:
 
 
 def test_an_unfinished_change_commands_nothing_but_the_pair_is_known() -> None:
-    rule, state = rule_of(TABLES[0]), begun()
-    assert at_pulse(rule, state, 3, 1.0, 0.2 / 9.0, 2, False) == 2
+    held, state = held_by(TABLES[0]), begun()
+    assert at_pulse(held, state, 3, 1.0, 0.2 / 9.0, 2, False) == 2
     assert state[0] == first_over(TABLES[0], 3)
-    assert at_pulse(rule, state, 4, 7.25 / 9.0, 0.2 / 9.0, 2, True) == 3
+    assert at_pulse(held, state, 4, 7.25 / 9.0, 0.2 / 9.0, 2, True) == 3
     assert state[0] == first_over(TABLES[0], 4)
 
 
@@ -80,7 +74,8 @@ def test_an_unfinished_change_commands_nothing_but_the_pair_is_known() -> None:
 def test_a_reading_that_cannot_be_is_a_pair_that_is_not_believed(over_base_s: float) -> None:
     state = begun()
     for since_s in (0.5, 0.25):
-        assert at_pulse(rule_of(TABLES[0]), state, 3, since_s, over_base_s, 2, True) == 2
+        with np.errstate(over="ignore"):
+            assert at_pulse(held_by(TABLES[0]), state, 3, since_s, over_base_s, 2, True) == 2
     assert state.tolist() == [-1.0, 0.0, 0.75, -1.0, 0.0, 0.75]
 
 
@@ -89,38 +84,43 @@ def test_a_reading_that_cannot_be_is_a_pair_that_is_not_believed(over_base_s: fl
 def test_for_every_input_the_step_is_its_parts_and_compiled_the_same(
     table: PassageTable, values: list[float], sensor: int, since_s: float, over_s: float, stage: int, ended: bool
 ) -> None:
-    rule, state = rule_of(table), state_of(values)
+    held, state = held_by(table), state_of(values)
     other, third = state.copy(), state.copy()
+    with np.errstate(over="ignore"):
+        given_s = np.float32(since_s), np.float32(over_s)
     with np.errstate(over="raise", invalid="raise"):
-        answer = at_pulse(rule, state, sensor, since_s, over_s, stage, ended)
-        v = -1.0
-        if 2.0**-20 <= over_s <= 1e6:
-            v = float(np.float32(table.sensors.base_m) / np.float32(over_s))
-        heard = believed_passage(table.heard_path_m, table.heard_sensor, table.limits, other, sensor, since_s, v)
+        answer = at_pulse(held, state, sensor, *given_s, stage, ended)
+        v = np.float32(-1.0)
+        if 2.0**-20 <= float(given_s[1]) <= 1e6:
+            v = np.float32(table.sensors.base_m) / given_s[1]
+        heard = believed_passage(held, other, sensor, given_s[0], v)
         passage = -1 if heard < 0 else int(table.heard_passage[heard])
-        wanted = wanted_stage(table.switching_m_s, table.entrance_stage, table.before_entrance, passage, stage, v)
+        wanted = wanted_stage(held, passage, stage, v)
     assert answer == (wanted if ended else stage)
-    assert COMPILED(rule, third, sensor, since_s, over_s, stage, ended) == answer
+    assert COMPILED(held, third, sensor, *given_s, stage, ended) == answer
     for found in (other, third):
         assert np.array_equal(found.view(np.uint32), state.view(np.uint32))
     # Whatever it was, the state is one that can be.
-    assert -1.0 <= state[0] < len(table.heard_path_m)
-    assert -1.0 <= state[3] < len(table.heard_path_m)
-    assert ((state[[1, 4]] >= 0.0) & (state[[1, 4]] <= table.limits[1])).all()
-    assert ((state[[2, 5]] >= 0.0) & (state[[2, 5]] <= LONGEST_WAIT_S)).all()
+    for half in (state[:3], state[3:]):
+        assert half[0] in range(-1, len(table.heard_path_m))
+        assert 0.0 <= half[1] <= table.limits[1]
+        assert 0.0 <= half[2] <= LONGEST_WAIT_S
 
 
-@pytest.mark.parametrize("place", range(6))
-@pytest.mark.parametrize("value", [np.nan, np.inf, -2.0, 3e38])
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [*itertools.product(range(6), (np.nan, np.inf, -2.0, 3e38)), (0, 0.5), (3, 0.5), (3, 2.000001)],
+)
 def test_a_state_that_cannot_be_is_begun_anew(place: int, value: float) -> None:
     table, state = passage_table(), state_of([2.0, 5.0, 0.1, 1.0, 4.0, 0.2])
     state[place] = value
-    assert believed_passage(table.path_m, table.sensor_of, table.limits, state, 4, 0.5, 3.0) == 4
-    assert state.tolist() == [4.0, 3.0, 0.0, -1.0, 0.0, 0.5]
+    first = first_over(table, 4)
+    assert believed_passage(held_by(table), state, 4, 0.5, 3.0) == first
+    assert state.tolist() == [first, 3.0, 0.0, -1.0, 0.0, 0.5]
 
 
 def test_times_are_bounded_however_long_nothing_comes() -> None:
-    table, state = passage_table(), begun()
+    table, state = held_by(passage_table()), begun()
     for _ in range(3):
-        assert believed_passage(table.path_m, table.sensor_of, table.limits, state, 9, LONGEST_WAIT_S, 3.0) == NONE
+        assert believed_passage(table, state, 9, LONGEST_WAIT_S, 3.0) == NONE
     assert state[2] == state[5] == LONGEST_WAIT_S

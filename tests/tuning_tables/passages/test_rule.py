@@ -10,12 +10,15 @@ import numpy.typing as npt
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
-from numba import njit
 
+from synth.kernels.compiled_rules import compiled_rule
 from tests.tuning_tables.passages.made_tables import row_lists, table_of
-from tuning_tables.passages.rule import wanted_stage
+from tuning_tables.passages.held_passages import held_by, held_passages
+from tuning_tables.programs.at_pulse import wanted_stage
+from tuning_tables.programs.passage_table import HeldPassages
 
-COMPILED: Any = njit(wanted_stage)
+COMPILED: Any = compiled_rule(wanted_stage)
+NOTHING = np.zeros(0)
 NAN, INF = math.nan, math.inf
 Speeds = npt.NDArray[np.float32]
 
@@ -26,6 +29,12 @@ def switching(draw: st.DrawFn) -> Speeds:
     stages = draw(st.integers(2, 5))
     outer, inner = draw(row_lists(stages)), draw(row_lists(stages))
     return np.array([outer, inner, outer], dtype=np.float32)
+
+
+def deciding(speeds: Speeds, entrance: int, before: int) -> HeldPassages:
+    """A table with these switching speeds that hears nothing."""
+    nobody = NOTHING.astype(np.int64)
+    return held_passages(speeds, NOTHING, nobody, nobody, np.zeros(6), entrance_stage=entrance, before_entrance=before)
 
 
 def restated(row: list[float], stage: int, highest: int, v: float) -> int:
@@ -41,14 +50,15 @@ def restated(row: list[float], stage: int, highest: int, v: float) -> int:
 def test_the_rule_counts_the_speeds_on_the_way(speeds: Speeds, passage: int, data: st.DataObject) -> None:
     stage = data.draw(st.integers(0, speeds.shape[2]))
     known = st.sampled_from([float(t) for t in speeds[passage].ravel() if np.isfinite(t)] or [1.0])
-    v = data.draw(known | st.floats(0.0, 3e38))
+    v = np.float32(data.draw(known | st.floats(0.0, 3e38)))
     entrance, before = data.draw(st.integers(0, 5)), data.draw(st.integers(0, 3))
     highest = speeds.shape[2]
     if passage < before:
         highest = max(stage, min(highest, entrance))
-    wanted = restated([float(t) for t in speeds[passage, stage]], stage, highest, float(np.float32(v)))
-    assert wanted_stage(speeds, entrance, before, passage, stage, v) == wanted
-    assert COMPILED(speeds, entrance, before, passage, stage, v) == wanted
+    wanted = restated([float(t) for t in speeds[passage, stage]], stage, highest, float(v))
+    table = deciding(speeds, entrance, before)
+    assert wanted_stage(table, passage, stage, v) == wanted
+    assert COMPILED(table, passage, stage, v) == wanted
 
 
 @given(switching(), st.integers(-2, 4), st.integers(-2, 7), st.floats(), st.integers(0, 5), st.integers(0, 3))
@@ -57,8 +67,10 @@ def test_the_rule_counts_the_speeds_on_the_way(speeds: Speeds, passage: int, dat
 def test_no_number_is_an_error_and_compiled_text_gives_the_same(
     speeds: Speeds, passage: int, stage: int, v: float, entrance: int, before: int
 ) -> None:
-    wanted = wanted_stage(speeds, entrance, before, passage, stage, v)
-    assert COMPILED(speeds, entrance, before, passage, stage, v) == wanted
+    table = deciding(speeds, entrance, before)
+    with np.errstate(over="ignore"):
+        wanted = wanted_stage(table, passage, stage, v)
+    assert COMPILED(table, passage, stage, v) == wanted
     known = 0 <= passage < 3 and 0 <= stage <= speeds.shape[2]
     if not known or not 0.0 <= v <= float(np.finfo(np.float32).max):
         assert wanted == stage
@@ -72,7 +84,7 @@ def test_the_stage_wanted_never_falls_with_the_speed(speeds: Speeds, passage: in
     stage = data.draw(st.integers(0, speeds.shape[2]))
     slow, fast = sorted((data.draw(st.floats(0.0, 50.0)), data.draw(st.floats(0.0, 50.0))))
     assume(slow < fast)
-    wanted = [wanted_stage(speeds, 5, 0, passage, stage, v) for v in (slow, fast)]
+    wanted = [wanted_stage(deciding(speeds, 5, 0), passage, stage, v) for v in (slow, fast)]
     assert wanted[0] <= wanted[1]
 
 
@@ -97,6 +109,4 @@ def test_the_stage_wanted_never_falls_with_the_speed(speeds: Speeds, passage: in
     ],
 )
 def test_decisions_of_a_table_by_hand(passage: int, stage: int, v: float, wanted: int) -> None:
-    table = table_of()
-    before = table.before_entrance
-    assert wanted_stage(table.switching_m_s, table.entrance_stage, before, passage, stage, v) == wanted
+    assert wanted_stage(held_by(table_of()), passage, stage, v) == wanted

@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numba import njit
 
+from synth.kernels.compiled_rules import compiled_rule
 from tests.tuning_tables.passages.made_tables import table_of
-from tests.tuning_tables.passages.true_passes import LIMITS, Pulse, TruePass, rolled, true_passes
-from tuning_tables.passages.tracker import NONE, begin_cut, believed_passage
+from tests.tuning_tables.passages.true_passes import Pulse, TruePass, rolled, tracking, true_passes
+from tuning_tables.passages.held_passages import held_by
+from tuning_tables.programs.passage_table import NONE
+from tuning_tables.programs.tracker import begin_cut, believed_passage
 
-COMPILED: Any = njit(believed_passage)
+COMPILED: Any = compiled_rule(believed_passage)
 often = settings(derandomize=True, max_examples=200, deadline=None)
 
 
@@ -23,8 +25,9 @@ def believed(run: TruePass, pulses: Sequence[Pulse]) -> list[int]:
     """What the tracker takes each of `pulses` for, from the beginning of a cut on."""
     state, last, found = np.zeros(6, np.float32), 0.0, []
     begin_cut(state)
+    table = tracking(run.path_m, run.sensor)
     for time, sensor, speed in pulses:
-        found.append(int(COMPILED(run.path_m, run.sensor, LIMITS, state, sensor, time - last, speed)))
+        found.append(int(COMPILED(table, state, sensor, time - last, speed)))
         last = time
     return found
 
@@ -181,11 +184,11 @@ def test_axles_that_the_tracker_does_not_know_change_its_mind() -> None:
 
 @pytest.mark.parametrize("since_s", [float("nan"), -0.1, float("inf"), 1e7])
 def test_a_time_that_cannot_be_leaves_everything_as_it_was(since_s: float) -> None:
-    table, state = table_of(), np.zeros(6, np.float32)
+    table, state = held_by(table_of()), np.zeros(6, np.float32)
     begin_cut(state)
-    assert believed_passage(table.heard_path_m, table.heard_sensor, table.limits, state, 0, 1.0, 4.0) == 0
+    assert believed_passage(table, state, 0, 1.0, 4.0) == 0
     before = state.copy()
-    assert believed_passage(table.heard_path_m, table.heard_sensor, table.limits, state, 1, since_s, 4.0) == NONE
+    assert believed_passage(table, state, 1, since_s, 4.0) == NONE
     assert state.tolist() == before.tolist()
 
 
@@ -196,5 +199,5 @@ def test_the_way_is_bounded_by_both_speeds() -> None:
     nearest = 0.5 * (4.0 + 4.0 / 3.0) * 4.0 / 3.0 + 0.5 * (4.0 / 3.0 + 2.0) * 2.0 / 3.0
     for way, answer in ((nearest - 0.01, NONE), (nearest + 0.01, 1), (farthest - 0.01, 1), (farthest + 0.01, NONE)):
         state = np.array([0.0, 4.0, 0.0, NONE, 0.0, 0.0], np.float32)
-        path = np.array([0.0, way], np.float32)
-        assert believed_passage(path, np.array([0, 1]), limits, state, 1, 2.0, 2.0) == answer
+        table = tracking(np.array([0.0, way]), np.array([0, 1]), limits)
+        assert believed_passage(table, state, 1, 2.0, 2.0) == answer
