@@ -33,6 +33,8 @@ def held_table(
     `path_m` (least, greatest). Category, axles and mass are 0: a single table does not choose between cuts.
     """
     stages = len(coefficients)
+    with np.errstate(over="ignore"):  # a book refuses a target that float32 cannot hold
+        target = np.float32(target_speed_m_s)
     highest = int(np.argmin(has_line[:, 1])) if stages else 0
     return LineTable(
         category=0,
@@ -42,7 +44,7 @@ def held_table(
         at_any_time=int(decisions is Decisions.AT_ANY_TIME),
         entrance_stage=entrance_stage(approach, stages),
         mass_t=np.float32(0.0),
-        target_m_s=np.float32(target_speed_m_s),
+        target_m_s=target,
         path_min_m=np.float32(path_m[0]),
         path_max_m=np.float32(path_m[1]),
         approach_m=np.float32(0.0 if approach is None else approach.length_m),

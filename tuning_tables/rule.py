@@ -11,11 +11,9 @@ import numpy.typing as npt
 from tuning_tables.active_table import ActiveTable
 from tuning_tables.programs.alarms import alarms
 from tuning_tables.programs.decide import decide
-from tuning_tables.programs.numbers import LARGEST_NUMBER
 from tuning_tables.programs.observe import observe
 from tuning_tables.table import ControllerTable
 
-LARGEST_READING: Final = float(LARGEST_NUMBER)
 NO_GAUGE: Final = math.nan
 """The pressure, kPa, of a controller without gauge, or whose gauge is out of order."""
 
@@ -28,7 +26,13 @@ def decide_for(
     `stage` is the one commanded last; a table that decides at rest (`table.decisions`) may only be asked when its
     pressure is reached. `pressure_kpa`, gauge, is looked at where the table has slopes.
     """
-    return int(decide(table.held, stage, s_m, v_m_s, pressure_kpa))
+    return int(decide(table.held, stage, *readings(s_m, v_m_s, pressure_kpa)))
+
+
+def readings(*numbers: float) -> list[np.float32]:
+    """The numbers as a controller has them, float32; infinite where float32 cannot hold them."""
+    with np.errstate(over="ignore", invalid="ignore"):  # a signalling NaN is an incredible reading like any other
+        return [np.float32(number) for number in numbers]
 
 
 def speed_for(
@@ -38,13 +42,13 @@ def speed_for(
     v_m_s: float,
     overpressure_kpa: float,
 ) -> float:
-    """The speed to ask `decide_for` with, m/s: that of the table's estimator, or the measured one if it has none.
+    """The speed to ask `decide_for` with, m/s: that of the table's estimator, or the measured one, rounded to float32.
 
     To be called once at every sample, also during a change of stage; `state` is the cut's own (`estimator.begin`), the
     overpressure the mean of max(0, P - P0) since the sample before. See `programs.observe`; with either kind of table
     `estimator.unseen_samples` says for how long no reading was believed.
     """
-    return float(observe(table.held, state, s_m, v_m_s, overpressure_kpa))
+    return float(observe(table.held, state, *readings(s_m, v_m_s, overpressure_kpa)))
 
 
 def alarms_for(table: ControllerTable | ActiveTable, state: npt.NDArray[np.float32]) -> int:
@@ -64,17 +68,17 @@ def decide_many(
     stage (integers), s_m, v_m_s and pressure_kpa broadcast against each other; the result has the broadcast shape and
     the type of the stages. Raises `TypeError` where the stages are not integers.
     """
-    with np.errstate(invalid="ignore"):  # a signalling NaN is an incredible reading like any other
-        readings = (np.asarray(each, dtype=np.float64) for each in (s_m, v_m_s, pressure_kpa))
-        stages, paths, speeds, kpa = np.broadcast_arrays(np.asarray(stage), *readings)
+    with np.errstate(over="ignore", invalid="ignore"):
+        wide = (np.asarray(each, dtype=np.float64) for each in (s_m, v_m_s, pressure_kpa))
+        stages, paths, speeds, kpa = np.broadcast_arrays(np.asarray(stage), *(each.astype(np.float32) for each in wide))
     if stages.dtype.kind not in "iu":
         raise TypeError(f"stage has dtype {stages.dtype}, but stages are integers.")
-    credible = (np.abs(paths) <= LARGEST_READING) & (speeds >= 0) & (speeds <= LARGEST_READING)
+    credible = np.isfinite(paths) & (speeds >= 0) & np.isfinite(speeds)
     credible &= (stages >= 0) & (stages < table.coefficients.shape[0])
     # An incredible reading is replaced by one that is harmless to compute with; its answer is masked below.
     first = np.where(credible, stages, 0).astype(np.intp)
-    s = np.where(credible, paths, 0).astype(np.float32)
-    v = np.where(credible, speeds, 0).astype(np.float32)
+    s = np.where(credible, paths, np.float32(0.0))
+    v = np.where(credible, speeds, np.float32(0.0))
     s = np.where(s < table.valid_range[0], table.valid_range[0], s)
     s = np.where(s > table.valid_range[1], table.valid_range[1], s)
     rise = rises_at(table, first, kpa)
@@ -115,7 +119,7 @@ def rises_at(
 
     0 where no pressure is known.
     """
-    known = np.abs(pressure_kpa) <= LARGEST_READING
+    known = np.isfinite(pressure_kpa)
     p = np.where(known, pressure_kpa, 0).astype(np.float32)
     p = np.where(p < table.pressures[0], table.pressures[0], p)
     p = np.where(p > table.pressures[table.highest_raised], table.pressures[table.highest_raised], p)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.checker import c_export, golden_export, st_export, track_export
+from synth.checker import golden_export, line_export, track_export
 from synth.checker.finding import Kind
 from synth.checker.plant import UnusableConfigError, plant_of
 from synth.checker.source import read_source
@@ -21,7 +20,8 @@ from tests.checker.planted_fault import Document, alone, found, look, rewrite
 from tests.controller_code.sample_book import approaching_book
 from tests.tuning_tables.forged_book import forge, put
 from tuning_tables import Approach, TableBook, read_book, to_json, write_book
-from tuning_tables.c_source import c_files, vectors_csv
+from tuning_tables.c_source import c_files
+from tuning_tables.golden_csv import vectors_csv
 from tuning_tables.golden_vectors import GoldenVectors, golden_vectors
 from tuning_tables.rule import decide_many
 from tuning_tables.st_source import TABLE_FILE, st_files
@@ -77,31 +77,6 @@ def test_a_fault_in_the_document_is_found(
     table = alone(approached)
     rewrite(table, change)
     assert found(look(table), kind, words)
-
-
-def change_text(file: Path, pattern: str, replacement: str) -> None:
-    """Change one place in a file."""
-    text, count = re.subn(pattern, replacement, file.read_bytes().decode("utf-8"), count=1)
-    assert count == 1
-    file.write_bytes(text.encode("utf-8"))
-
-
-@pytest.mark.parametrize(
-    ("name", "pattern", "replacement", "words"),
-    [
-        ("c/retarder_table.c", r"1u, /\* highest stage before", "2u, /* highest stage before", "word .* of table 0"),
-        ("c/retarder_table.c", r"\S+, /\* approach, 4 m", "0x1p+1f, /* approach, 4 m", "word .* of table 0"),
-        ("c/retarder_table.h", "RETARDER_APPROACH 1u", "RETARDER_APPROACH 0u", "no room for an approach"),
-        ("st/retarder_table.st", r"(EntranceStageOf : .* := \[)1", r"\g<1>2", r"EntranceStageOf\[0\] is 2"),
-        ("st/retarder_table.st", r"(ApproachOf : .* := \[)4", r"\g<1>3", r"ApproachOf\[0\] is 3"),
-        ("st/retarder_table.st", r"ApproachOf : .*\n", "\n", "the array ApproachOf is missing"),
-    ],
-)
-def test_a_fault_in_controller_code_is_found(
-    approached: Path, name: str, pattern: str, replacement: str, words: str
-) -> None:
-    change_text(approached / name, pattern, replacement)
-    assert found(look(approached), Kind.DISAGREES, words)
 
 
 @pytest.mark.parametrize("wrong", ["no gate", "off by one", "too early", "at the entrance too", "turned round"])
@@ -169,10 +144,10 @@ def test_exports_of_many_shapes_are_those_of_the_exporter(estimators: bool, tmp_
     tables = [read_table(to_json(table)) for table in book.tables]
     files = c_files(book)
     code, header = (files[f"retarder_table.{suffix}"].decode("ascii") for suffix in ("c", "h"))
-    assert list(c_export.differences(c_export.read_blocks(code), tables, header)) == []
+    assert list(line_export.c_differences(code, header, tables)) == []
     assert list(golden_export.differences(files["golden_vectors.csv"], tables)) == []
     text = st_files(book)[TABLE_FILE].decode("ascii")
-    assert list(st_export.differences(st_export.read_arrays(text), tables)) == []
+    assert list(line_export.st_differences(text, tables)) == []
     if estimators:
         assert list(track_export.differences(files["golden_tracks.csv"], tables, True)) == []
     write_book(book.tables, tmp_path / "book.h5")

@@ -22,7 +22,10 @@ from synth.checker.plant import Plant, plant_of
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.estimation.estimator_design import estimator_of, frozen_readings
 from tests.checker.planted_fault import Document
-from tuning_tables.estimator import Estimator, alarms, begin, observe
+from tuning_tables.estimator import Estimator, begin
+from tuning_tables.held_table import lines_apart
+from tuning_tables.programs.alarms import alarms
+from tuning_tables.programs.observe import observe
 
 Sample = tuple[float, float, float]
 HONESTY = Honesty(0.8, 1.25)
@@ -115,8 +118,8 @@ def assert_the_same(estimator: Estimator, samples: list[Sample]) -> Iterator[tup
     own, state = Observer(read_estimator(section_of(estimator))), begin()
     for sample in samples:
         with np.errstate(all="ignore"):
-            expected = float(np.float32(observe(estimator.parameters, estimator.work, state, *sample)))
-            alarmed = alarms(estimator.parameters, state)
+            expected = float(np.float32(observe(lines_apart(estimator), state, *sample)))
+            alarmed = alarms(lines_apart(estimator), state)
         answer = own.observe(*sample)
         numbers = [answer, *(float(getattr(own, name)) for name in STATE)]
         assert [word_of(x) for x in numbers] == [word_of(float(x)) for x in (expected, *state)]

@@ -14,8 +14,10 @@ from hypothesis import strategies as st
 from synth.checker.canonical import canonical_form, crc32, parse_json, require_right_crc32
 from synth.checker.finding import DamagedError
 from synth.checker.float32 import above, below, bits, decide, from_bits, horner, is_float32, rounded
-from tuning_tables import rule
+from tuning_tables import Decisions
 from tuning_tables.canonical import canonical_json
+from tuning_tables.held_table import held_table
+from tuning_tables.programs.decide import decide as rule_of_tables
 
 REAL = st.floats(allow_nan=False)
 SINGLE = st.floats(allow_nan=False, allow_infinity=False, width=32)
@@ -76,7 +78,13 @@ def test_rule_is_that_of_the_controller(
     coefficients = np.array([[line or missing for line in both] for both in lines], dtype=np.float32)
     has_line = np.array([[line is not None for line in both] for both in lines])
     valid = np.array([begin, 10.0, 0.0, 9.0], dtype=np.float32)
-    expected = rule.decide(coefficients, has_line, valid, (entrance, farthest), stage, s, v)
+    held = held_table(
+        coefficients, has_line, valid[:2], np.zeros((len(lines), 2), np.float32), np.zeros(len(lines), np.float32),
+        target_speed_m_s=3.0, has_gauge=False, decisions=Decisions.AT_REST if farthest > 1 else Decisions.AT_ANY_TIME,
+        approach=None, estimator=None,
+    )._replace(entrance_stage=entrance)  # fmt: skip
+    farthest = len(lines) - 1 if farthest > 1 else 1
+    expected = rule_of_tables(held, stage, s, v, math.nan)
     assert decide(lines, (begin, 10.0), entrance, farthest, stage, s, v) == expected
 
 

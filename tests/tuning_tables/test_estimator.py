@@ -8,23 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba import njit
 
+from synth.kernels.compiled_rules import compiled_rule
 from tuning_tables import ControllerTable, InvalidTable, Predicted, Status, TableBook, speed_for, unseen_samples
 from tuning_tables.active_table import active
-from tuning_tables.estimator import (
-    CAUTION,
-    FACTOR_RANGE,
-    HEAVIER_ALARM,
-    LOST_ALARM,
-    SENSOR_ALARM,
-    UNSEEN,
-    Estimator,
-    alarms,
-    begin,
-    observe,
-    table_after,
-)
+from tuning_tables.estimator import CAUTION, Estimator, begin
+from tuning_tables.held_table import lines_apart
+from tuning_tables.programs.alarms import HEAVIER_ALARM, LOST_ALARM, SENSOR_ALARM, alarms, table_after
+from tuning_tables.programs.estimate import UNSEEN
+from tuning_tables.programs.observe import LEAST_FACTOR, observe
 
 PERIOD_S = 0.1
 BREAKS = (0.0, 1.85, 8.0, 12.5, 20.0, 30.0)
@@ -57,7 +49,7 @@ def run(
     """Estimates and states after every sample; the overpressure before the first counts for nothing."""
     state, speeds, states = begin(), [], []
     for s, _, v, p in samples:
-        speeds.append(step(estimator.parameters, estimator.work, state, s, v, p))
+        speeds.append(step(lines_apart(estimator), state, s, v, p))
         states.append(state.copy())
     return np.array(speeds), np.array(states)
 
@@ -134,10 +126,10 @@ def test_a_drop_out_is_bridged_by_the_model(estimator: Estimator) -> None:
 def test_nothing_is_estimated_before_a_speed_was_measured(estimator: Estimator) -> None:
     state = begin()
     for v in (np.nan, np.inf, -1.0):
-        assert observe(estimator.parameters, estimator.work, state, 0.1, v, 0.0) == -1.0
+        assert observe(lines_apart(estimator), state, 0.1, v, 0.0) == -1.0
         assert np.array_equal(state[:11], begin()[:11])
     assert unseen_samples(state) == 3
-    assert observe(estimator.parameters, estimator.work, state, 0.2, 5.5, 0.0) == np.float32(5.5)
+    assert observe(lines_apart(estimator), state, 0.2, 5.5, 0.0) == np.float32(5.5)
 
 
 @pytest.mark.parametrize("estimating", [True, False])
@@ -157,10 +149,10 @@ def test_samples_without_a_reading_that_is_believed_are_counted(
 
 def test_the_count_of_unseen_samples_stays_at_its_end(estimator: Estimator) -> None:
     state = begin()
-    observe(estimator.parameters, estimator.work, state, 0.0, 5.0, 0.0)
+    observe(lines_apart(estimator), state, 0.0, 5.0, 0.0)
     state[UNSEEN] = 2**24 - 1
     for _ in range(3):
-        observe(estimator.parameters, estimator.work, state, 0.0, np.nan, 0.0)
+        observe(lines_apart(estimator), state, 0.0, np.nan, 0.0)
         assert unseen_samples(state) == 2**24
 
 
@@ -168,7 +160,7 @@ def seen_cut(estimator: Estimator, samples: int = 12, speed: float = 5.0) -> np.
     """The state after some sound readings of a cut before the brake."""
     state = begin()
     for sample in range(samples):
-        observe(estimator.parameters, estimator.work, state, 0.1 * sample, speed + 0.01 * (-1) ** sample, 0.0)
+        observe(lines_apart(estimator), state, 0.1 * sample, speed + 0.01 * (-1) ** sample, 0.0)
     return state
 
 
@@ -177,15 +169,15 @@ def test_a_leap_is_doubted_and_corrects_nothing(estimator: Estimator) -> None:
     doubted, missing = seen_cut(estimator), seen_cut(estimator)
     for sample, v in enumerate((9.0, 0.0, 9.0)):
         told = [
-            observe(estimator.parameters, estimator.work, state, 1.2 + 0.1 * sample, reading, 0.0)
+            observe(lines_apart(estimator), state, 1.2 + 0.1 * sample, reading, 0.0)
             for state, reading in ((doubted, v), (missing, np.nan))
         ]
         assert told[0] == told[1]
         assert np.array_equal(doubted[:12], missing[:12])
-        assert alarms(estimator.parameters, doubted) == SENSOR_ALARM
-        assert alarms(estimator.parameters, missing) == 0
-    observe(estimator.parameters, estimator.work, doubted, 1.5, 5.0, 0.0)
-    assert (unseen_samples(doubted), alarms(estimator.parameters, doubted)) == (0, 0)
+        assert alarms(lines_apart(estimator), doubted) == SENSOR_ALARM
+        assert alarms(lines_apart(estimator), missing) == 0
+    observe(lines_apart(estimator), doubted, 1.5, 5.0, 0.0)
+    assert (unseen_samples(doubted), alarms(lines_apart(estimator), doubted)) == (0, 0)
 
 
 def test_what_the_brake_or_noise_can_do_is_no_leap(estimator: Estimator) -> None:
@@ -194,40 +186,40 @@ def test_what_the_brake_or_noise_can_do_is_no_leap(estimator: Estimator) -> None
     s, v = 1.2, 5.0
     for sample in range(40):
         s, v = s + 0.1 * v, v + 0.01 * (-1) ** sample
-        observe(estimator.parameters, estimator.work, state, s, v, 500.0)
+        observe(lines_apart(estimator), state, s, v, 500.0)
         assert unseen_samples(state) == 0
-    assert state[3] == np.float32(FACTOR_RANGE[0])
-    assert alarms(estimator.parameters, state) & HEAVIER_ALARM
+    assert state[3] == LEAST_FACTOR
+    assert alarms(lines_apart(estimator), state) & HEAVIER_ALARM
 
 
 def test_false_first_readings_are_left_behind(estimator: Estimator) -> None:
     """The estimate begins anew as long as few readings were believed, so that a false one does not rule the pass."""
     state = begin()
     for v in (0.0, 0.1):
-        assert observe(estimator.parameters, estimator.work, state, 0.0, v, 0.0) == -1.0
+        assert observe(lines_apart(estimator), state, 0.0, v, 0.0) == -1.0
     for sample, v in enumerate((9.0, 5.0, 8.0, 5.0, 5.01, 5.0)):
-        found = observe(estimator.parameters, estimator.work, state, 0.1 * sample, v, 0.0)
+        found = observe(lines_apart(estimator), state, 0.1 * sample, v, 0.0)
     assert found == pytest.approx(5.0, abs=0.02)
-    observe(estimator.parameters, estimator.work, state, 0.6, 9.0, 0.0)
-    assert alarms(estimator.parameters, state) == SENSOR_ALARM  # now it knows better
+    observe(lines_apart(estimator), state, 0.6, 9.0, 0.0)
+    assert alarms(lines_apart(estimator), state) == SENSOR_ALARM  # now it knows better
 
 
 def test_a_sensor_whose_error_lasts_is_followed_after_a_while(estimator: Estimator) -> None:
     state = seen_cut(estimator)
     for sample in range(estimator.doubted_readings):
         assert unseen_samples(state) == sample
-        observe(estimator.parameters, estimator.work, state, 1.2 + 0.1 * sample, 6.0 + 0.01 * (-1) ** sample, 0.0)
+        observe(lines_apart(estimator), state, 1.2 + 0.1 * sample, 6.0 + 0.01 * (-1) ** sample, 0.0)
     assert state[2] == pytest.approx(6.0, abs=0.011)
-    assert (unseen_samples(state), alarms(estimator.parameters, state)) == (0, 0)
+    assert (unseen_samples(state), alarms(lines_apart(estimator), state)) == (0, 0)
 
 
 def test_a_reading_that_repeats_itself_is_not_believed(estimator: Estimator) -> None:
     state = seen_cut(estimator)
     for sample in range(20):
-        observe(estimator.parameters, estimator.work, state, 1.2 + 0.1 * sample, 5.0, 0.0)
+        observe(lines_apart(estimator), state, 1.2 + 0.1 * sample, 5.0, 0.0)
         frozen = sample >= estimator.frozen_readings
         assert (unseen_samples(state) > 0) is (3 * sample >= estimator.frozen_readings)
-        assert alarms(estimator.parameters, state) == (SENSOR_ALARM if frozen else 0)
+        assert alarms(lines_apart(estimator), state) == (SENSOR_ALARM if frozen else 0)
 
 
 def test_a_lost_cut_is_taken_for_slower_than_it_seems(estimator: Estimator) -> None:
@@ -236,14 +228,14 @@ def test_a_lost_cut_is_taken_for_slower_than_it_seems(estimator: Estimator) -> N
     for times in (0.5, 1.0, 2.0, 400.0):
         state[5] = times * limit**2
         now = state.copy()
-        found = observe(estimator.parameters, estimator.work, now, float(state[1]), np.nan, 0.0)
+        found = observe(lines_apart(estimator), now, float(state[1]), np.nan, 0.0)
         caution = CAUTION * limit * max(now[5] / limit**2 - 1.0, 0.0)
         assert found == pytest.approx(max(now[2] - caution, 0.0), abs=1e-5)
-        assert (alarms(estimator.parameters, now) == LOST_ALARM) == (now[5] > np.float32(limit**2))
+        assert (alarms(lines_apart(estimator), now) == LOST_ALARM) == (now[5] > np.float32(limit**2))
 
 
 def test_there_is_no_alarm_before_a_cut_was_seen(estimator: Estimator) -> None:
-    assert alarms(estimator.parameters, begin()) == 0
+    assert alarms(lines_apart(estimator), begin()) == 0
 
 
 def test_a_neighbour_takes_over_where_the_weight_alone_is_in_doubt() -> None:
@@ -255,7 +247,7 @@ def test_a_neighbour_takes_over_where_the_weight_alone_is_in_doubt() -> None:
 
 
 def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:
-    compiled = njit(observe)
+    compiled = compiled_rule(observe)
     rng = np.random.default_rng(6)
     special = np.array([np.nan, np.inf, -np.inf, 0.0, -0.0, -1.0, 1e-45, 3e38, 1e39])
     for trial in range(60):
@@ -305,11 +297,11 @@ def test_the_rule_is_asked_with_the_estimated_speed(estimated_table: ControllerT
     for s in np.linspace(0.0, 9.0, 40):
         reading = (float(s), 5.0 + 0.05 * rng.standard_normal(), 120.0)
         speed = speed_for(estimated_table, state, *reading)
-        assert speed == float(observe(estimator.parameters, estimator.work, direct, *reading))
+        assert speed == float(observe(lines_apart(estimator), direct, *reading))
         assert speed == speed_for(active(estimated_table), state.copy(), reading[0] - 30.0, np.nan, 0.0)
         assert (
             speed_for(replace(estimated_table, estimator=None, predicted=Predicted(0, 0, 0, 0)), state, *reading)
-            == reading[1]
+            == np.float32(reading[1])
         )
 
 
@@ -334,5 +326,5 @@ def test_a_spike_after_a_repeated_reading_is_doubted_and_one_after_a_missing_rea
     for readings, believed in (([5.0] * estimator.frozen_readings, False), ([-1.0], True)):
         state = seen_cut(estimator)
         for sample, v in enumerate((*readings, 8.0)):
-            observe(estimator.parameters, estimator.work, state, 1.2 + 0.05 * sample, v, 0.0)
+            observe(lines_apart(estimator), state, 1.2 + 0.05 * sample, v, 0.0)
         assert (unseen_samples(state) == 0) is believed

@@ -11,11 +11,12 @@ import numpy.typing as npt
 import pytest
 from hypothesis import HealthCheck, given, settings
 
+from synth.kernels.compiled_rules import compiled_rule
 from tests.tuning_tables.random_tables import tables
 from tuning_tables import ControllerTable, Decisions, Stage, ValidRange, decide, decide_for, decide_many
 from tuning_tables.active_table import active
 from tuning_tables.golden_vectors import GoldenVectors, few_golden_vectors, golden_vectors
-from tuning_tables.rule import rises
+from tuning_tables.programs.line_table import LineTable
 from tuning_tables.stage import Line
 
 NAN, INF = float("nan"), float("inf")
@@ -79,48 +80,21 @@ def adversarial_readings(table: ControllerTable, rng: np.random.Generator, count
     return stages, s, v, kpa
 
 
-def arrays_of(table: ControllerTable) -> tuple[Any, ...]:
-    """The first arguments of `decide`."""
-    return table.coefficients, table.has_line, table.valid_range, (table.entrance_stage, table.farthest)
-
-
 @pytest.fixture(scope="module")
 def compiled() -> Answering:
-    """`decide` and `rises` compiled as they stand, for arrays of readings of one table."""
-    jit: Any = numba.njit
-    one, rises_of_one = jit(decide), jit(rises)
+    """`decide` compiled as it stands, for arrays of readings of one table."""
+    one, jit = compiled_rule(decide), numba.njit
 
-    def run(
-        lines: tuple[Any, ...],
-        surfaces: tuple[Any, ...],
-        stages: npt.NDArray[np.int64],
-        s: Floats,
-        v: Floats,
-        kpa: Floats,
-    ) -> npt.NDArray[np.int64]:
-        coefficients, has_line, valid_range, limits = lines
-        slopes, pressures, highest_raised = surfaces
+    def run(held: LineTable, stages: npt.NDArray[np.int64], s: Floats, v: Floats, kpa: Floats) -> npt.NDArray[np.int64]:
         answers = np.empty(stages.size, dtype=np.int64)
         for index in range(stages.size):
-            rise = rises_of_one(slopes, pressures, highest_raised, stages[index], kpa[index])
-            answers[index] = one(
-                coefficients,
-                has_line,
-                valid_range,
-                limits,
-                stages[index],
-                s[index],
-                v[index],
-                rise,
-            )
+            answers[index] = one(held, stages[index], s[index], v[index], kpa[index])
         return answers
 
     compiled_run: Any = jit(run)
 
     def of_table(table: ControllerTable, *readings: npt.NDArray[Any]) -> npt.NDArray[np.int64]:
-        answers: npt.NDArray[np.int64] = compiled_run(
-            arrays_of(table), (table.slopes, table.pressures, table.highest_raised), *readings
-        )
+        answers: npt.NDArray[np.int64] = compiled_run(table.held, *readings)
         return answers
 
     return of_table
@@ -188,11 +162,11 @@ def test_answers_agree_with_an_independent_float32_evaluation(name: str, request
 
 
 def test_both_float_widths_of_a_reading_agree_in_compiled_code(table: ControllerTable) -> None:
-    compiled: Any = numba.njit(decide)
-    arrays = arrays_of(table)
+    compiled = compiled_rule(decide)
     for s in np.linspace(0.0, 37.0, 50):
         for v in np.linspace(4.0, 7.0, 50):
-            assert compiled(*arrays, 1, float(s), float(v)) == compiled(*arrays, 1, np.float32(s), np.float32(v))
+            narrow = compiled(table.held, 1, np.float32(s), np.float32(v), np.float32(NAN))
+            assert compiled(table.held, 1, float(s), float(v), NAN) == narrow
 
 
 @pytest.mark.parametrize(
@@ -331,10 +305,10 @@ def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table: Controller
         stages=(Stage(0, 0.0, None, (tiny, 0.0)), Stage(1, 1.0, None, None)),
         valid=ValidRange((0.0, 1.0), (0.0, 1.0)),
     )
-    compiled: Any = numba.njit(decide)
-    arrays = arrays_of(table)
+    compiled = compiled_rule(decide)
     for v, answer in ((tiny, 0), (float(np.nextafter(np.float32(tiny), np.float32(1))), 1)):
-        assert decide_for(table, 0, 0.5, v) == compiled(*arrays, 0, 0.5, v) == decide_many(table, 0, 0.5, v) == answer
+        assert decide_for(table, 0, 0.5, v) == decide_many(table, 0, 0.5, v) == answer
+        assert compiled(table.held, 0, 0.5, v, NAN) == answer
 
 
 def test_many_broadcasts_and_refuses_stages_that_are_no_integers(linear_table: ControllerTable) -> None:

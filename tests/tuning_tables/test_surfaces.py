@@ -4,6 +4,7 @@ import math
 import pickle
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,10 @@ from tuning_tables import (
 )
 from tuning_tables.active_table import active
 from tuning_tables.golden_vectors import GoldenVectors, few_golden_vectors, golden_vectors
-from tuning_tables.rule import rises
+from tuning_tables.programs.line_table import LineTable
+from tuning_tables.rule import rises_at
+
+rule_text = import_module("tuning_tables.programs.decide")
 
 NAN, INF = float("nan"), float("inf")
 SLOPE = "slope_m_s_per_kpa"
@@ -93,17 +97,17 @@ def test_one_who_gives_no_pressure_is_one_whose_gauge_is_silent(tilted_table: Co
 def test_the_highest_pressure_is_that_of_the_highest_stage_that_is_raised_to(surface_table: ControllerTable) -> None:
     table = with_stage(surface_table, 3, lower_slope_m_s_per_kpa=-(2.0**-7))
     assert table.highest_raised == active(table).highest_raised == 2
-    arrays = (table.slopes, table.pressures, table.highest_raised)
-    assert rises(*arrays, 1, 300.0) == rises(*arrays, 1, 301.0) == rises(*arrays, 1, 3.4e38) != rises(*arrays, 1, 299.0)
+    at_299, at_300, at_301, at_most = (rises_at(table, 1, np.float64(kpa)) for kpa in (299.0, 300.0, 301.0, 3.4e38))
+    assert (at_300 == at_301).all()
+    assert (at_300 == at_most).all()
+    assert (at_300 != at_299).any()
     # Stage 3 is above it: a pressure as its own counts as that of stage 2, silence as its own.
-    assert rises(*arrays, 3, 450.0) == rises(*arrays, 3, 300.0) == (np.float32(150.0 / 128.0), 0.0)
-    assert rises(*arrays, 3, NAN) == (0.0, 0.0)
+    assert rises_at(table, 3, np.array([450.0, 300.0])).tolist() == [[150.0 / 128.0, 0.0]] * 2
+    assert rises_at(table, 3, np.float64(NAN)).tolist() == [0.0, 0.0]
 
 
 @pytest.mark.parametrize("stage", [-1, 4, -(2**31), 2**31])
-def test_a_stage_that_there_is_not_has_no_rise(surface_table: ControllerTable, stage: int) -> None:
-    arrays = (surface_table.slopes, surface_table.pressures, surface_table.highest_raised)
-    assert rises(*arrays, stage, 100.0) == (0.0, 0.0)
+def test_a_stage_that_there_is_not_holds(surface_table: ControllerTable, stage: int) -> None:
     assert decide_for(surface_table, stage, 1.0, 9.0, 100.0) == stage
     assert decide_many(surface_table, stage, 1.0, 9.0, 100.0) == stage
 
@@ -183,28 +187,20 @@ def test_a_table_that_decides_at_rest_has_no_slopes(surface_table: ControllerTab
         replace(surface_table, decisions=Decisions.AT_REST)
 
 
-Rises = Callable[..., tuple[np.float32, np.float32]]
+def another_pressure(change: str) -> Callable[..., Any]:
+    """What a controller takes for the pressure above that of the stage, when it gets one thing wrong."""
 
-
-def another_rise(change: str) -> Rises:
-    """What a controller adds that gets one thing wrong."""
-
-    def wrong(slopes: Any, pressures: Any, highest_raised: int, stage: int, kpa: Any) -> tuple[np.float32, np.float32]:
-        nothing = np.float32(0.0)
-        if not 0 <= stage < len(pressures):
-            return nothing, nothing
+    def wrong(table: LineTable, stage: int, kpa: Any) -> Any:
         if not math.isfinite(kpa):
             if change != "silence counts as no pressure":
-                return nothing, nothing
+                return np.float32(0.0)
             kpa = np.float32(0.0)
-        highest = pressures[-1 if change == "clamped to the top stage" else highest_raised]
+        highest = table.pressure_kpa[-1] if change == "clamped to the top stage" else table.highest_kpa
         if change != "not clamped below":
-            kpa = max(kpa, pressures[0])
+            kpa = max(kpa, table.pressure_kpa[0])
         if change != "not clamped above":
             kpa = min(kpa, highest)
-        x = kpa if change == "from no pressure" else kpa - pressures[stage]
-        lower, upper = slopes[stage] * x
-        return (upper, lower) if change == "sides exchanged" else (lower, upper)
+        return kpa if change == "from no pressure" else kpa - table.pressure_kpa[stage]
 
     return wrong
 
@@ -229,11 +225,13 @@ def test_the_golden_vectors_show_a_wrong_rise(
     change: str,
 ) -> None:
     table = with_stage(surface_table, 0, pressure_kpa=20.0)
-    golden = vectors(table)
-    monkeypatch.setattr("tuning_tables.rule.rises", another_rise(change))
+    golden, held = vectors(table), table.held
+    if change == "sides exchanged":
+        held = held._replace(slope=held.slope[:, ::-1])
+    monkeypatch.setattr(rule_text, "pressure_above", another_pressure(change))
     with np.errstate(over="ignore"):
         readings = zip(golden.stage.tolist(), golden.s_m, golden.v_m_s, golden.pressure_kpa, strict=True)
-        answers = [decide_for(table, *reading) for reading in readings]
+        answers = [rule_text.decide(held, *reading) for reading in readings]
     # The few ask no silent gauge.
     due = change == "none" or (vectors is few_golden_vectors and change == "silence counts as no pressure")
     assert (answers == golden.answer.tolist()) == due

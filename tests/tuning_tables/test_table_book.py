@@ -116,9 +116,7 @@ def test_lines_between_are_computed_in_float32_one_rounding_an_operation(book: T
 def test_a_chosen_table_is_what_the_rule_takes(book: TableBook) -> None:
     choice = chosen(book, 2.5)
     assert choice.table is not None
-    arrays = (choice.table.coefficients, choice.table.has_line, choice.table.valid_range)
-    limits = (choice.table.entrance_stage, choice.table.farthest)
-    assert decide(*arrays, limits, 0, 37.0, 9.0) == decide_for(choice.table, 0, 37.0, 9.0) == 2
+    assert decide(choice.table.held, 0, 37.0, 9.0, np.nan) == decide_for(choice.table, 0, 37.0, 9.0) == 2
     with pytest.raises(ValueError, match="read-only"):
         choice.table.coefficients[0, 0, 0] = 1.0
 

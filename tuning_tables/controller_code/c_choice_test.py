@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tuning_tables.controller_code.c_code import select_of, table_type, tables_of
+from tuning_tables.controller_code.c_choice import select_of, table_type, tables_of
 from tuning_tables.controller_code.code import Commanded, ControllerCode, crc32_of, words_of
 
 
@@ -28,7 +28,8 @@ def golden_choices(code: ControllerCode) -> list[str]:
         "static int is_chosen_right(const golden_choice *golden)",
         "{",
         f"    {table_type(code)} chosen = {tables_of(code)}[0];",
-        f"    const int32_t status = {select_of(code)}(golden->category, golden->axles, float_of(golden->commanded_m_s), &chosen);",
+        "    const float commanded_m_s = float_of(golden->commanded_m_s);",
+        f"    const int32_t status = {select_of(code)}(golden->category, golden->axles, commanded_m_s, &chosen);",
         "    if (status != golden->status) {",
         "        return 0;",
         "    }",

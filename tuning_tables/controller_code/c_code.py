@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterator
 from typing import Final
 
 from tuning_tables.c_template import part
 from tuning_tables.category_names import comment_text
+from tuning_tables.controller_code.c_choice import (
+    SELECT_NOTE,
+    STATUSES,
+    select,
+    select_of,
+    table_type,
+    tables_of,
+)
 from tuning_tables.controller_code.code import ControllerCode, HeldTable, Rule, crc32_of, words_of
 from tuning_tables.language.alike import alike_program
 from tuning_tables.language.c99 import CNames, c_function, c_prototype
@@ -58,54 +67,6 @@ static int is_equal(float one, float other)
 }
 """What some programs use of the language, by how it begins where it is used."""
 
-STATUSES: Final = """\
-/* How a choice ended; below 0 no table was chosen. */
-#define RETARDER_TUNED (0)      /* a table for this very speed */
-#define RETARDER_BETWEEN (1)    /* what lies between two tables */
-#define RETARDER_SLOWER (2)     /* the nearest table that aims at less than was commanded */
-#define RETARDER_NO_CLASS (-1)  /* no table for this category and number of axles */
-#define RETARDER_NO_TARGET (-2) /* no number, or below the lowest target: every table would let the cut out too fast */
-"""
-
-SELECT_NOTE: Final = """\
-Fill `chosen` with the table for a cut of this category and number of axles that shall leave with commanded_m_s.
-Candidates are the tables of the category and number of axles; of several masses the largest. Between two targets it is
-what lies between the two tables, where they differ in nothing but target and lines; else, and above the highest target,
-the table of the next target below the command: the cut never leaves faster than commanded. Returns how it ended. Where
-that is below 0, or `chosen` is null, `chosen` is left as it was: then whoever commands must decide, for no table here is
-known to be safe."""
-
-SELECT: Final = """\
-int32_t {select}(int32_t category, int32_t axles, float commanded_m_s, {type} *chosen)
-{{
-    int32_t slower;
-    int32_t faster;
-    int32_t status;
-    choose(category, axles, commanded_m_s, &status, &slower, &faster);
-    if (chosen == 0) {{
-        return RETARDER_NO_CLASS;
-    }}
-    if (status >= 0) {{
-        *chosen = {tables}[slower];
-    }}
-    if (status == RETARDER_BETWEEN) {{
-{between}
-    }}
-    return status;
-}}
-"""
-
-BLENDED: Final = """\
-        if (alike(&{tables}[slower], &{tables}[faster])) {{
-            blend(chosen, &{tables}[faster], commanded_m_s);
-            chosen->target_m_s = commanded_m_s;
-            chosen->crc32 = table_crc32(chosen);
-        }} else {{
-            status = RETARDER_SLOWER;
-        }}"""
-SLOWER: Final = """\
-        status = RETARDER_SLOWER;"""
-
 
 def c_names(code: ControllerCode) -> CNames:
     """The names of the export."""
@@ -117,20 +78,17 @@ def c_names(code: ControllerCode) -> CNames:
     )
 
 
-def tables_of(code: ControllerCode) -> str:
-    """The array of all tables."""
-    return f"retarder_{code.table_name}s"
-
-
-def table_type(code: ControllerCode) -> str:
-    """The type of a table."""
-    return f"retarder_{code.table_name}"
+def named(code: ControllerCode, text: str) -> str:
+    """The text with the names in backquotes as they are here: functions of rules, and members."""
+    functions = {rule.function.__name__: f"retarder_{rule.name}" for rule in code.rules}
+    functions["select"] = select_of(code)
+    return re.sub(r"`(\w+)`", lambda found: functions.get(found[1]) or found[1], text)
 
 
 def c_header(code: ControllerCode) -> str:
     """The text of retarder_STEM.h."""
     names, macro = c_names(code), f"RETARDER_{code.stem.upper()}_H"
-    return "\n".join(
+    text = "\n".join(
         [
             *head_comment(code),
             GUARD.format(macro=macro),
@@ -139,7 +97,8 @@ def c_header(code: ControllerCode) -> str:
             *(f"#define RETARDER_CATEGORY_{each.macro} {each.number} /* {comment_text(each.category)} */"
               for each in code.categories),
             "",
-            f"#define {tag_name(code)} 0x{code.tag:08x}u /* of all files of one export, so that they cannot be mixed */",
+            "/* Of all files of one export, so that they cannot be mixed. */",
+            f"#define {tag_name(code)} 0x{code.tag:08x}u",
             "",
             *record_types(code),
             f"extern const int32_t {table_type(code)}_count;",
@@ -149,7 +108,7 @@ def c_header(code: ControllerCode) -> str:
             *([*c_comment(SELECT_NOTE.replace("\n", " ")),
                f"int32_t {select_of(code)}(int32_t category, int32_t axles, float commanded_m_s, "
                f"{table_type(code)} *chosen);", ""] if code.chooses else []),
-            f"/* 1 if the checksum of the table is right (in ROM, or the copy that {select_of(code)} has made), else 0. */",
+            "/* 1 if the checksum of the table is right, in ROM or of a copy, else 0. */",
             f"int32_t {table_type(code)}_intact(const {table_type(code)} *table);",
             "",
             '/* CRC-32 (ISO 3309; zlib, Ethernet) of `count` bytes; the bytes "123456789" give 0xCBF43926. */',
@@ -158,11 +117,7 @@ def c_header(code: ControllerCode) -> str:
             FOOT,
         ]
     )  # fmt: skip
-
-
-def select_of(code: ControllerCode) -> str:
-    """The name of the choice."""
-    return f"retarder_select{code.ending}"
+    return named(code, text)
 
 
 def crc32_name(code: ControllerCode) -> str:
@@ -195,7 +150,9 @@ def record_types(code: ControllerCode) -> Iterator[str]:
         yield from c_comment(f"{record.record.meaning} Every member is 32 bits wide.")
         text = c_type(record, f"retarder_{code.records[record.record.name]}")
         if record is code.table:
-            checksum = "    uint32_t crc32; /* CRC-32 of all words before it, each taken from its lowest byte to its highest */\n}"
+            checksum = (
+                "    uint32_t crc32; /* CRC-32 of all words before it, each from its lowest byte to its highest */\n}"
+            )
             text = text.replace("\n}", f"\n{checksum}")
         yield text
 
@@ -230,7 +187,7 @@ def c_source(code: ControllerCode) -> str:
     if code.blends:
         programs.append(alike_program(code.table))
     functions = [c_function(program, names) for program in programs]
-    text = "\n".join(functions)
+    text = named(code, "\n".join(functions))
     words = code.table.words() + 1
     return "\n".join(
         [
@@ -265,12 +222,6 @@ def c_source(code: ControllerCode) -> str:
             "",
         ]
     )  # fmt: skip
-
-
-def select(code: ControllerCode) -> str:
-    """The function that chooses a table."""
-    between = BLENDED.format(tables=tables_of(code)) if code.blends else SLOWER
-    return SELECT.format(select=select_of(code), type=table_type(code), tables=tables_of(code), between=between)
 
 
 def same_export(code: ControllerCode) -> list[str]:

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from tuning_tables.c_template import part
+from tuning_tables.controller_code.c_choice import select_of, table_type, tables_of
 from tuning_tables.controller_code.c_choice_test import choosing, golden_choices
 from tuning_tables.controller_code.c_code import (
     FOOT,
@@ -15,9 +16,6 @@ from tuning_tables.controller_code.c_code import (
     c_names,
     crc32_name,
     same_export,
-    select_of,
-    table_type,
-    tables_of,
 )
 from tuning_tables.controller_code.code import ControllerCode, Questions, Rule, kinds_of
 from tuning_tables.language.records import Kind
@@ -49,8 +47,9 @@ def c_test_header(code: ControllerCode) -> str:
         [
             f"/* Self-test of retarder_{code.stem}.c. Generated: do not edit, export again.",
             " *",
-            " * Proves on the processor at hand, with the compiler and switches at hand, that tables and rules are as exported:",
-            f" * arithmetic of the checksum, checksums of all tables, {asked}, {len(code.commands)} golden choices. */",
+            " * Proves on the processor at hand, with the compiler and switches at hand, that tables and rules are as",
+            f" * exported: arithmetic of the checksum, checksums of all tables, {asked},",
+            f" * {len(code.commands)} golden choices. */",
             GUARD.format(macro=f"{macro}_H").replace("#include <stdint.h>", f'#include "retarder_{code.stem}.h"'),
             *(
                 f"#define {macro_prefix(code)}{name} ({number})" + f" /* {note} */" * bool(note)
@@ -88,7 +87,7 @@ def c_test_source(code: ControllerCode) -> str:
             nothing_is_safe(code),
             f"int32_t retarder_{stem}(uint32_t *where)",
             "{",
-            "    static const unsigned char digits[9] = {0x31u, 0x32u, 0x33u, 0x34u, 0x35u, 0x36u, 0x37u, 0x38u, 0x39u};",
+            f"    static const unsigned char digits[9] = {{{', '.join(f'0x3{digit}u' for digit in range(1, 10))}}};",
             "    uint32_t number;",
             *(f"    retarder_{code.records[each.record.name]} {each.record.name} = {{{filling(each.record.members)}}};"
               for each in code.states),
@@ -166,8 +165,12 @@ def is_right(code: ControllerCode, place: int, questions: Questions) -> str:
             else f"{call} == golden->{answer.name}"
         )
     told = {answer.name for program in programs for answer in program.answers}
-    tests += [f"bits_of({state.record.name}->{name}) == golden->{name}" for state in states for name in questions.expected
-              if name not in told]  # fmt: skip
+    tests += [
+        f"bits_of({state.record.name}->{name}) == golden->{name}"
+        for state in states
+        for name in questions.expected
+        if name not in told
+    ]
     joined = "\n        && ".join(tests)
     return "\n".join(
         [

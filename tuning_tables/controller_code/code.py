@@ -43,9 +43,9 @@ class HeldTable:
 class Questions:
     """Questions to rules, one after the other, and the right answers: rows of a structured array.
 
-    about: what they ask, in a word or two. rules: asked in this order at each row. Fields of `rows`: "table", the number
-    of the table; "begins", whether the state is forgotten before; the numbers that the rules take, by the names of their
-    parameters; what they answer, by the names of their answers; and members of the state, as they stand afterwards.
+    about: what they ask, in a word or two. rules: asked in this order at each row. Fields of `rows`: "table", the
+    number of the table; "begins", whether the state is forgotten before; the numbers that the rules take, by the names
+    of their parameters; what they answer, by the names of their answers; members of the state, as they stand after it.
     """
 
     about: str
@@ -81,9 +81,9 @@ class Commanded:
 class ControllerCode:
     """An export: a book of tables of one kind.
 
-    `stem`: of its files, "table" in retarder_table.c; tables with lines have it, and their names are the short ones. `head`: paragraphs for the head of each file. `records`: of the
-    table, then of the states, each with the name of its type. `chooses`: the rule `choose`, and
-    `blend` where there is something between two tables.
+    `stem`: of its files, "table" in retarder_table.c; tables with lines have it, and their names are the short ones.
+    `head`: paragraphs for the head of each file. `records`: of the table, then of the states, each with the name of its
+    type. `chooses`: the rule `choose`, and `blend` where there is something between two tables.
     """
 
     stem: str

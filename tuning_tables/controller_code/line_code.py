@@ -31,19 +31,23 @@ ALARMS: Final = Rule(alarms, "alarms", "0")
 CHOOSES: Final = (Rule(choose, "choose"), Rule(blend, "blend"))
 
 HEAD: Final = (
-    "The first axle is at s_m, 0 at the entrance of the first retarder, negative before it. The interlock is the caller's: "
-    "the regulator may take over a cut, approach_m before the entrance, only when the cut ahead has left the position, its "
-    "last axle out of the last retarder, and then only when the stage commanded is at most entrance_stage.",
-    "When to ask. A table whose at_any_time is 1 is asked at every sample, also while the pressure still changes, with the "
-    "stage commanded last. Every other table is asked only when the pressure of the stage is reached.",
-    "The gauge. The lines of a table whose has_gauge is 1 depend on the pressure, because a cut is braked by the pressure "
-    "that is there, and not by the stage that was commanded. Where the gauge fails, hand over what is no number (NaN): then "
-    "the lines at the pressure of the stage count. Other tables do not look at the pressure; hand over 0.",
-    "A reading of 0 of a table without estimator is believed: the cut stands, so the brake is released. If the radar shows "
-    "0 where it has lost its target, hand over -1 in place of that 0. The state counts in `unseen` for how many samples no "
-    "reading was believed; the supervision compares it with a limit of its own, and acts.",
-    "Alarms. 1: the speed is known too badly, and the answer of the observer is lower than the estimate; 2: readings of the "
-    "radar are doubted, or one repeats itself; 4, 8: the brake works more, or less, on this cut than on any of its category.",
+    "The first axle is at `s_m`, 0 at the entrance of the first retarder, negative before it. The interlock is "
+    "the caller's: the regulator may take over a cut, `approach_m` before the entrance, only when the cut ahead "
+    "has left the position, its last axle out of the last retarder, and then only when the stage commanded is at "
+    "most `entrance_stage`.",
+    "When to ask. A table whose `at_any_time` is 1 is asked at every sample, also while the pressure still "
+    "changes, with the stage commanded last. Every other table is asked only when the pressure of the stage is "
+    "reached.",
+    "The gauge. The lines of a table whose `has_gauge` is 1 depend on the pressure, because a cut is braked by "
+    "the pressure that is there, and not by the stage that was commanded. Where the gauge fails, hand over what "
+    "is no number (NaN): then the lines at the pressure of the stage count. Other tables do not look at the "
+    "pressure; hand over 0.",
+    "A reading of 0 of a table without estimator is believed: the cut stands, so the brake is released. If the "
+    "radar shows 0 where it has lost its target, hand over -1 in place of that 0. The state counts in `unseen` for "
+    "how many samples no reading was believed; the supervision compares it with a limit of its own, and acts.",
+    "Alarms. 1: the speed is known too badly, and `observe` answers less than the estimate; 2: readings of the "
+    "radar are doubted, or one repeats itself; 4, 8: the brake works more, or less, on this cut than on any of "
+    "its category.",
 )
 
 
@@ -155,7 +159,9 @@ def origin_lines(book: TableBook) -> Iterator[str]:
 
 def line_tables(book: TableBook) -> Tables:
     """What the choice looks at of every table of a book."""
-    held = [(book.number_of(table.cut.category), len(table.cut.axle_offsets_m), table.cut.mass_t, table.target_speed_m_s)
-            for table in book.tables]  # fmt: skip
+    held = [
+        (book.number_of(table.cut.category), len(table.cut.axle_offsets_m), table.cut.mass_t, table.target_speed_m_s)
+        for table in book.tables
+    ]
     category, axles, mass_t, target = zip(*held, strict=True)
     return Tables(np.array(category), np.array(axles), np.array(mass_t, np.float32), np.array(target, np.float32))

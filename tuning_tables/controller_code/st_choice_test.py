@@ -53,7 +53,8 @@ def between_text(code: ControllerCode, name: str, command: Commanded) -> str:
     assert command.chosen is not None
     constants, body = compared(code, command.chosen)
     constants.append(real_array("Command", [command.commanded_m_s]))
-    asked = f"Selector(Category := {command.category}, Axles := {command.axles}, Commanded_m_s := Command[0], Table := Table);"
+    cut = f"Category := {command.category}, Axles := {command.axles}"
+    asked = f"Selector({cut}, Commanded_m_s := Command[0], Table := Table);"
     variables = [f"Selector : {select_block_of(code)}", f"Table : {table_type(code)}", "Index : INT"]
     note = f"The table between two, for {float(command.commanded_m_s):.6g} m/s, by every number."
     return block_text(code, name, note, False, variables, constants, [asked, *check("Selector.Status <> 1"), *body])

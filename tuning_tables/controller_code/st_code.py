@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterator, Sequence
 from typing import Any, Final
@@ -19,13 +20,14 @@ from tuning_tables.st_literals import int_array, real_array
 WIDTH: Final = 110
 
 ARITHMETIC: Final = (
-    "Arithmetic. Every operation on REAL stands in a statement of its own, so that its result is rounded to REAL (binary32) "
-    "before the next. A controller that calculates in double precision and rounds when it assigns gives the same results: "
-    "rounding + - * / of binary32 numbers to 53 bits first and to 24 afterwards never differs from rounding once, as "
-    "53 >= 2 * 24 + 2 (Figueroa 1995). Constants that are compared or calculated with stand in VAR CONSTANT as REAL, because "
-    "many compilers hold a bare literal in double precision. Loops are WHILE loops, because compilers differ in a FOR of "
-    "one pass, or of none.",
-    "Which compilers have run it, and which have not, stands in docs/structured-text.md. Run the self-test on the controller.",
+    "Arithmetic. Every operation on REAL stands in a statement of its own, so that its result is rounded to REAL "
+    "(binary32) before the next. A controller that calculates in double precision and rounds when it assigns gives the "
+    "same results: rounding + - * / of binary32 numbers to 53 bits first and to 24 afterwards never differs from "
+    "rounding once, as 53 >= 2 * 24 + 2 (Figueroa 1995). Constants that are compared or calculated with stand in VAR "
+    "CONSTANT as REAL, because many compilers hold a bare literal in double precision. Loops are WHILE loops, because "
+    "compilers differ in a FOR of one pass, or of none.",
+    "Which compilers have run it, and which have not, stands in docs/structured-text.md. Run the self-test on the "
+    "controller.",
 )
 
 SELECT: Final = """\
@@ -145,7 +147,7 @@ def st_units(code: ControllerCode) -> list[str]:
     choice = [select_block(code)] if code.chooses else []
     # Tables with lines alone have it, so that others fit into the same controller.
     categories = [categories_block(code)] if code.stem == "table" else []
-    return [*types, *categories, load_block(code), *programs, *alike, *choice]
+    return [named(code, text) for text in (*types, *categories, load_block(code), *programs, *alike, *choice)]
 
 
 def select_block(code: ControllerCode) -> str:
@@ -160,30 +162,32 @@ def head(code: ControllerCode) -> str:
     names = st_names(code)
     blocks = [f"{names.block(code.program(rule))}: {first_sentence(code.program(rule).note)}" for rule in code.rules]
     if code.chooses:
-        blocks.insert(
-            0,
-            f"{select_block_of(code)}: once for a cut, when its class and exit speed are known: fills a {table_type(code)}",
-        )
-    paragraphs: list[str | None] = [
-        f"{code.title} IEC 61131-3 Structured Text. Generated: do not edit, export again. This text may be used, changed and "
-        "passed on without any condition.",
-        None,
-        *(text.replace("has_gauge", "HasGauge").replace("at_any_time", "AtAnyTime").replace("entrance_stage", "EntranceStage")
-          .replace("approach_m", "Approach_m").replace("s_m", "Path_m") for text in code.head),
-        *ARITHMETIC,
-    ]  # fmt: skip
-    lines: list[str] = []
-    for paragraph in paragraphs:
-        if paragraph is None:
-            categories = [
-                f"{each.number:9d}  {each.macro}, in tables {comment_text(each.category)}" for each in code.categories
-            ]
-            rows = [*code.origin, "categories, whose numbers are the same in every export:", *categories, "", "Blocks"]
-            rows += [line for text in blocks for line in textwrap.wrap(text, WIDTH - 5, subsequent_indent="    ")]
-        else:
-            rows = textwrap.wrap(paragraph, WIDTH - 5)
-        lines += [*([""] if lines else []), *rows]
-    return "\n".join([f"(* {lines[0]}", *(f"   {line}".rstrip() for line in lines[1:-1]), f"   {lines[-1]} *)", ""])
+        told = "once for a cut, when its class and exit speed are known: fills a"
+        blocks.insert(0, f"{select_block_of(code)}: {told} {table_type(code)}")
+    categories = [
+        f"{each.number:9d}  {each.macro}, in tables {comment_text(each.category)}" for each in code.categories
+    ]
+    listed = [line for text in blocks for line in textwrap.wrap(text, WIDTH - 5, subsequent_indent="    ")]
+    first = (
+        f"{code.title} IEC 61131-3 Structured Text. Generated: do not edit, export again. This text may be used, "
+        "changed and passed on without any condition."
+    )
+    paragraphs = [
+        textwrap.wrap(first, WIDTH - 5),
+        [*code.origin, "categories, whose numbers are the same in every export:", *categories],
+        ["Blocks", *listed],
+        *(textwrap.wrap(text, WIDTH - 5) for text in (*code.head, *ARITHMETIC)),
+    ]
+    lines = [line for paragraph in paragraphs for line in ("", *paragraph)][1:]
+    text = "\n".join([f"(* {lines[0]}", *(f"   {line}".rstrip() for line in lines[1:-1]), f"   {lines[-1]} *)", ""])
+    return named(code, text)
+
+
+def named(code: ControllerCode, text: str) -> str:
+    """The text with the names in backquotes as they are here: blocks of rules, and members."""
+    blocks = {rule.function.__name__: f"RETARDER_{rule.name.upper()}" for rule in code.rules}
+    blocks["select"] = select_block_of(code)
+    return re.sub(r"`(\w+)`", lambda found: blocks.get(found[1]) or st_name(found[1]), text)
 
 
 def first_sentence(note: str) -> str:
@@ -223,7 +227,7 @@ def member_array(name: str, member: Member, values: Any) -> str:
 
 
 def load_block(code: ControllerCode) -> str:
-    """The block that fills a table from constants: numbers by table; arrays once each, however many tables share them."""
+    """The block that fills a table from constants: numbers by table; arrays once, however many tables share them."""
     members = code.table.members
     numbers = {name: member for name, member in members.items() if not member.axes}
     declared = [scalar_array(code, name, member) for name, member in numbers.items()]
@@ -253,13 +257,14 @@ def part_of_tables(code: ControllerCode, part: str, group: Sequence[str]) -> tup
     """Declarations and statements for arrays that tables share or not: each content once, by its number."""
     found: dict[bytes, int] = {}
     number_of, declared, cases = [], [], []
-    for number, table in enumerate(code.tables):
+    for table in code.tables:
         content = b"".join(np.ascontiguousarray(table.values[name]).tobytes() for name in group)
         if content not in found:
             place = found[content] = len(found)
             declared.append(f"    (* {place}: {comment_text(table.id)} *)")
-            declared += [member_array(f"{st_name(name).partition('_')[0]}_{place}", code.table.members[name], table.values[name])
-                         for name in group]  # fmt: skip
+            for name in group:
+                array = f"{st_name(name).partition('_')[0]}_{place}"
+                declared.append(member_array(array, code.table.members[name], table.values[name]))
             cases += [f"{place}:", *(f"    {line}" for line in copied(code, group, place))]
         number_of.append(found[content])
     name = f"{part.capitalize()}Part"

@@ -204,7 +204,8 @@ def run_all(code: ControllerCode, blocks: list[TestBlock]) -> str:
         ]
         cases += [f"        {number}:", *(f"            {line}" for line in lines)]
     return RUN_ALL.format(
-        name=self_test_name(code), load=load_of(code), type=table_type(code), cases="\n".join(cases), last=len(blocks) - 1,
+        name=self_test_name(code), load=load_of(code), type=table_type(code), cases="\n".join(cases),
+        last=len(blocks) - 1,
         instances="\n".join(f"    Test_{number} : {block.name};" for number, block in enumerate(blocks)),
     )  # fmt: skip
 

@@ -141,7 +141,7 @@ class _Printer:
         self.lines.append(_wrapped(text, depth))
 
     def block(self, body: tuple[Statement, ...], depth: int) -> None:
-        """Statements one after the other; a variable that is used nowhere else is declared where it is first assigned."""
+        """Statements one after the other; a variable used nowhere else is declared where it is first assigned."""
         for place, statement in enumerate(body):
             if statement.comment:
                 self.lines += c_comment(statement.comment, depth)
@@ -176,7 +176,7 @@ class _Printer:
                     self.put(depth, "}")
 
     def declared(self, target: Name, body: tuple[Statement, ...], place: int, depth: int) -> str:
-        """The type before an assignment that declares its variable: the first of all, and no use is outside the block."""
+        """The type before an assignment that declares its variable: the first, if no use is outside the block."""
         name = target.name
         if name in self.at_once or (depth > 1 and target in self.program.answers):
             return ""

@@ -1,10 +1,11 @@
 """A Python function as a tree of the language; what the language has not is refused with its line.
 
-The language: assignments to names and to members, `if`, `while`, calls of other programs as statements, at most one `return`,
-of names, at the end. Numbers: + - * / and comparisons, `and`, `or`, `not`, `min`, `max`; `f32`, which rounds a reading and makes
-a REAL of a whole number, `int`, which makes a whole number of a REAL that is one; named
-constants of the module (float32 or whole), and whole numbers. No literal with a decimal point: in Python it would be a
-double. A reading, a parameter that is a REAL, may be compared as it is, and is rounded by `f32` before any arithmetic.
+The language: assignments to names and to members, `if`, `while`, calls of other programs as statements, at most one
+`return`, of names, at the end. Numbers: + - * / and comparisons, `and`, `or`, `not`, `min`, `max`; `f32`, which rounds
+a reading and makes a REAL of a whole number, `int`, which makes a whole number of a REAL that is one; named constants
+of the module (float32 or whole), and whole numbers. No literal with a decimal point: in Python it would be a double. A
+reading may be compared as it is, and is rounded by `f32` before any arithmetic. Both sides of `and` and `or` may be
+evaluated: no index may depend on the other side.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import textwrap
 import tokenize
 from collections.abc import Callable, Mapping
 from functools import cache
+from itertools import pairwise
 from typing import Any, NoReturn, get_args, get_type_hints
 
 import numpy as np
@@ -245,7 +247,7 @@ class _Reader:
         values = [self.expression(side) for side in sides]
         if "" in signs or len({value.kind for value in values}) != 1:
             self.refuse(node, "both sides must be of one kind")
-        each = tuple(Compare(sign, *pair) for sign, pair in zip(signs, zip(values, values[1:]), strict=True))
+        each = tuple(Compare(sign, *pair) for sign, pair in zip(signs, pairwise(values), strict=True))
         return each[0] if len(each) == 1 else Logic(True, each)
 
     def item(self, node: ast.Attribute | ast.Subscript) -> Expression:

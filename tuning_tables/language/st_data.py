@@ -29,9 +29,8 @@ def of_tables(member: str) -> str:
 def st_comment(text: str, pad: str = "") -> list[str]:
     """The text as a comment."""
     lines = textwrap.wrap(text.replace("*)", "* )").replace("(*", "( *"), WIDTH - 6 - len(pad))
-    return [f"{pad}(* {lines[0]}", *(f"{pad}   {line}" for line in lines[1:-1])][: max(len(lines) - 1, 0)] + [
-        f"{pad}{'(*' if len(lines) == 1 else '  '} {lines[-1]} *)"
-    ]
+    rows = [f"{pad}{'  ' if place else '(*'} {line}" for place, line in enumerate(lines)]
+    return [*rows[:-1], f"{rows[-1]} *)"]
 
 
 def st_declared(name: str, kind: str, note: str, depth: int = 1) -> list[str]:

@@ -2,8 +2,8 @@
 
 Candidates are the tables of the cut's category and number of axles; of several masses the largest. The command equal to
 a target: that table. Between two targets: what lies between the two tables, if they differ in nothing but their lines,
-else the table of the next target below the command: the cut never leaves faster than commanded. Below all targets, or no
-number: no table.
+else the table of the next target below the command: the cut never leaves faster than commanded. Below all targets, or
+no number: no table.
 """
 
 from __future__ import annotations

@@ -99,7 +99,14 @@ def answer_at(
 
 
 def decide(table: LineTable, stage: Stage, s_m: PathReading, v_m_s: ObservedSpeed, pressure_kpa: Pressure) -> Answer:
-    """The stage to command; the stage itself: command nothing."""
+    """The stage to command; the stage itself: command nothing.
+
+    At a stage: below its lower line, down to the next stage; above its upper line, up to the next; else hold, also on a
+    line. After a step the same is asked at the stage reached, until it holds, or answers the opposite: so one command
+    goes as far as any stage at rest, and one stage at any time. Before the entrance no stage above `entrance_stage` is
+    asked for. The stage itself is the answer to whatever cannot be true: no such stage, a path or speed that is not
+    finite, a negative speed.
+    """
     wanted = stage
     # The sizes are looked at, too, so that no index leaves a damaged table.
     has_stage = (

@@ -17,7 +17,7 @@ LOWER, UPPER = 0, 1
 
 
 class LineTable(NamedTuple):
-    """One table of switching lines. Closed: RETARDER_SELECT fills it.
+    """One table of switching lines. Closed: `select` fills it.
 
     Python holds it with the arrays of a table as they are; a controller with room for the largest table of its book.
     """

@@ -239,10 +239,11 @@ def observe(
 
     To be called at every sample, also while a change of stage is under way. What cannot be true changes little: a speed
     above 40 m/s, negative or not finite corrects nothing, such an overpressure counts as 0, a path that goes back, or
-    on by more than 20 m, as no movement. A cut begins with a reading of the least speed or more. A reading is doubted, and
-    corrects nothing, if it is far from the estimate and leapt there: more than the noise of two readings and all that
-    the brake does are off between it and the last; after a missing one, if it is below the least speed. Doubt ends with
-    a reading near the estimate.
+    on by more than 20 m, as no movement. A cut begins with a reading of the least speed or more. A reading is doubted,
+    and corrects nothing, if it is far from the estimate and leapt there: more than the noise of two readings and all
+    that the brake does are off between it and the last; after a missing one, if it is below the least speed. Doubt ends
+    with a reading near the estimate. `unseen` of the estimate counts the samples since the last reading that was
+    believed; the supervision compares it with a limit of its own, and acts.
     """
     observed = v_m_s
     # No comparison with a NaN is true.

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tuning_tables.table_block import block_size
 
 from scripts.studies.in_the_loop.agreement import ask
 from tests.controller_code.sample_book import approaching_book, sample_book, surface_book, with_slopes
@@ -20,7 +21,6 @@ from tuning_tables import Decisions
 from tuning_tables.golden_vectors import FEW, few_golden_vectors, golden_vectors
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE
-from tuning_tables.table_block import block_size
 from tuning_tables.table_book import TableBook
 
 

@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 import pytest
+from tuning_tables.held_numbers import HELD_NUMBERS, held_numbers
 
 from scripts.studies.in_the_loop.controller_process import ANSWER_WORDS
 from scripts.studies.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
@@ -17,7 +18,6 @@ from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.test_decide import loaded
 from tuning_tables.golden_tracks import golden_tracks
-from tuning_tables.held_numbers import HELD_NUMBERS, held_numbers
 from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
 

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 import pytest
+from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, block_size
 
 from scripts.studies.in_the_loop.agreement import Questions, ask
 from tests.tuning_tables.st.compiler import BINARY32, ROUNDINGS, Compiler, name_of
@@ -15,7 +16,6 @@ from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tuning_tables import ControllerTable, Stage, decide_many
 from tuning_tables.st_source import TABLE_FILE
-from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, block_size
 from tuning_tables.table_book import Status, TableBook
 
 Chosen: TypeAlias = dict[str, npt.NDArray[Any]]
