@@ -6,7 +6,7 @@ import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,9 @@ from tuning_tables.language.reading import program_of
 from tuning_tables.language.records import Kind, Record, SizedRecord
 from tuning_tables.language.tree import Ask, Program
 from tuning_tables.language.walking import names_read, statements_in
+
+if TYPE_CHECKING:
+    from tuning_tables.controller_code.odd_tables import OddQuestion
 
 BEFORE: Final = "before_"
 """How the name of a field begins that sets a member of the state before its question."""
@@ -93,7 +96,8 @@ class ControllerCode:
 
     `stem`: of its files, "table" in retarder_table.c; tables with lines have it, and their names are the short ones.
     `head`: paragraphs for the head of each file. `records`: of the table, then of the states, each with the name of its
-    type. `chooses`: the rule `choose`, and `blend` where there is something between two tables.
+    type. `chooses`: the rule `choose`, and `blend` where there is something between two tables. `odd`: questions to a
+    changed copy of table 0.
     """
 
     stem: str
@@ -109,6 +113,7 @@ class ControllerCode:
     chooses: tuple[Rule, ...]
     questions: tuple[Questions, ...]
     commands: tuple[Commanded, ...]
+    odd: tuple[OddQuestion, ...] = ()
 
     @cached_property
     def sized(self) -> Mapping[str, SizedRecord]:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from tuning_tables.active_table import ActiveTable, active
 from tuning_tables.category_names import category_names, comment_text
 from tuning_tables.controller_code.code import Commanded, ControllerCode, HeldTable, Questions, Rule, Values, padded
+from tuning_tables.controller_code.odd_tables import odd_questions
 from tuning_tables.golden_choices import golden_choices
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.golden_vectors import GoldenVectors
@@ -70,6 +71,7 @@ def line_code(book: TableBook, self_test: SelfTestSize) -> ControllerCode:
         chooses=CHOOSES,
         questions=(decisions(book, self_test), estimates(book)),
         commands=tuple(commands(book, record)),
+        odd=odd_questions(record, held[0].values, DECIDE, OBSERVE),
     )
 
 
