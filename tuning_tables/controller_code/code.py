@@ -97,7 +97,7 @@ class ControllerCode:
     `stem`: of its files, "table" in retarder_table.c; tables with lines have it, and their names are the short ones.
     `head`: paragraphs for the head of each file. `records`: of the table, then of the states, each with the name of its
     type. `chooses`: the rule `choose`, and `blend` where there is something between two tables. `odd`: questions to a
-    changed copy of table 0.
+    changed copy of table 0. `named`: numbers that have names in C, with what they mean.
     """
 
     stem: str
@@ -114,6 +114,7 @@ class ControllerCode:
     questions: tuple[Questions, ...]
     commands: tuple[Commanded, ...]
     odd: tuple[OddQuestion, ...] = ()
+    named: tuple[tuple[str, int, str], ...] = ()
 
     @cached_property
     def sized(self) -> Mapping[str, SizedRecord]:

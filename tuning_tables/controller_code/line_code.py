@@ -16,7 +16,7 @@ from tuning_tables.golden_choices import golden_choices
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.golden_vectors import GoldenVectors
 from tuning_tables.language.records import SizedRecord, record_of
-from tuning_tables.programs.alarms import alarms
+from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM, alarms
 from tuning_tables.programs.choose import Tables, blend, choose
 from tuning_tables.programs.decide import decide
 from tuning_tables.programs.estimate import ESTIMATE
@@ -51,6 +51,13 @@ HEAD: Final = (
     "its category.",
 )
 
+NAMED: Final = (
+    ("LOST", LOST_ALARM, "alarm: the speed is known too badly"),
+    ("SENSOR_DOUBTED", SENSOR_ALARM, "alarm: readings are doubted, or one repeats itself"),
+    ("LIGHTER", LIGHTER_ALARM, "alarm: the brake works more on this cut than on any of its category"),
+    ("HEAVIER", HEAVIER_ALARM, "alarm: it works less"),
+)
+
 
 def line_code(book: TableBook, self_test: SelfTestSize) -> ControllerCode:
     """The export of a book. Raises `InvalidTable` for a category without number."""
@@ -71,6 +78,7 @@ def line_code(book: TableBook, self_test: SelfTestSize) -> ControllerCode:
         chooses=CHOOSES,
         questions=(decisions(book, self_test), estimates(book)),
         commands=tuple(commands(book, record)),
+        named=NAMED,
         odd=odd_questions(record, held[0].values, DECIDE, OBSERVE),
     )
 
