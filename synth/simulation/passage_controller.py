@@ -54,6 +54,8 @@ def of_speeds(
 
     With the six `limits` of a tracker (`PlausibleMotion.numbers`) it tracks, else it is told each passage.
     """
+    if len(limits) not in (0, len(LIMITS)):
+        raise ValueError(f"passage controller: there are {len(limits)} limits, but a tracker has six numbers")
     met = deciding_passages(sensors, plant.cut, plant.exit_m)
     heard = passages(replace(sensors, axles=every_axle), plant.cut)
     rule = held_passages(

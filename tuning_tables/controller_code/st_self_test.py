@@ -7,6 +7,7 @@ those for 0), no -0.0.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from typing import Final
 
@@ -16,7 +17,7 @@ import numpy.typing as npt
 from tuning_tables.category_names import comment_text
 from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
 from tuning_tables.controller_code.st_choice_test import choice_tests
-from tuning_tables.controller_code.st_code import load_of, st_names, table_type
+from tuning_tables.controller_code.st_code import WIDTH, load_of, st_names, table_type
 from tuning_tables.controller_code.st_odd_test import odd_test
 from tuning_tables.controller_code.st_test_block import (
     TestBlock,
@@ -33,10 +34,10 @@ from tuning_tables.st_literals import LONGEST_ARRAY, int_array, is_portable, rea
 HEAD: Final = """\
 (* Self-test of {file}, for the controller that is to run it. Generated: do not edit, export again.
 
-   Call one instance of {block} once a cycle until Done; Failed must be 0. It compares every constant with a
-   second copy, and the answers of the blocks with those of the reference implementation. Questions that are not finite
-   or denormal are left out, because they have no portable literal. REAL numbers are compared for equality on purpose:
-   every bit is due. Remove the blocks after the test if memory is short. *)
+   Call one instance of {block} once a cycle until Done; Failed must be 0. It compares
+   every constant with a second copy, and the answers of the blocks with those of the reference implementation.
+   Questions that are not finite or denormal are left out, because they have no portable literal. REAL numbers are
+   compared for equality on purpose: every bit is due. Remove the blocks after the test if memory is short. *)
 """
 
 RUN_ALL: Final = """\
@@ -177,12 +178,12 @@ def questions_text(
             else:
                 continue
             given.append(f"{st_name(parameter.name)} := {value}")
-        body.append(f"{instance(rule)}({', '.join(given)});")
+        body += textwrap.wrap(f"{instance(rule)}({', '.join(given)});", WIDTH, subsequent_indent="    ")
         differs += [f"({instance(rule)}.{st_name(each.name)} <> {held(each.name)}[Index])" for each in program.answers]
     told = {answer.name for program in programs for answer in program.answers}
     differs += [f"({st_name(state.record.name)}.{st_name(each)} <> {held(each)}[Index])" for state in states
                 for each in questions.expected if each not in told]  # fmt: skip
-    body = loop(len(rows), [*body, *check(" OR ".join(differs))])
+    body = loop(len(rows), [*body, *check("\n    OR ".join(differs))])
     note = f"{len(rows)} golden {questions.about} of table {number}, {comment_text(code.tables[number].id)}."
     return block_text(code, name, note, True, [*variables, "Index : INT"], constants, body)
 

@@ -1,7 +1,8 @@
 """Expressions of Structured Text as functions of (frame, mask): compiled once from the parse tree, run over all lanes.
 
-Strict where compilers differ: no conversion between REAL, INT and BOOL, no overflow of INT, no REAL operation without
-a finite result, no division by 0, no index out of range, wherever the mask is true. AND and OR evaluate both sides.
+Strict where compilers differ: REAL and INT become each other by INT_TO_REAL and REAL_TO_INT alone, no overflow of INT,
+no REAL operation without a finite result, no division by 0, no index out of range, wherever the mask is true. AND and
+OR evaluate both sides.
 """
 
 from __future__ import annotations
@@ -74,6 +75,8 @@ def compile_expression(node: Node, scope: Scope, arithmetic: Arithmetic) -> Expr
         return _unary(node, scope, arithmetic)
     if node.type == "binary_expression":
         return _binary(node, scope, arithmetic)
+    if node.type == "call_expression":
+        return _conversion(node, scope, arithmetic)
     if node.type == "index_expression":
         row, index = compile_element(node, scope, arithmetic)
         return Expression(row.kind, _reader(row, index, arithmetic))
@@ -154,6 +157,25 @@ def _unary(node: Node, scope: Scope, arithmetic: Arithmetic) -> Expression:
     if (operator, operand.kind) == ("NOT", "BOOL"):
         return Expression("BOOL", lambda frame, mask: np.logical_not(operand.run(frame, mask)))
     raise Fault(f"{operator} {operand.kind} is not understood")
+
+
+def _conversion(node: Node, scope: Scope, arithmetic: Arithmetic) -> Expression:
+    """A number of the other kind; REAL_TO_INT rounds to the nearest, as in the standard but not in every compiler."""
+    (argument,) = part(node, "arguments").named_children
+    value = compile_expression(argument, scope, arithmetic)
+    if (word(part(node, "function")), value.kind) == ("INT_TO_REAL", "INT"):
+        return Expression("REAL", lambda frame, mask: arithmetic.compiler.between(value.run(frame, mask)))
+    if (word(part(node, "function")), value.kind) != ("REAL_TO_INT", "REAL"):
+        raise Fault(f"{node.text!r} is not understood")
+
+    def run(frame: Frame, mask: Mask) -> Value:
+        nearest = np.rint(value.run(frame, mask))
+        is_none = ~((nearest >= INT_LIMITS[0]) & (nearest <= INT_LIMITS[1]))
+        if somewhere(is_none, mask):
+            raise Fault("REAL_TO_INT has no INT result")
+        return np.where(is_none, 0, nearest).astype(np.int64)[()]
+
+    return Expression("INT", run)
 
 
 def _binary(node: Node, scope: Scope, arithmetic: Arithmetic) -> Expression:
