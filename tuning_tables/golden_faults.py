@@ -8,10 +8,10 @@ from typing import Final
 import numpy as np
 
 from tuning_tables.estimator import Estimator
-from tuning_tables.programs import observe
+from tuning_tables.programs import motion_filter, observe
 
 LARGEST_STEP_M: Final = float(observe.LARGEST_STEP_M)
-LEAST_SPEED_M_S: Final = float(observe.LEAST_SPEED_M_S)
+LEAST_SPEED_M_S: Final = float(motion_filter.LEAST_SPEED_M_S)
 
 Reading = tuple[float, float, float]
 """Path in m, measured speed in m/s, overpressure in kPa."""

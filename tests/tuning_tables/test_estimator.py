@@ -16,7 +16,8 @@ from tuning_tables.estimator import CAUTION, Estimator, begin
 from tuning_tables.held_table import lines_apart
 from tuning_tables.programs.alarms import HEAVIER_ALARM, LOST_ALARM, SENSOR_ALARM, alarms, table_after
 from tuning_tables.programs.estimate import UNSEEN
-from tuning_tables.programs.observe import LEAST_FACTOR, observe
+from tuning_tables.programs.motion_filter import LEAST_FACTOR
+from tuning_tables.programs.observe import observe
 
 PERIOD_S = 0.1
 BREAKS = (0.0, 1.85, 8.0, 12.5, 20.0, 30.0)

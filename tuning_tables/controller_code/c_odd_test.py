@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from tuning_tables.controller_code.c_choice import table_type, tables_of
 from tuning_tables.controller_code.c_code import c_names
-from tuning_tables.controller_code.code import ControllerCode
-from tuning_tables.controller_code.odd_tables import OddQuestion
+from tuning_tables.controller_code.code import ControllerCode, OddQuestion
 from tuning_tables.language.c99_data import hex_float
 from tuning_tables.language.records import Kind
 

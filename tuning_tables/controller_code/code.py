@@ -6,7 +6,7 @@ import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -17,9 +17,6 @@ from tuning_tables.language.reading import program_of
 from tuning_tables.language.records import Kind, Record, SizedRecord
 from tuning_tables.language.tree import Ask, Program
 from tuning_tables.language.walking import names_read, statements_in
-
-if TYPE_CHECKING:
-    from tuning_tables.controller_code.odd_tables import OddQuestion
 
 BEFORE: Final = "before_"
 """How the name of a field begins that sets a member of the state before its question."""
@@ -59,6 +56,9 @@ class Questions:
     rules: tuple[Rule, ...]
     rows: npt.NDArray[np.void]
 
+    def __post_init__(self) -> None:
+        self.rows.setflags(write=False)
+
     @property
     def asked(self) -> tuple[str, ...]:
         """The parameters that are numbers, each once."""
@@ -88,6 +88,23 @@ class Commanded:
     commanded_m_s: np.float32
     status: int
     chosen: Values | None
+
+
+Place = tuple[int, ...]
+"""A place in the axes of a member."""
+
+
+@dataclass(frozen=True)
+class OddQuestion:
+    """What is changed beforehand, and stays so: (member, place in its axes, number); then a rule, and its answer.
+
+    `given`: the numbers that the rule is asked with. A state has just begun.
+    """
+
+    changes: tuple[tuple[str, Place, float], ...]
+    rule: Rule
+    given: Mapping[str, float]
+    wanted: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,8 @@ from tuning_tables.programs.choose import Tables, blend, choose
 from tuning_tables.programs.decide import decide
 from tuning_tables.programs.estimate import ESTIMATE
 from tuning_tables.programs.line_table import LINE_TABLE
-from tuning_tables.programs.observe import begin_cut, observe
+from tuning_tables.programs.motion_filter import begin_cut
+from tuning_tables.programs.observe import observe
 from tuning_tables.self_test_size import SelfTestSize
 from tuning_tables.table_book import TableBook
 

@@ -7,30 +7,14 @@ these do not: gates before the entrance, commands at every sample, sizes out of 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from tuning_tables.controller_code.code import Rule, Values
+from tuning_tables.controller_code.code import OddQuestion, Place, Rule, Values
 from tuning_tables.language.records import SizedRecord
 from tuning_tables.programs.estimate import ESTIMATE
 from tuning_tables.programs.line_table import LOWER, UPPER, LineTable
-
-Place = tuple[int, ...]
-
-
-@dataclass(frozen=True)
-class OddQuestion:
-    """What is changed beforehand, and stays so: (member, place in its axes, number); then a rule, and its answer.
-
-    `given`: the numbers that the rule is asked with. A state has just begun.
-    """
-
-    changes: tuple[tuple[str, Place, float], ...]
-    rule: Rule
-    given: Mapping[str, float]
-    wanted: float
 
 
 def odd_questions(record: SizedRecord, first: Values, decide: Rule, observe: Rule) -> tuple[OddQuestion, ...]:
