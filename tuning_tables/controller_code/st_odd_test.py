@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import textwrap
+
 from tuning_tables.controller_code.code import ControllerCode, looked_at
-from tuning_tables.controller_code.st_code import st_names
+from tuning_tables.controller_code.st_code import WIDTH, st_names
 from tuning_tables.controller_code.st_test_block import TestBlock, block_text, check, test_name
 from tuning_tables.language.records import Kind, SizedRecord, st_name
 from tuning_tables.language.st_data import real
@@ -35,7 +37,8 @@ def odd_test(code: ControllerCode) -> TestBlock:
         block = f"{st_name(each.rule.name)}Block"
         (answer,) = program.answers
         wanted = real(each.wanted) if answer.kind is Kind.REAL else str(int(each.wanted))
-        body += [f"{block}({', '.join(given)});", *check(f"{block}.{st_name(answer.name)} <> {wanted}")]
+        body += textwrap.wrap(f"{block}({', '.join(given)});", WIDTH, subsequent_indent="    ")
+        body += [*check(f"{block}.{st_name(answer.name)} <> {wanted}")]
     note = "Table 0, changed into one in which every condition counts, then damaged."
     return TestBlock(name, block_text(code, name, note, True, variables, constants, body), 0)
 

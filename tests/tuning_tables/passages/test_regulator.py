@@ -48,7 +48,7 @@ def first_over(table: PassageTable, sensor: int) -> int:
 
 def pulse(table: PassageTable, state: npt.NDArray[np.float32], sensor: int, since_s: float, v_m_s: float) -> int:
     """The stage after a pair of a cut at v_m_s while stage 2 is in force and at rest."""
-    return at_pulse(held_by(table), state, sensor, since_s, 0.2 / v_m_s, 2, True)
+    return int(at_pulse(held_by(table), state, sensor, since_s, 0.2 / v_m_s, 2, True))
 
 
 def test_a_believed_pair_is_decided_by_its_row() -> None:

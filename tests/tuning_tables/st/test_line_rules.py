@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -26,9 +26,9 @@ from tuning_tables.programs.estimate import ESTIMATE
 from tuning_tables.programs.line_table import LINE_TABLE
 from tuning_tables.self_test_size import SMALL
 from tuning_tables.st_source import TABLE_FILE
-from tuning_tables.table_book import Status
+from tuning_tables.table_book import Status, TableBook
 
-BOOKS = {
+BOOKS: Mapping[str, Callable[[], TableBook]] = {
     "measured": sample_book,
     "estimated": estimating_book,
     "approached": approaching_book,
@@ -39,7 +39,7 @@ BOOKS = {
 READINGS, SAMPLES, COMMANDS = 250_000, 12_000, 3_000
 
 
-@pytest.fixture(scope="module", params=BOOKS.values(), ids=BOOKS)
+@pytest.fixture(scope="module", params=[*BOOKS.values()], ids=[*BOOKS])
 def asked(request: pytest.FixtureRequest) -> Questions:
     """Hard readings and commands of a book, with the answers of Python."""
     return ask(request.param(), READINGS, COMMANDS, 20261126)
