@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from synth.simulation.random_passes import RandomPasses
 from synth.simulation.sensor_fault_figures import FaultCase, FaultFigures, fault_figures, single_faults
 from synth.simulation.sensor_faults import together
 
-WIDE: Mapping[str, np.float32] = {
+WIDE: dict[str, Any] = {
     "least_m_s": np.float32(0.01),
     "greatest_m_s": np.float32(40.0),
     "acceleration_m_s2": np.float32(10.0),
