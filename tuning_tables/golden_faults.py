@@ -60,6 +60,17 @@ def wrong_at_first(estimator: Estimator) -> Iterator[Reading]:
         yield first + sample * step, speed, 0.0
 
 
+def leaping_after_three(estimator: Estimator) -> Iterator[Reading]:
+    """Three readings that agree, then far ones that leap on and on: none is believed, however many they are."""
+    first, last = float(estimator.work[0, 0]), float(estimator.work[0, -1])
+    leap = 12.0 * estimator.speed_noise_m_s + 1.0
+    leaps = [4.0 + leap * (1 + i % 2) for i in range(min(estimator.doubted_readings, 40) + 2)]
+    speeds = [4.0, 4.05, 3.95, *leaps, 4.0]
+    step = min((last - first) / len(speeds), 0.1)
+    for sample, speed in enumerate(speeds):
+        yield first + sample * step, speed, 0.0
+
+
 def rising_while_braked(estimator: Estimator) -> Iterator[Reading]:
     """Single readings that are the higher the later, while the brake works hard: what leaps depends on its work."""
     base, unit = hardest(estimator)

@@ -1,4 +1,4 @@
-"""Faults planted in a generated C text: every operator swapped, every number changed, every assignment left out."""
+"""Faults planted in a generated C text: operators swapped, numbers changed, assignments left out."""
 
 from __future__ import annotations
 
@@ -11,36 +11,25 @@ SWAPPED: Final = {
     "==": "!=", "!=": "==",
 }  # fmt: skip
 OPERATOR: Final = re.compile(r"(?<= )(?:[-+*/<>]|[<>=!]=|&&|\|\|)(?= |\n)")
-NUMBER: Final = re.compile(r"(?<![\w.])(?:\d+\.\d+f|0x[0-9a-f.]+p[-+]\d+f|\d+)(?![\w.])")
-ASSIGNED: Final = re.compile(r"^ +(?:\*?\w+|[\w>\-\[\]]+) = [^;]*;$", re.M)
+CONSTANT: Final = re.compile(r"^#define (\w+) (-?0x\S+f)", re.M)
+ASSIGNED: Final = re.compile(r"^ +(?:\*?\w+|[\w>\-\[\].]+) = [^;]*;$", re.M)
+COARSE: Final = ("GATE_SQUARED", "FEW_READINGS")
+"""Constants of which a hundredth is lost when it comes to readings."""
+
 COMMENT: Final = re.compile(r"/\*.*?\*/", re.S)
 
 
 def planted_faults(code: str) -> Iterator[tuple[str, str]]:
     """(what was changed, the code with it) for every fault, in the order of the text."""
-    hidden = [range(*match.span()) for match in COMMENT.finditer(code)]
-
-    def is_hidden(at: int) -> bool:
-        return any(at in each for each in hidden)
-
+    hidden = {at for match in COMMENT.finditer(code) for at in range(*match.span())}
     for match in OPERATOR.finditer(code):
-        if not is_hidden(match.start()):
+        if match.start() not in hidden:
             yield changed(code, match, SWAPPED[match[0]])
-    for match in NUMBER.finditer(code):
-        if not is_hidden(match.start()):
-            yield changed(code, match, another(match[0]))
+    for match in CONSTANT.finditer(code):
+        yield changed(code, match, f"#define {match[1]} ({match[2]} * {1.5 if match[1] in COARSE else 1.01}f)")
     for match in ASSIGNED.finditer(code):
-        if not is_hidden(match.start()):
+        if match.start() not in hidden:
             yield changed(code, match, "(void)0;")
-
-
-def another(number: str) -> str:
-    """A number beside it: a last bit or so, or one more."""
-    if number == "0.0f":
-        return "0.001f"
-    if number.endswith("f"):
-        return f"({number} * 1.01f)"
-    return str(int(number) + 1)
 
 
 def changed(code: str, match: re.Match[str], to: str) -> tuple[str, str]:

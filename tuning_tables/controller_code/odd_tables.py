@@ -69,6 +69,8 @@ def decisions(record: SizedRecord) -> Iterator[Asked]:
         # Stage 1, too, is lowered at this speed: the opposite answer ends the command.
         turned = (("coefficient", (1, LOWER, 0), 5.0), ("at_any_time", (), 0.0), ("stages", (), 3.0))
         yield turned, at(0, 0.5, 4.0)
+        behind = (("stages", (), 2.0), ("has_line", (2, LOWER), 1.0), ("coefficient", (2, LOWER, 0), 5.0))
+        yield behind, at(2, 0.5, 1.0)
 
 
 def at(stage: int, s_m: float, v_m_s: float) -> Mapping[str, float]:
