@@ -124,12 +124,16 @@ def loading(book: TableBook) -> tuple[int, int]:
     return executed(program, "RETARDER_LOAD", TableNo=0, Table=program.new("RETARDER_TABLE"))
 
 
+def other_class(table: ControllerTable) -> ControllerTable:
+    """The table as one of another category."""
+    return replace(table, id=f"other {table.id}", cut=replace(table.cut, category="X", category_number=16))
+
+
 def measured(book: TableBook) -> Mapping[str, tuple[int, ...]]:
     """All figures of the page by their labels."""
     plain, sloped, estimated = (program_of(each) for each in (book, sloped_book(book.tables), estimating(book)))
     tables = len(book.tables)
-    other = {"category": "X", "category_number": 16}
-    others = [replace(table, id=f"other {table.id}", cut=replace(table.cut, **other)) for table in book.tables]
+    others = [other_class(table) for table in book.tables]
     between, more = choice(book, 2.5), choice(TableBook((*book.tables, *others)), 2.5)
     small, full = (
         Program(b"".join(texts_of(book, each).values())).types["RETARDER_SELF_TEST"] for each in (SMALL, FULL)
