@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -12,6 +12,17 @@ import numpy.typing as npt
 LINE_LENGTH: Final = 100
 LONGEST_ARRAY: Final = 999
 """Entries of one constant array; longer ones are split, because compilers set limits of their own."""
+
+
+def pieces(length: int) -> Iterator[tuple[str, int, int]]:
+    """Of an array that may be too long for one constant: what each name ends with, where it begins, its length."""
+    for number, start in enumerate(range(0, length, LONGEST_ARRAY)):
+        yield f"_{number}" if number else "", start, min(LONGEST_ARRAY, length - start)
+
+
+def place_of(start: int) -> str:
+    """The place in the whole array of the element Index of a piece."""
+    return f"Index + {start}" if start else "Index"
 
 
 def real(value: float | np.floating) -> str:

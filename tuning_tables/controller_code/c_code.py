@@ -69,11 +69,16 @@ STATUSES: Final = """\
 
 SELECT_NOTE: Final = """\
 Fill `chosen` with the table for a cut of this category and number of axles that shall leave with commanded_m_s.
-Candidates are the tables of the category and number of axles; of several masses the largest. Between two targets it is
-what lies between the two tables, where they differ in nothing but target and lines; else, and above the highest target,
+Candidates are the tables of the category and number of axles; of several masses the largest. {between}
 the table of the next target below the command: the cut never leaves faster than commanded. Returns how it ended. Where
 that is below 0, or `chosen` is null, `chosen` is left as it was: then whoever commands must decide, for no table here is
 known to be safe."""
+
+BETWEEN_NOTE: Final = (
+    "Between two targets it is what lies between the two tables, where they differ in nothing but target and lines; else, "
+    "and above the highest target,"
+)
+SLOWER_NOTE: Final = "Between two targets, and above the highest, it is"
 
 SELECT: Final = """\
 int32_t {select}(int32_t category, int32_t axles, float commanded_m_s, {type} *chosen)
@@ -146,7 +151,7 @@ def c_header(code: ControllerCode) -> str:
             f"extern const {table_type(code)} {tables_of(code)}[];",
             "",
             *(line for rule in code.rules for line in declared(code, rule, names)),
-            *([*c_comment(SELECT_NOTE.replace("\n", " ")),
+            *([*c_comment(SELECT_NOTE.format(between=BETWEEN_NOTE if code.blends else SLOWER_NOTE).replace("\n", " ")),
                f"int32_t {select_of(code)}(int32_t category, int32_t axles, float commanded_m_s, "
                f"{table_type(code)} *chosen);", ""] if code.chooses else []),
             f"/* 1 if the checksum of the table is right (in ROM, or the copy that {select_of(code)} has made), else 0. */",

@@ -19,7 +19,7 @@ from tuning_tables.controller_code.c_code import (
     table_type,
     tables_of,
 )
-from tuning_tables.controller_code.code import ControllerCode, Questions, Rule, kinds_of
+from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
 from tuning_tables.language.records import Kind
 
 FIRST_ANSWER: Final = 4
@@ -143,11 +143,10 @@ def is_right(code: ControllerCode, place: int, questions: Questions) -> str:
     if "table" in kinds:
         lines.append(f"    const {table_type(code)} *table = &{tables_of(code)}[golden->table];")
     for each in states:
-        lines += [
-            "    if (golden->begins == 1) {",
-            f"        {begin_of(code, each.record.name)}({each.record.name});",
-            "    }",
-        ]
+        state = each.record.name
+        lines += [f"    {state}->{name} = float_of(golden->{BEFORE}{name});" for name in questions.members_before]
+        if "begins" in kinds:
+            lines += ["    if (golden->begins == 1) {", f"        {begin_of(code, state)}({state});", "    }"]
     tests = []
     for program in programs:
         given = []

@@ -6,7 +6,7 @@ import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,9 @@ from tuning_tables.language.reading import program_of
 from tuning_tables.language.records import Kind, Record, SizedRecord
 from tuning_tables.language.tree import Ask, Program
 from tuning_tables.language.walking import names_read, statements_in
+
+BEFORE: Final = "before_"
+"""How the name of a field begins that sets a member of the state before its question."""
 
 Values = Mapping[str, Any]
 """Numbers and arrays by member, with the shapes of a sized record."""
@@ -43,9 +46,10 @@ class HeldTable:
 class Questions:
     """Questions to rules, one after the other, and the right answers: rows of a structured array.
 
-    about: what they ask, in a word or two. rules: asked in this order at each row. Fields of `rows`: "table", the number
-    of the table; "begins", whether the state is forgotten before; the numbers that the rules take, by the names of their
-    parameters; what they answer, by the names of their answers; and members of the state, as they stand afterwards.
+    about: what they ask, in a word or two. rules: asked in this order at each row. Fields of `rows`: "table", the
+    number of the table; "before_" and a member, what that member of the state is set to before; "begins", whether the
+    state is forgotten then; the numbers that the rules take, by the names of their parameters; what they answer, by the
+    names of their answers; and members of the state, as they stand afterwards.
     """
 
     about: str
@@ -63,7 +67,13 @@ class Questions:
     def expected(self) -> tuple[str, ...]:
         """The answers, and the members of the state."""
         names = self.rows.dtype.names or ()
-        return tuple(name for name in names if name not in ("table", "begins", *self.asked))
+        others = ("table", "begins", *self.asked)
+        return tuple(name for name in names if name not in others and not name.startswith(BEFORE))
+
+    @property
+    def members_before(self) -> tuple[str, ...]:
+        """The members of the state that each question sets, so that it stands for itself."""
+        return tuple(name.removeprefix(BEFORE) for name in self.rows.dtype.names or () if name.startswith(BEFORE))
 
 
 @dataclass(frozen=True)

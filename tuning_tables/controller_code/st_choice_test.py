@@ -8,7 +8,15 @@ import numpy as np
 
 from tuning_tables.controller_code.code import Commanded, ControllerCode
 from tuning_tables.controller_code.st_code import select_block_of, table_type
-from tuning_tables.controller_code.st_test_block import TestBlock, block_text, check, compared, loop, test_name
+from tuning_tables.controller_code.st_test_block import (
+    TestBlock,
+    block_text,
+    check,
+    compared,
+    loop,
+    short_name,
+    test_name,
+)
 from tuning_tables.st_literals import LONGEST_ARRAY, int_array, is_portable, real_array
 
 
@@ -16,7 +24,7 @@ def choice_tests(code: ControllerCode, line_checks: int) -> Iterator[TestBlock]:
     """The golden choices by status and target, and some of those between two tables by every number."""
     known = [each for each in code.commands if is_portable(np.array([each.commanded_m_s]))[0]]
     for part, start in enumerate(range(0, len(known), LONGEST_ARRAY)):
-        name = f"{test_name(code)}_CHOICES" + f"_{part}" * bool(part)
+        name = f"{short_name(code)}_CHOICES" + f"_{part}" * bool(part)
         yield TestBlock(name, choices_text(code, name, known[start : start + LONGEST_ARRAY]), None)
     between = [each for each in known if each.status == 1][::3][:line_checks]
     for place, each in enumerate(between):

@@ -14,7 +14,7 @@ from tuning_tables.language.alike import alike_program
 from tuning_tables.language.records import Kind, Member, st_name
 from tuning_tables.language.st_data import of_tables, st_type
 from tuning_tables.language.structured_text import StNames, st_block
-from tuning_tables.st_literals import int_array, real_array
+from tuning_tables.st_literals import int_array, pieces, place_of, real_array
 
 WIDTH: Final = 110
 
@@ -31,7 +31,7 @@ ARITHMETIC: Final = (
 SELECT: Final = """\
 FUNCTION_BLOCK {select}
 (* The table for a cut. Candidates are the tables of its category and number of axles; of several masses the largest.
-   Between two targets: what lies between the two tables, where they differ in nothing but target and lines. Otherwise
+   {between_note}
    the table of the next target below the command: the cut never leaves faster than commanded. *)
 VAR_INPUT
     Category : INT; (* number as in the head of this file *)
@@ -61,6 +61,7 @@ END_IF;
 END_FUNCTION_BLOCK
 """
 
+BLENDED_NOTE: Final = "Between two targets: what lies between the two tables, where they differ in nothing but target and lines. Otherwise"
 BLENDED: Final = """\
     Loader(TableNo := Chooser.Faster, Table := Faster);
     Comparer(Slower := Table, Faster := Faster);
@@ -75,6 +76,7 @@ BLENDERS: Final = """\
     Blender : {prefix}BLEND;
     Faster : {type};
 """
+SLOWER_NOTE: Final = "The command equal to a target: that table. Otherwise"
 SLOWER: Final = """\
     Status := 2;"""
 
@@ -151,8 +153,10 @@ def st_units(code: ControllerCode) -> list[str]:
 def select_block(code: ControllerCode) -> str:
     """The block that chooses a table."""
     words = {"type": table_type(code), "prefix": st_names(code).prefix}
-    more, between = (BLENDERS.format(**words), BLENDED) if code.blends else ("", SLOWER)
-    return SELECT.format(select=select_block_of(code), load=load_of(code), more=more, between=between, **words)
+    words |= {"select": select_block_of(code), "load": load_of(code)}
+    if code.blends:
+        return SELECT.format(more=BLENDERS.format(**words), between=BLENDED, between_note=BLENDED_NOTE, **words)
+    return SELECT.format(more="", between=SLOWER, between_note=SLOWER_NOTE, **words)
 
 
 def head(code: ControllerCode) -> str:
@@ -214,12 +218,18 @@ def scalar_array(code: ControllerCode, name: str, member: Member) -> str:
     return real_array(of_tables(name), values) if member.kind is Kind.REAL else int_array(of_tables(name), values)
 
 
-def member_array(name: str, member: Member, values: Any) -> str:
-    """An array of a table as a constant array of one axis, a row of its last axis a line."""
+def member_arrays(code: ControllerCode, name: str, place: int, values: Any) -> Iterator[str]:
+    """An array of a table as constant arrays of one axis, a row of its last axis a line."""
     array = np.asarray(values)
-    if member.kind is Kind.REAL:
-        return real_array(name, array.ravel(), array.shape[-1] if array.ndim > 1 else 0)
-    return int_array(name, array.ravel())
+    row = array.shape[-1] if array.ndim > 1 else 0
+    for ending, start, count in pieces(array.size):
+        stem = f"{st_name(name).partition('_')[0]}_{place}{ending}"
+        yield member_array(stem, code.table.members[name], array.ravel()[start : start + count], row)
+
+
+def member_array(name: str, member: Member, values: Any, row: int = 0) -> str:
+    """Numbers of a member as a constant array."""
+    return real_array(name, values, row) if member.kind is Kind.REAL else int_array(name, values)
 
 
 def load_block(code: ControllerCode) -> str:
@@ -258,8 +268,7 @@ def part_of_tables(code: ControllerCode, part: str, group: Sequence[str]) -> tup
         if content not in found:
             place = found[content] = len(found)
             declared.append(f"    (* {place}: {comment_text(table.id)} *)")
-            declared += [member_array(f"{st_name(name).partition('_')[0]}_{place}", code.table.members[name], table.values[name])
-                         for name in group]  # fmt: skip
+            declared += [array for name in group for array in member_arrays(code, name, place, table.values[name])]
             cases += [f"{place}:", *(f"    {line}" for line in copied(code, group, place))]
         number_of.append(found[content])
     name = f"{part.capitalize()}Part"
@@ -272,11 +281,11 @@ def part_of_tables(code: ControllerCode, part: str, group: Sequence[str]) -> tup
 
 def copied(code: ControllerCode, group: Sequence[str], place: int) -> Iterator[str]:
     """Loops that copy the arrays of a group, those of one length together."""
-    for length in dict.fromkeys(code.table.length(name) for name in group):
-        yield "Index := 0;"
-        yield f"WHILE Index < {length} DO"
-        for name in group:
-            if code.table.length(name) == length:
-                yield f"    Table.{st_name(name)}[Index] := {st_name(name).partition('_')[0]}_{place}[Index];"
-        yield "    Index := Index + 1;"
-        yield "END_WHILE;"
+    loops: dict[tuple[int, int], list[str]] = {}
+    for name in group:
+        stem = f"{st_name(name).partition('_')[0]}_{place}"
+        for ending, start, count in pieces(code.table.length(name)):
+            statement = f"    Table.{st_name(name)}[{place_of(start)}] := {stem}{ending}[Index];"
+            loops.setdefault((start, count), []).append(statement)
+    for (_, count), statements in loops.items():
+        yield from ("Index := 0;", f"WHILE Index < {count} DO", *statements, "    Index := Index + 1;", "END_WHILE;")

@@ -14,10 +14,18 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.category_names import comment_text
-from tuning_tables.controller_code.code import ControllerCode, Questions, Rule, kinds_of
+from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
 from tuning_tables.controller_code.st_choice_test import choice_tests
 from tuning_tables.controller_code.st_code import load_of, st_names, table_type
-from tuning_tables.controller_code.st_test_block import TestBlock, block_text, check, compared, loop, test_name
+from tuning_tables.controller_code.st_test_block import (
+    TestBlock,
+    block_text,
+    check,
+    compared,
+    loop,
+    short_name,
+    test_name,
+)
 from tuning_tables.language.records import Kind, st_name
 from tuning_tables.st_literals import LONGEST_ARRAY, int_array, is_portable, real_array
 
@@ -111,21 +119,21 @@ def questions_tests(code: ControllerCode, questions: Questions) -> Iterator[Test
     for number in dict.fromkeys(tables.tolist()):
         rows = kept[tables == number]
         for part, start in enumerate(range(0, len(rows), LONGEST_ARRAY)):
-            name = f"{test_name(code)}_{questions.about.upper()}_{number}" + f"_{part}" * bool(part)
+            name = f"{short_name(code)}_{questions.about.upper()}_{number}" + f"_{part}" * bool(part)
             yield TestBlock(
                 name, questions_text(code, name, questions, rows[start : start + LONGEST_ARRAY], number), number
             )
 
 
 def portable(questions: Questions) -> npt.NDArray[np.bool_]:
-    """Which rows have portable numbers; of questions that begin a state, those of the sequences that have them all."""
+    """Which rows have portable numbers; where a state goes on from row to row, those of whole sequences that have."""
     names = [name for name in questions.rows.dtype.names or () if questions.rows.dtype[name].kind == "f"]
     # What nothing looks at may be anything.
     fine = np.ones(len(questions.rows), dtype=bool)
     for name in names:
         column = np.ascontiguousarray(questions.rows[name])
         fine &= is_portable(column) | (np.isnan(column).all() if name in questions.asked else False)
-    if "begins" in (questions.rows.dtype.names or ()):
+    if "begins" in (questions.rows.dtype.names or ()) and not questions.members_before:
         sequence = np.cumsum(questions.rows["begins"])
         whole = {each for each in np.unique(sequence) if fine[sequence == each].all()}
         fine = np.isin(sequence, list(whole))
@@ -154,14 +162,16 @@ def questions_text(
             f"{instance(rule)} : {names.block(code.program(rule))}",
             f"{state} : {names.types[each.record.name]}",
         ]
-        body += ["IF Begins[Index] = 1 THEN", f"    {instance(rule)}({state} := {state});", "END_IF;"]
+        body += [f"{state}.{st_name(name)} := {held(BEFORE + name)}[Index];" for name in questions.members_before]
+        if "begins" in kinds:
+            body += ["IF Begins[Index] = 1 THEN", f"    {instance(rule)}({state} := {state});", "END_IF;"]
     for rule, program in zip(questions.rules, programs, strict=True):
         given = []
         for parameter in program.parameters:
             if parameter.record is not None:
                 value = "Table" if not parameter.record.is_state else st_name(parameter.name)
             elif parameter.name in kinds:
-                value = f"{held(parameter.name)}[Index]"
+                value = f"{held(parameter.name)}[Index]" + " = 1" * (parameter.kind is Kind.BOOL)
             else:
                 continue
             given.append(f"{st_name(parameter.name)} := {value}")

@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 
 from tuning_tables.controller_code.code import ControllerCode, Values
-from tuning_tables.controller_code.st_code import table_type
-from tuning_tables.language.records import Kind, st_name
-from tuning_tables.st_literals import int_array, real_array
+from tuning_tables.controller_code.st_code import member_array, table_type
+from tuning_tables.language.records import st_name
+from tuning_tables.st_literals import pieces, place_of
 
 CHECK: Final = """\
 IF {differs} THEN
@@ -58,6 +58,11 @@ def test_name(code: ControllerCode) -> str:
     return f"RETARDER{code.ending.upper()}_TEST"
 
 
+def short_name(code: ControllerCode) -> str:
+    """How the names of blocks with questions begin: with all that follows they have 30 characters at most."""
+    return test_name(code) if not code.ending else f"RETARDER{code.ending.upper()}"
+
+
 def block_text(
     code: ControllerCode, name: str, note: str, table: bool, variables: list[str], constants: list[str], body: list[str]
 ) -> str:
@@ -91,9 +96,11 @@ def compared(code: ControllerCode, values: Values) -> tuple[list[str], list[str]
     for name, member in code.table.members.items():
         array = np.atleast_1d(np.asarray(values[name])).ravel()
         twin = st_name(name).partition("_")[0]
-        constants.append(real_array(twin, array) if member.kind is Kind.REAL else int_array(twin, array))
-        if member.axes:
-            body += loop(len(array), check(f"Table.{st_name(name)}[Index] <> {twin}[Index]"))
-        else:
+        for ending, start, count in pieces(len(array)):
+            constants.append(member_array(f"{twin}{ending}", member, array[start : start + count]))
+            if member.axes:
+                differs = f"Table.{st_name(name)}[{place_of(start)}] <> {twin}{ending}[Index]"
+                body += loop(count, check(differs))
+        if not member.axes:
             numbers.append(f"(Table.{st_name(name)} <> {twin}[0])")
     return constants, [*check("\n    OR ".join(numbers)), *body]
