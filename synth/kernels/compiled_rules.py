@@ -17,14 +17,17 @@ RULES = "tuning_tables.programs."
 
 
 @cache
-def compiled_rule(rule: Callable[..., Any]) -> Any:
-    """The rule as numba compiles it, with the rules that it asks."""
+def compiled_rule(rule: Callable[..., Any], fresh: bool = False) -> Any:
+    """The rule as numba compiles it, with the rules that it asks.
+
+    `fresh`: for this process alone, without the cache on disk; a division by 0 then gives what it does in numpy.
+    """
     found = {name: rule.__globals__.get(name) for name in rule.__code__.co_names}
     asked = {
-        name: compiled_rule(each)
+        name: compiled_rule(each, fresh)
         for name, each in found.items()
         if isinstance(each, FunctionType) and each.__module__.startswith(RULES)
     }
     function = FunctionType(rule.__code__, {**rule.__globals__, **asked}, rule.__name__)
     function.__qualname__ = rule.__qualname__
-    return njit(cache=True, nogil=True)(function)
+    return njit(nogil=True, error_model="numpy")(function) if fresh else njit(cache=True, nogil=True)(function)

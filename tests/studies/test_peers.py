@@ -86,7 +86,7 @@ class TableAsPeer:
         rule, law = self.controller.rule, self.controller.law()
         at_rest = not isinstance(law, AnyTimeLaw)
         table = law if isinstance(law, AnyTimeLaw) else no_table()._replace(rule=rule)
-        return Peer(BY_TABLE, table, NO_PREDICTION, NO_PULSES, at_rest, rule.estimator_parameters, rule.estimator_work)
+        return Peer(BY_TABLE, table, NO_PREDICTION, NO_PULSES, at_rest, rule.table)
 
 
 @pytest.mark.parametrize("make", CONTROLLERS.values(), ids=CONTROLLERS)

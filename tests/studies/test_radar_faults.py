@@ -26,7 +26,7 @@ from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop, simulate
 from synth.simulation.random_passes import RandomPasses, random_passes
 from tests.synth.case_factory import make_plant, make_table
-from tuning_tables.estimator import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM
+from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM
 
 
 @pytest.fixture(scope="module")

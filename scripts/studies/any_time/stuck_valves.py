@@ -69,7 +69,7 @@ class StuckLoop:
         if isinstance(controller, LineController):
             controller = replace(controller, decisions=Decisions.AT_ANY_TIME)
         law = controller.law()
-        if not isinstance(law, AnyTimeLaw) or law.rule.estimator_work.shape[1] > 0 or law.rule.lead_s != 0.0:
+        if not isinstance(law, AnyTimeLaw) or law.rule.table.breaks > 0 or law.rule.lead_s != 0.0:
             raise ValueError("stuck valves: lines for measured speeds, or a table for commands at any time")
         return law
 

@@ -11,10 +11,10 @@ from plant_models.frozen_arrays import frozen_arrays
 from scripts.studies.in_the_loop.controller_process import Controller
 from scripts.studies.in_the_loop.hard_readings import hard_commands, hard_readings
 from scripts.studies.in_the_loop.hard_samples import hard_samples
+from scripts.studies.in_the_loop.held_words import held_words, table_words
 from scripts.studies.in_the_loop.observed import observed, same_nan
-from tuning_tables import Decisions, decide_many
-from tuning_tables.table_block import LAYOUT, approach_m, block_of, block_size
-from tuning_tables.table_book import Status, TableBook
+from tuning_tables import decide_many
+from tuning_tables.table_book import TableBook
 
 
 @frozen_arrays
@@ -43,8 +43,7 @@ class Tracks:
 class Differences:
     """How many answers of a controller are others, words of tables that are others, and what its self-test says.
 
-    `tables` counts tables with another approach or other times of decision, too. `estimates`: samples after which the
-    speed or anything in the estimate has another bit; a NaN is as good as any.
+    `estimates`: samples after which the speed or anything in the estimate has another bit; a NaN is as good as any.
     """
 
     decisions: int
@@ -78,23 +77,14 @@ def differences(controller: Controller, questions: Questions, tracks: Tracks) ->
     statuses, chosen = controller.select(questions.commands)
     wrong = (statuses != questions.statuses) | (chosen != questions.chosen).any(axis=1)
     astray = (same_nan(controller.observe(tracks.samples)) != same_nan(tracks.estimates)).any(axis=1)
-    words = np.array([block_of(book, number).words for number in range(len(book.tables))])
+    words = np.array([held_words(book, number) for number in range(len(book.tables))])
     return Differences(
         decisions=int(np.count_nonzero(controller.decide(questions.readings) != questions.decisions)),
         choices=int(np.count_nonzero(wrong)),
         estimates=int(np.count_nonzero(astray)),
-        tables=int(np.count_nonzero(controller.dump() != words)) + wrongly_told(controller, book),
+        tables=int(np.count_nonzero(controller.dump() != words)),
         self_test=controller.self_test(),
     )
-
-
-def wrongly_told(controller: Controller, book: TableBook) -> int:
-    """Of how many tables the controller tells another approach or entrance stage, or other times of decision."""
-    blocks = [block_of(book, number) for number in range(len(book.tables))]
-    right = [(float(approach_m(block.table)), block.table.entrance_stage) for block in blocks]
-    times = [table.decisions is Decisions.AT_ANY_TIME for table in book.tables]
-    told = zip(controller.approaches(), controller.at_any_time(), strict=True)
-    return sum(found != due for found, due in zip(told, zip(right, times, strict=True), strict=True))
 
 
 def decisions_of(book: TableBook, readings: NDArray[np.void]) -> NDArray[np.int32]:
@@ -109,16 +99,12 @@ def decisions_of(book: TableBook, readings: NDArray[np.void]) -> NDArray[np.int3
 
 def choices_of(book: TableBook, commands: NDArray[np.void]) -> tuple[NDArray[np.int32], NDArray[np.uint32]]:
     """What `TableBook.choose` answers, as the controller writes it: words of no table are 0."""
-    size = block_size(book)
-    chosen = np.zeros((len(commands), size.words), np.uint32)
+    chosen = np.zeros((len(commands), table_words(book)), np.uint32)
     statuses = np.empty(len(commands), np.int32)
     names = {number: name for name, number in book.category_numbers.items()}
-    for place, (layout, category, axles, speed) in enumerate(commands.tolist()):
-        if layout != LAYOUT:
-            statuses[place] = Status.OTHER_LAYOUT
-            continue
+    for place, (category, axles, speed) in enumerate(commands.tolist()):
         choice = book.choose(names.get(category, "no category"), axles, speed)
         statuses[place] = choice.status
         if choice.table is not None:
-            chosen[place] = block_of(book, choice.numbers[0], choice.table, size).words
+            chosen[place] = held_words(book, choice.numbers[0], choice.table)
     return statuses, chosen

@@ -1,17 +1,15 @@
 /* An exported table book as a process that answers through its standard input and output; words in the machine's order.
  *
- *   decide          for {uint32 table, int32 stage, float s_m, float v_m_s, float pressure_kpa}: int32 stage to command;
+ *   decide          for {int32 table, int32 stage, float s_m, float v_m_s, float pressure_kpa}: int32 stage to command;
  *                   all of a stream
- *   observe         for {uint32 table, uint32 start, float s_m, float v_m_s, float overpressure_kpa, 8 words}: the
- *                   estimated speed, the 16 words of the estimate and the alarms; all of a stream. start 0: the estimate goes on,
- *                   1: it begins, 2: it is the 8 words, whatever they are
+ *   observe         for {int32 table, int32 start, float s_m, float v_m_s, float overpressure_kpa, 16 words}: the
+ *                   estimated speed, the 16 words of the estimate and the alarms; all of a stream. start 0: the estimate
+ *                   goes on, 1: it begins, 2: it is the 16 words, whatever they are
  *   serve N         for {int32 what, float s_m, float v_m_s, float kpa}, at once: what OBSERVE, or BEGIN and observe:
  *                   float estimated speed of table N, kpa being the overpressure; else the int32 stage that it
  *                   commands, `what` being the stage and kpa the pressure
- *   select          for {uint32 layout, uint32 category, uint32 axles, float speed}: int32 status, the table (zeros if none)
+ *   select          for {int32 category, int32 axles, float speed}: int32 status, the table (zeros if none)
  *   intact          for a table: int32, whether its checksum is right
- *   approach        nothing: for every table float approach in m, int32 entrance stage
- *   times           nothing: for every table int32, whether it decides at any time
  *   dump            all tables
  *   self-test       nothing; the exit code is the fault
  */
@@ -24,6 +22,7 @@
 enum { OBSERVE = -1, BEGIN = -2 }; /* no stages of a closed loop */
 
 typedef struct reading {
+    int32_t table;
     int32_t stage;
     float s_m;
     float v_m_s;
@@ -38,8 +37,8 @@ typedef struct request {
 } request;
 
 typedef struct sample {
-    uint32_t table;
-    uint32_t start;
+    int32_t table;
+    int32_t start;
     float s_m;
     float v_m_s;
     float overpressure_kpa;
@@ -48,31 +47,23 @@ typedef struct sample {
 
 typedef char estimate_has_sixteen_words[(sizeof(retarder_estimate) == 64u) ? 1 : -1];
 
-static void answer(int value)
+static void answer(int32_t word)
 {
-    const int32_t word = value;
     if (fwrite(&word, sizeof word, 1, stdout) != 1) {
         exit(9);
     }
 }
 
-static int decision(const retarder_table *table, int stage, float s_m, float v_m_s, float pressure_kpa)
+static const retarder_table *numbered(int32_t number)
 {
-#ifdef RETARDER_GAUGE
-    return retarder_decide_at_pressure(table, stage, s_m, v_m_s, pressure_kpa);
-#else
-    (void)pressure_kpa;
-    return retarder_decide(table, stage, s_m, v_m_s);
-#endif
+    return number >= 0 && number < retarder_table_count ? &retarder_tables[number] : 0;
 }
 
 static int decide(void)
 {
-    uint32_t number;
     reading now;
-    while (fread(&number, sizeof number, 1, stdin) == 1 && fread(&now, sizeof now, 1, stdin) == 1) {
-        answer(decision(number < retarder_table_count ? &retarder_tables[number] : 0, now.stage, now.s_m, now.v_m_s,
-                        now.pressure_kpa));
+    while (fread(&now, sizeof now, 1, stdin) == 1) {
+        answer(retarder_decide(numbered(now.table), now.stage, now.s_m, now.v_m_s, now.pressure_kpa));
     }
     return 0;
 }
@@ -87,44 +78,43 @@ static void answer_float(float value)
 static int observe(void)
 {
     sample now;
-    uint32_t alarms;
     retarder_estimate estimate;
     retarder_begin(&estimate);
     while (fread(&now, sizeof now, 1, stdin) == 1) {
-        if (now.start == 1u) {
+        if (now.start == 1) {
             retarder_begin(&estimate);
-        } else if (now.start == 2u) {
+        } else if (now.start == 2) {
             estimate = now.given;
         }
-        const retarder_table *table = now.table < retarder_table_count ? &retarder_tables[now.table] : 0;
+        const retarder_table *table = numbered(now.table);
         answer_float(retarder_observe(table, &estimate, now.s_m, now.v_m_s, now.overpressure_kpa));
-        alarms = retarder_alarms(table, &estimate);
-        if (fwrite(&estimate, sizeof estimate, 1, stdout) != 1 || fwrite(&alarms, sizeof alarms, 1, stdout) != 1) {
+        if (fwrite(&estimate, sizeof estimate, 1, stdout) != 1) {
             return 9;
         }
+        answer(retarder_alarms(table, &estimate));
     }
     return 0;
 }
 
-static int serve(unsigned number)
+static int serve(int32_t number)
 {
     request now;
     retarder_estimate estimate;
     retarder_begin(&estimate);
-    if (number >= retarder_table_count) {
+    const retarder_table *table = numbered(number);
+    if (table == 0) {
         return 8;
     }
     setvbuf(stdin, 0, _IONBF, 0);
     setvbuf(stdout, 0, _IONBF, 0);
     while (fread(&now, sizeof now, 1, stdin) == 1) {
-        const retarder_table *table = &retarder_tables[number];
         if (now.what == BEGIN) {
             retarder_begin(&estimate);
         }
         if (now.what == BEGIN || now.what == OBSERVE) {
             answer_float(retarder_observe(table, &estimate, now.s_m, now.v_m_s, now.kpa));
         } else {
-            answer(decision(table, now.what, now.s_m, now.v_m_s, now.kpa));
+            answer(retarder_decide(table, now.what, now.s_m, now.v_m_s, now.kpa));
         }
     }
     return 0;
@@ -133,15 +123,14 @@ static int serve(unsigned number)
 static int choose(void)
 {
     struct {
-        uint32_t layout;
-        uint32_t category;
-        uint32_t axles;
+        int32_t category;
+        int32_t axles;
         float speed_m_s;
     } command;
     while (fread(&command, sizeof command, 1, stdin) == 1) {
         retarder_table chosen;
         memset(&chosen, 0, sizeof chosen);
-        answer(retarder_select(command.layout, command.category, command.axles, command.speed_m_s, &chosen));
+        answer(retarder_select(command.category, command.axles, command.speed_m_s, &chosen));
         if (fwrite(&chosen, sizeof chosen, 1, stdout) != 1) {
             return 9;
         }
@@ -158,29 +147,6 @@ static int intact(void)
     return 0;
 }
 
-static int approach(void)
-{
-    uint32_t number;
-    for (number = 0u; number < retarder_table_count; ++number) {
-        answer_float(retarder_approach(&retarder_tables[number]));
-        answer(retarder_entrance_stage(&retarder_tables[number]));
-    }
-    return 0;
-}
-
-static int times(void)
-{
-    uint32_t number;
-    for (number = 0u; number < retarder_table_count; ++number) {
-#ifdef RETARDER_AT_ANY_TIME
-        answer(retarder_at_any_time(&retarder_tables[number]));
-#else
-        answer(0);
-#endif
-    }
-    return 0;
-}
-
 int main(int count, char **arguments)
 {
     const char *mode = count > 1 ? arguments[1] : "";
@@ -191,7 +157,7 @@ int main(int count, char **arguments)
         return observe();
     }
     if (strcmp(mode, "serve") == 0 && count > 2) {
-        return serve((unsigned)strtoul(arguments[2], 0, 10));
+        return serve((int32_t)strtol(arguments[2], 0, 10));
     }
     if (strcmp(mode, "select") == 0) {
         return choose();
@@ -199,21 +165,15 @@ int main(int count, char **arguments)
     if (strcmp(mode, "intact") == 0) {
         return intact();
     }
-    if (strcmp(mode, "approach") == 0) {
-        return approach();
-    }
-    if (strcmp(mode, "times") == 0) {
-        return times();
-    }
     if (strcmp(mode, "dump") == 0) {
-        return fwrite(retarder_tables, sizeof retarder_tables[0], retarder_table_count, stdout) == retarder_table_count
-            ? 0 : 9;
+        const size_t count_of_tables = (size_t)retarder_table_count;
+        return fwrite(retarder_tables, sizeof retarder_tables[0], count_of_tables, stdout) == count_of_tables ? 0 : 9;
     }
     if (strcmp(mode, "self-test") == 0) {
         uint32_t where = 0u;
-        const int fault = retarder_self_test(&where);
-        printf("fault %d at %lu\n", fault, (unsigned long)where);
-        return fault;
+        const int32_t fault = retarder_self_test(&where);
+        printf("fault %d at %lu\n", (int)fault, (unsigned long)where);
+        return (int)fault;
     }
     fprintf(stderr, "unknown mode; see the head of this file\n");
     return 7;

@@ -14,10 +14,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from scripts.studies.in_the_loop.held_words import table_words
 from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SelfTestSize
-from tuning_tables.table_block import block_size
 from tuning_tables.table_book import TableBook
 
 CONTRACT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-ffreestanding")
@@ -26,21 +26,21 @@ CONTRACT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-ffreestand
 EXPORTED = ("retarder_table.c", "retarder_self_test.c")
 TIMEOUT_S = 300.0
 
-READING = np.dtype([("table", "u4"), ("stage", "i4"), ("s_m", "f4"), ("v_m_s", "f4"), ("pressure_kpa", "f4")])
-"""The pressure is looked at where the table has slopes."""
+READING = np.dtype([("table", "i4"), ("stage", "i4"), ("s_m", "f4"), ("v_m_s", "f4"), ("pressure_kpa", "f4")])
+"""The pressure is looked at where the table has a gauge."""
 
 ESTIMATE_WORDS = 16
 ANSWER_WORDS = 1 + ESTIMATE_WORDS + 1
 """To a sample: the estimated speed, the estimate after it, the alarm word."""
 
 SAMPLE = np.dtype(
-    [("table", "u4"), ("start", "u4"), ("s_m", "f4"), ("v_m_s", "f4"), ("overpressure_kpa", "f4"),
+    [("table", "i4"), ("start", "i4"), ("s_m", "f4"), ("v_m_s", "f4"), ("overpressure_kpa", "f4"),
      ("given", "u4", ESTIMATE_WORDS)]
 )  # fmt: skip
 """`start`: ON, BEGIN or GIVEN: the estimate goes on, begins, or is `given`, whatever that is."""
 
 ON, BEGIN, GIVEN = 0, 1, 2
-COMMAND = np.dtype([("layout", "u4"), ("category", "u4"), ("axles", "u4"), ("speed_m_s", "f4")])
+COMMAND = np.dtype([("category", "i4"), ("axles", "i4"), ("speed_m_s", "f4")])
 
 
 class BuildError(RuntimeError):
@@ -77,17 +77,6 @@ class Controller:
         """Whether the checksums of the tables `words` (n, words) are right: (n,)."""
         sound: NDArray[np.bool_] = np.frombuffer(self._answer(("intact",), words), f"{self.order}i4") == 1
         return sound
-
-    def approaches(self) -> list[tuple[float, int]]:
-        """Length of the approach, m, and entrance stage of every table."""
-        dtype = [("length_m", f"{self.order}f4"), ("entrance_stage", f"{self.order}i4")]
-        told = np.frombuffer(self._answer(("approach",), np.empty(0, np.uint32)), dtype)
-        return [(float(length_m), int(stage)) for length_m, stage in told]
-
-    def at_any_time(self) -> list[bool]:
-        """Which tables decide at any time."""
-        told = np.frombuffer(self._answer(("times",), np.empty(0, np.uint32)), f"{self.order}i4")
-        return [bool(each) for each in told == 1]
 
     def dump(self) -> NDArray[np.uint32]:
         """The words of all tables, (tables, words)."""
@@ -144,7 +133,7 @@ def build_controller(
         compile_with([compiler, *contract, *flags, "-c", source, "-o", made])
     program = directory / "controller"
     compile_with([compiler, *flags, *link, str(directory / "controller_process.c"), *objects, "-o", str(program)])
-    return Controller((*runner, str(program)), block_size(book).words, order)
+    return Controller((*runner, str(program)), table_words(book), order)
 
 
 def compile_with(command: Sequence[str]) -> str:

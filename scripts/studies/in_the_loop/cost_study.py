@@ -20,18 +20,18 @@ from scripts.studies.in_the_loop.code_cost import CodeSize, dearest_call, missin
 from scripts.studies.in_the_loop.controller_process import COMMAND, READING, SAMPLE, build_controller, compile_with
 from scripts.studies.in_the_loop.hard_readings import golden_readings, hard_commands
 from scripts.studies.in_the_loop.hard_samples import golden_samples
+from scripts.studies.in_the_loop.held_words import table_words
 from scripts.studies.markdown_table import MarkdownTable, table
 from scripts.studies.options import option
 from scripts.studies.study import Findings, Method, Tell
 from synth.frame.input_error import InputError
-from tuning_tables.table_block import LAYOUT, block_size
 from tuning_tables.table_book import TableBook
 
 LEVELS = ("-O0", "-O1", "-O2", "-O3", "-Os")
 WORK = {
     "decide": "retarder_decide",
     "observe": "retarder_observe",
-    "select": f"retarder_select_layout_{LAYOUT}",
+    "select": "retarder_select",
     "intact": "retarder_table_intact",
 }
 """Modes of the controller process, and the function that each asks."""
@@ -84,7 +84,7 @@ class Cost(Findings):
 
     def tables(self) -> Mapping[str, MarkdownTable]:
         """`instructions`: a row a level; `sizes`: a row a target. Those that could not be counted are not there."""
-        heads = ("gcc", *(f"`{function.partition('_layout_')[0]}`" for function in WORK.values()))
+        heads = ("gcc", *(f"`{function}`" for function in WORK.values()))
         instructions = [
             (each.level, *(f"{thousands(each.plain[mode])} / {thousands(each.estimated[mode])}" for mode in WORK))
             for each in self.dearest
@@ -129,7 +129,7 @@ def run(options: Options, tell: Tell) -> Cost:
         config_sha256=(books[0].config_sha256, books[1].config_sha256),
         compiler=compile_with(["gcc", "--version"]).splitlines()[0],
         tables_in_book=len(plain.tables),
-        bytes_a_table=(4 * block_size(plain).words, 4 * block_size(estimated).words),
+        bytes_a_table=(4 * table_words(plain), 4 * table_words(estimated)),
         dearest=tuple(dearest),
         sizes=tuple(sizes),
     )

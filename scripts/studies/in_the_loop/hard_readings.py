@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from tuning_tables.table_block import LAYOUT
 
 from scripts.studies.in_the_loop.controller_process import COMMAND, READING
 from tuning_tables import ControllerTable
@@ -131,13 +130,12 @@ def hard_commands(book: TableBook, count: int, seed: int) -> NDArray[np.void]:
     rng = np.random.default_rng(seed)
     found = np.empty(count, COMMAND)
     numbers = [book.number_of(category) for category in book.category_numbers]
-    found["layout"] = np.where(rng.random(count) < 0.02, rng.integers(0, 2**32, count, dtype=np.uint32), LAYOUT)
-    found["category"] = rng.choice([*numbers, 0, max(numbers) + 1], count)
+    found["category"] = rng.choice([*numbers, 0, -1, max(numbers) + 1], count)
     found["axles"] = rng.choice([4, 6, 8], count)
     targets = np.array([table.target_speed_m_s for table in book.tables], dtype=np.float32)
     speed = rng.uniform(1.0, 5.0, count).astype(np.float32)
     speed = np.where(rng.random(count) < 0.2, rng.choice(targets, count), speed)
     wild = rng.integers(0, 2**32, count, dtype=np.uint32).view(np.float32)
     found["speed_m_s"] = np.where(rng.random(count) < 0.3, wild, speed)
-    golden = np.array([(c.layout, c.category, c.axles, c.commanded_m_s) for c in golden_choices(book)], COMMAND)
+    golden = np.array([(c.category, c.axles, c.commanded_m_s) for c in golden_choices(book)], COMMAND)
     return np.concatenate([golden, found])

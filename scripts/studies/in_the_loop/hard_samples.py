@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scripts.studies.in_the_loop.controller_process import BEGIN, ESTIMATE_WORDS, GIVEN, ON, SAMPLE
-from tuning_tables.estimator import LARGEST_OVERPRESSURE_KPA, LARGEST_SPEED_M_S, Estimator
-from tuning_tables.golden_tracks import golden_tracks
+from tuning_tables.estimator import Estimator
+from tuning_tables.golden_tracks import LARGEST_OVERPRESSURE_KPA, LARGEST_SPEED_M_S, golden_tracks
 from tuning_tables.table_book import TableBook
 
 TRACK_SAMPLES: Final = 100

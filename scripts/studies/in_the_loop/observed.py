@@ -10,7 +10,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from scripts.studies.in_the_loop.controller_process import ANSWER_WORDS, BEGIN, ESTIMATE_WORDS, GIVEN
-from tuning_tables.estimator import alarms, hand_on, observe
+from synth.kernels.compiled_rules import compiled_rule
+from tuning_tables.programs.alarms import alarms
+from tuning_tables.programs.observe import observe
 from tuning_tables.table_book import TableBook
 
 ONE_NAN: Final = np.uint32(0x7FC00000)
@@ -23,18 +25,15 @@ def observed(book: TableBook, samples: NDArray[np.void]) -> NDArray[np.uint32]:
     Every track, which a sample with start BEGIN begins, must be of one table. NaN has the bits that it comes with.
     """
     answers = np.zeros((len(samples), ANSWER_WORDS), np.uint32)
-    follow, pass_on = _following(), _passing_on()
+    follow = _following()
     begins = np.flatnonzero(samples["start"] == BEGIN)
     for first, end in zip(begins, [*begins[1:], len(samples)], strict=True):
         part = samples[first:end]
-        estimator = book.tables[part["table"][0]].estimator
-        if estimator is None:
-            answers[first:end, 0] = part["v_m_s"].view(np.uint32)
-            columns = [np.ascontiguousarray(part[name]) for name in ("start", "v_m_s", "given")]
-            pass_on(*columns, answers[first:end])
-            continue
+        table = book.tables[part["table"][0]].held
         columns = [np.ascontiguousarray(part[name]) for name in ("start", "s_m", "v_m_s", "overpressure_kpa", "given")]
-        follow(estimator.parameters, estimator.work, *columns, answers[first:end])
+        follow(table, *columns, answers[first:end])
+        if table.breaks == 0:  # a NaN keeps its bits, which numba does not promise
+            answers[first:end, 0] = part["v_m_s"].view(np.uint32)
     return answers
 
 
@@ -49,11 +48,10 @@ def _following() -> Any:
 
     Words are copied one by one: numba takes seconds to compile the message for arrays that do not fit.
     """
-    estimated_speed = njit(error_model="numpy")(observe)
-    alarm_word = njit(error_model="numpy")(alarms)
+    estimated_speed, alarm_word = compiled_rule(observe, fresh=True), compiled_rule(alarms, fresh=True)
 
     @njit(error_model="numpy")
-    def follow(parameters, work, start, s_m, v_m_s, kpa, given, answers):  # type: ignore[no-untyped-def]  # numba infers the types
+    def follow(table, start, s_m, v_m_s, kpa, given, answers):  # type: ignore[no-untyped-def]  # numba infers the types
         state = np.zeros(ESTIMATE_WORDS, np.float32)
         words = state.view(np.uint32)
         speed = np.zeros(1, np.float32)
@@ -63,32 +61,10 @@ def _following() -> Any:
             elif start[i] == GIVEN:
                 for k in range(ESTIMATE_WORDS):
                     words[k] = given[i, k]
-            speed[0] = estimated_speed(parameters, work, state, s_m[i], v_m_s[i], kpa[i])
+            speed[0] = estimated_speed(table, state, s_m[i], v_m_s[i], kpa[i])
             answers[i, 0] = speed.view(np.uint32)[0]
             for k in range(ESTIMATE_WORDS):
                 answers[i, 1 + k] = words[k]
-            answers[i, 1 + ESTIMATE_WORDS] = alarm_word(parameters, state)
+            answers[i, 1 + ESTIMATE_WORDS] = alarm_word(table, state)
 
     return follow
-
-
-@cache
-def _passing_on() -> Any:
-    """A function that follows one track of a table without estimator: only the count of unseen samples changes."""
-    counted = njit(error_model="numpy")(hand_on)
-
-    @njit(error_model="numpy")
-    def pass_on(start, v_m_s, given, answers):  # type: ignore[no-untyped-def]  # numba infers the types
-        state = np.zeros(ESTIMATE_WORDS, np.float32)
-        words = state.view(np.uint32)
-        for i in range(start.shape[0]):
-            if start[i] == BEGIN:
-                state[:] = 0.0
-            elif start[i] == GIVEN:
-                for k in range(ESTIMATE_WORDS):
-                    words[k] = given[i, k]
-            counted(state, v_m_s[i])
-            for k in range(ESTIMATE_WORDS):
-                answers[i, 1 + k] = words[k]
-
-    return pass_on

@@ -88,18 +88,18 @@ class PipeLine:
 
     def __init__(self) -> None:
         self._ask, self._hear = os.open(os.devnull, os.O_RDWR), os.open(os.devnull, os.O_RDWR)
-        self._at_rest, self._at_pressure, self._observe = _controller_through(self._ask, self._hear)
+        self._decide, self._observe = _controller_through(self._ask, self._hear)
 
     @cached_property
     def run_passes(self) -> Callable[..., int]:
         """`kernels.loop.closed_loop.run_passes` for tables that decide at rest."""
-        run: Callable[..., int] = run_passes_with(self._at_rest, self._observe)
+        run: Callable[..., int] = run_passes_with(self._decide, self._observe)
         return run
 
     @cached_property
     def run_any_time_passes(self) -> Callable[..., int]:
         """`kernels.any_time.closed_loop.run_any_time_passes` for tables that decide at any time."""
-        run: Callable[..., int] = run_any_time_passes_with(self._at_pressure, self._observe)
+        run: Callable[..., int] = run_any_time_passes_with(self._decide, self._observe)
         return run
 
     @contextmanager
@@ -126,8 +126,8 @@ class PipeLine:
 def run_passes_with(decision: Any, estimated_speed: Any) -> Any:
     """`kernel.run_passes`, the same text, with other functions in the place of the tables' own; compiled, not cached.
 
-    Both compiled, with arguments and answers of `tuning_tables.rule.decide` and `tuning_tables.estimator.observe`. The
-    loop around them is no other.
+    Both compiled, with arguments and answers of `decide` and `observe` of `tuning_tables.programs`. The loop around
+    them is no other.
     """
     compiled = njit(nogil=True, error_model="numpy")
     scope = {**vars(kernel), "stage_by_table": decision, "estimated_speed": estimated_speed}
@@ -136,25 +136,16 @@ def run_passes_with(decision: Any, estimated_speed: Any) -> Any:
 
 
 def run_any_time_passes_with(decision: Any, estimated_speed: Any) -> Any:
-    """`any_time.run_any_time_passes`, likewise; the decision is handed the pressure in the place of what it adds."""
+    """`any_time.run_any_time_passes`, likewise."""
     compiled = njit(nogil=True, error_model="numpy")
-
-    @njit
-    def pressure_itself(slopes, pressures, highest_raised, stage, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
-        return kpa
-
     scope = {**vars(any_time), "stage_by_table": decision, "estimated_speed": estimated_speed}
-    scope["pressure_rises"] = pressure_itself
     for name in ("wanted_stage", "run_any_time_pass"):
         scope[name] = compiled(FunctionType(getattr(any_time, name).py_func.__code__, scope))
     return compiled(FunctionType(any_time.run_any_time_passes.py_func.__code__, scope))
 
 
-def _controller_through(ask: int, hear: int) -> tuple[Any, Any, Any]:
-    """Decisions at rest and at any time, and an estimator, that write a request to `ask` and read its answer at `hear`.
-
-    The decision at any time is handed the pressure in the place of what it adds to the lines.
-    """
+def _controller_through(ask: int, hear: int) -> tuple[Any, Any]:
+    """A decision and an estimator that write a request to `ask` and read its answer at `hear`."""
     library = ctypes.CDLL(None)
     write, read = library.write, library.read
     for call in (write, read):
@@ -173,20 +164,14 @@ def _controller_through(ask: int, hear: int) -> tuple[Any, Any, Any]:
         return answer
 
     @njit
-    def decide(coefficients, has_line, valid, limits, stage, s, v):  # type: ignore[no-untyped-def]  # as above
-        return answered(stage, s, v, 0.0)[0]
-
-    @njit
-    def decide_at_pressure(  # type: ignore[no-untyped-def]  # as above
-        coefficients, has_line, valid, limits, stage, s, v, kpa
-    ):
+    def decide(table, stage, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
         return answered(stage, s, v, kpa)[0]
 
     @njit
-    def observe(parameters, work, state, s, v, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
+    def observe(table, state, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
         # The process has the state; what the kernel holds only tells whether a pass begins.
         what = OBSERVE if state[0] != 0.0 else BEGIN
         state[0] = 1.0
         return answered(what, s, v, kpa).view(np.float32)[0]
 
-    return decide, decide_at_pressure, observe
+    return decide, observe

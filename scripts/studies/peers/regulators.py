@@ -12,9 +12,10 @@ from scripts.studies.peers.kernels.prediction import Prediction
 from scripts.studies.peers.kernels.pulses import Pulses
 from synth.kernels.any_time.closed_loop import AnyTimeLaw
 from synth.simulation.closed_loop import ClosedLoop, LineController
-from synth.simulation.controllers import estimator_arrays, fixed
+from synth.simulation.controllers import fixed
 from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import Decisions, Estimator
+from tuning_tables.held_table import lines_apart
 
 PARTS = 1
 """Of a sampling period, as the predictive controller foresees them; the simulation plays five."""
@@ -54,7 +55,7 @@ class PredictiveController:
         aim = self.target_m_s + self.shift_m_s
         law = Prediction(self.horizon_s, kpa, aim, self.price_m2_s2, self.parts)
         at_rest = self.decisions is Decisions.AT_REST
-        return Peer(BY_PREDICTION, no_table(), law, NO_PULSES, at_rest, *estimator_arrays(self.estimator))
+        return Peer(BY_PREDICTION, no_table(), law, NO_PULSES, at_rest, lines_apart(self.estimator))
 
 
 @dataclass(frozen=True)
@@ -82,11 +83,10 @@ class PulseController:
             self.held_share * top, self.target_m_s, self.gain_per_m_s * top, self.integral_s, self.period_s, stages
         )
         at_rest = self.decisions is Decisions.AT_REST
-        return Peer(BY_PULSES, no_table(), NO_PREDICTION, law, at_rest, *estimator_arrays(self.estimator))
+        return Peer(BY_PULSES, no_table(), NO_PREDICTION, law, at_rest, lines_apart(self.estimator))
 
 
 def no_table() -> AnyTimeLaw:
     """A law without a table, for a kernel that does not ask it."""
     lines = LineController(SwitchingLines(np.array([0.0, 1.0]), np.full((2, 2), -np.inf), np.full((2, 2), np.inf)))
-    slopes = fixed(np.empty((0, 2)), np.float32), fixed(np.empty(0), np.float32)
-    return AnyTimeLaw(lines.rule, *slopes, 0, 1.0)
+    return AnyTimeLaw(lines.rule, 1.0)

@@ -14,7 +14,7 @@ from scripts.studies.radar_faults.watched_passes import passes_by_weight, watche
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import share_of
-from tuning_tables.estimator import HEAVIER_ALARM, LIGHTER_ALARM
+from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM
 
 
 @dataclass(frozen=True)

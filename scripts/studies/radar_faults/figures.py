@@ -10,7 +10,7 @@ from scripts.studies.radar_faults.watched_passes import WatchedPasses
 from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import Mean, mean_of, rms_of, rms_quotient, share_of
-from tuning_tables.estimator import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM
+from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM
 
 
 def fault_row(fault: str, target_m_s: float, before: WatchedPasses, after: WatchedPasses) -> FaultRow:

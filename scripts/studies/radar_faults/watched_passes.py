@@ -20,11 +20,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.compiled_rules import compiled_rule
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop import regulator
 from synth.simulation.closed_loop import ClosedLoop, TableController, empty_exits, sample_of
 from synth.simulation.passes import ExitSample
-from tuning_tables.estimator import STATE_SIZE, alarms, table_after
+from tuning_tables.estimator import STATE_SIZE
+from tuning_tables.programs.alarms import alarms, table_after
+from tuning_tables.programs.line_table import LineTable
 
 
 class FreezingSensor(NamedTuple):
@@ -34,6 +37,15 @@ class FreezingSensor(NamedTuple):
     noise_m_s: float
     resolution_m_s: float
     last_m_s: NDArray[np.float64]
+
+
+class Together(NamedTuple):
+    """Tables in the place of one: number `now`[0] is in force, at the beginning of a pass number `now`[1]."""
+
+    stages: int
+    breaks: int
+    tables: tuple[LineTable, ...]
+    now: NDArray[np.int64]
 
 
 @frozen_arrays
@@ -80,20 +92,12 @@ def passes_by_weight(
 
 
 def together(rules: Sequence[regulator.Rule], now: NDArray[np.int64]) -> Any:
-    """One law of all `rules`, for `_watching`, whose arrays have an axis more.
-
-    Number `now`[0] of them is in force, at the beginning of a pass number `now`[1].
-    """
-    stacked: dict[str, Any] = {
-        name: np.stack([getattr(each, name) for each in rules])
-        for name in ("coefficients", "has_line", "valid", "entrance_stage", "estimator_parameters")
-    }
-    stacked["entrance_stage"] = stacked["entrance_stage"], now
-    stacked["estimator_parameters"] = stacked["estimator_parameters"], now
-    # Breaks second: the kernel asks there whether a table has an estimator.
-    stacked["estimator_work"] = np.stack([each.estimator_work.T for each in rules])
+    """One law of all `rules`, for `_watching`."""
+    first = rules[0].table
+    tables = Together(first.stages, first.breaks, tuple(each.table for each in rules), now)
+    law: Any = rules[0]
     # With a lead the radar reads at every sample, also during a change of stage; the rule of a table knows no lead.
-    return rules[0]._replace(**stacked, lead_s=1.0)
+    return law._replace(table=tables, lead_s=1.0)
 
 
 _COMPILING = Lock()
@@ -105,7 +109,7 @@ def _watching() -> Callable[..., None]:
     """The loop over passes; compiled anew in a process, so that no stale cache is asked."""
     compiled = njit(nogil=True, error_model="numpy")
     read, observe, decide = regulator.measure, regulator.estimated_speed, regulator.stage_by_table
-    word_of, after = compiled(alarms), compiled(table_after)
+    word_of, after = compiled_rule(alarms, fresh=True), compiled_rule(table_after, fresh=True)
     size, left = STATE_SIZE, kernel.LEFT
 
     @compiled
@@ -115,21 +119,19 @@ def _watching() -> Callable[..., None]:
         return sensor.last_m_s[0]
 
     @compiled
-    def estimated_speed(estimators, works, known, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
-        (parameters, now), count = estimators, works.shape[0]
+    def estimated_speed(law, known, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
+        now, count = law.now, len(law.tables)
         speeds, words = known[count * size : count * size + count], known[count * size + count :]
         for i in range(count):
-            speeds[i] = observe(parameters[i], works[i].T, known[i * size : (i + 1) * size], s, v, kpa)
-        word = word_of(parameters[now[0]], known[now[0] * size : (now[0] + 1) * size])
+            speeds[i] = observe(law.tables[i], known[i * size : (i + 1) * size], s, v, kpa)
+        word = word_of(law.tables[now[0]], known[now[0] * size : (now[0] + 1) * size])
         words[0], words[1] = int(words[0]) | word, word
         now[0] = after(word, now[0], count - 1)
         return speeds[now[0]]
 
     @compiled
-    def stage_by_table(coefficients, has_line, valid, limits, stage, s, v):  # type: ignore[no-untyped-def]  # as above
-        (gates, now), farthest = limits
-        limits = gates[now[0]], farthest
-        return decide(coefficients[now[0]], has_line[now[0]], valid[now[0]], limits, stage, s, v)
+    def stage_by_table(law, stage, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
+        return decide(law.tables[law.now[0]], stage, s, v, kpa)
 
     scope: dict[str, Any] = {
         **vars(kernel), "measure": measure, "estimated_speed": estimated_speed, "stage_by_table": stage_by_table
@@ -138,7 +140,7 @@ def _watching() -> Callable[..., None]:
 
     @compiled
     def run(path, drive, sensor, law, draws, exits, now, found):  # type: ignore[no-untyped-def]  # as above
-        count = law.coefficients.shape[0]
+        count = len(law.table.tables)
         free, known = np.empty(path.gravity_m_s2.shape[0]), np.empty(count * (size + 1) + 2, np.float32)
         events = np.empty((0, 6))
         for i in range(draws.cut_factor.shape[0]):

@@ -9,20 +9,15 @@ from numpy.typing import NDArray
 
 from synth.kernels.loop.regulator import estimated_speed
 from synth.kernels.vector.borrowing import borrowing
-from tuning_tables.estimator import STATE_SIZE
+from tuning_tables.programs.estimate import ESTIMATE, FACTOR
+from tuning_tables.programs.line_table import LineTable
 
-FACTOR = 3
-"""Place of the friction factor ξ in the state of `tuning_tables.estimator`."""
-
-KNOWN = STATE_SIZE
-"""Numbers of that state."""
+KNOWN = len(ESTIMATE.members)
+"""Numbers of the state."""
 
 
 @borrowing
-def observed(
-    parameters: NDArray[np.float32], work: NDArray[np.float32], state: NDArray[np.float32], s: float, measured: float,
-    overpressure_kpa: float,
-) -> Any:  # fmt: skip
+def observed(table: LineTable, state: NDArray[np.float32], s: float, measured: float, overpressure_kpa: float) -> Any:
     """(estimated speed, m/s, estimated friction factor) after one more sample; speed −1 before the first reading."""
-    speed = float(estimated_speed(parameters, work, state, s, measured, overpressure_kpa))
+    speed = float(estimated_speed(table, state, s, measured, overpressure_kpa))
     return speed, float(state[FACTOR])

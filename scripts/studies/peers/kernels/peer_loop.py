@@ -32,6 +32,7 @@ from synth.kernels.loop.closed_loop import (
 )
 from synth.kernels.loop.regulator import Sensor, admitted, measure
 from synth.kernels.vector.borrowing import borrowing
+from tuning_tables.programs.line_table import LineTable
 
 BY_TABLE, BY_PREDICTION, BY_PULSES = 0, 1, 2
 
@@ -39,8 +40,8 @@ BY_TABLE, BY_PREDICTION, BY_PULSES = 0, 1, 2
 class Peer(NamedTuple):
     """A regulator: `kind` says which of the three laws decides; the other two are not looked at.
 
-    `at_rest`: commanded only where the last command is carried out. With `estimator_work` (3, B), B > 0, the law gets
-    the estimated speed, and the prediction the estimated friction; else the measured speed, and ξ = 1.
+    `at_rest`: commanded only where the last command is carried out. If `observer` has an estimator, the law gets the
+    estimated speed, and the prediction the estimated friction; else the measured speed, and ξ = 1.
     """
 
     kind: int
@@ -48,8 +49,7 @@ class Peer(NamedTuple):
     prediction: Prediction
     pulses: Pulses
     at_rest: bool
-    estimator_parameters: NDArray[np.float32]
-    estimator_work: NDArray[np.float32]
+    observer: LineTable
 
 
 class Hardware(NamedTuple):
@@ -113,7 +113,7 @@ def run_peer_pass(
 ) -> Any:  # fmt: skip
     """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events)."""
     locked, drive, sensor, over = hardware.locked, hardware.sampled, hardware.sensor, memory.over
-    stage_kpa, estimating = drive.stage_kpa, peer.estimator_work.shape[1] > 0
+    stage_kpa, estimating = drive.stage_kpa, peer.observer.breaks > 0
     period, longest = sensor.period_s, int(LONGEST_PASS_S / sensor.period_s)
     memory.known[:], passed_kpa, factor = 0.0, 0.0, 1.0
     begin_pulses(memory.pulses)
@@ -125,7 +125,7 @@ def run_peer_pass(
     while status == MOVING and (chain >= 0 or sample < longest):
         speed = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
         if estimating:
-            speed, factor = observed(peer.estimator_parameters, peer.estimator_work, memory.known, s, speed, passed_kpa)
+            speed, factor = observed(peer.observer, memory.known, s, speed, passed_kpa)
         may, before = not peer.at_rest or chain < 0, stage
         wanted = stage
         if speed >= 0.0:  # neither a missing reading nor an estimate that has not begun
