@@ -118,7 +118,7 @@ def c_names(code: ControllerCode) -> CNames:
         types={record: f"retarder_{name}" for record, name in code.records.items()},
         functions={rule.function.__name__: f"retarder_{rule.name}" for rule in code.rules},
         without={rule.function.__name__: rule.without for rule in code.rules},
-        arrays={"tables": tables_of(code)} if code.chooses else {},
+        arrays={"tables": tables_of(code)} if code.looks_at_all else {},
     )
 
 
@@ -135,15 +135,13 @@ def table_type(code: ControllerCode) -> str:
 def c_header(code: ControllerCode) -> str:
     """The text of retarder_STEM.h."""
     names, macro = c_names(code), f"RETARDER_{code.stem.upper()}_H"
+    copy = f"the copy that {select_of(code)} has made" if code.chooses else "a copy of it"
     return "\n".join(
         [
             *head_comment(code),
             GUARD.format(macro=macro),
             *(STATUSES.split("\n") if code.chooses else []),
-            "/* Weight categories: their numbers are the same in every export, and so they may be kept elsewhere. */",
-            *(f"#define RETARDER_CATEGORY_{each.macro} {each.number} /* {comment_text(each.category)} */"
-              for each in code.categories),
-            "",
+            *category_macros(code),
             f"#define {tag_name(code)} 0x{code.tag:08x}u /* of all files of one export, so that they cannot be mixed */",
             "",
             *record_types(code),
@@ -154,7 +152,7 @@ def c_header(code: ControllerCode) -> str:
             *([*c_comment(SELECT_NOTE.format(between=BETWEEN_NOTE if code.blends else SLOWER_NOTE).replace("\n", " ")),
                f"int32_t {select_of(code)}(int32_t category, int32_t axles, float commanded_m_s, "
                f"{table_type(code)} *chosen);", ""] if code.chooses else []),
-            f"/* 1 if the checksum of the table is right (in ROM, or the copy that {select_of(code)} has made), else 0. */",
+            f"/* 1 if the checksum of the table is right (in ROM, or {copy}), else 0. */",
             f"int32_t {table_type(code)}_intact(const {table_type(code)} *table);",
             "",
             '/* CRC-32 (ISO 3309; zlib, Ethernet) of `count` bytes; the bytes "123456789" give 0xCBF43926. */',
@@ -163,6 +161,15 @@ def c_header(code: ControllerCode) -> str:
             FOOT,
         ]
     )  # fmt: skip
+
+
+def category_macros(code: ControllerCode) -> Iterator[str]:
+    """Names for the numbers of the categories, where tables have any."""
+    if code.categories:
+        yield "/* Weight categories: their numbers are the same in every export, and so they may be kept elsewhere. */"
+        for each in code.categories:
+            yield f"#define RETARDER_CATEGORY_{each.macro} {each.number} /* {comment_text(each.category)} */"
+        yield ""
 
 
 def select_of(code: ControllerCode) -> str:

@@ -99,7 +99,7 @@ VAR_INPUT
     TableNo : INT; (* 0 to {last} *)
 END_VAR
 VAR_IN_OUT
-    Table : {type}; (* filled; where there is no such table its Stages become 0: nothing is commanded *)
+    Table : {type}; (* filled; where there is no such table its {empty} becomes 0 *)
 END_VAR
 VAR_OUTPUT
     Found : BOOL; (* there is such a table *)
@@ -114,7 +114,7 @@ VAR CONSTANT
 def st_names(code: ControllerCode) -> StNames:
     """The names of the export."""
     prefix = f"RETARDER{code.ending.upper()}_"
-    arrays = choice_arrays(code) if code.chooses else []
+    arrays = choice_arrays(code) if code.looks_at_all else []
     return StNames(
         types={record: f"RETARDER_{name.upper()}" for record, name in code.records.items()},
         blocks={rule.function.__name__: f"RETARDER_{rule.name.upper()}" for rule in code.rules},
@@ -182,7 +182,8 @@ def head(code: ControllerCode) -> str:
             categories = [
                 f"{each.number:9d}  {each.macro}, in tables {comment_text(each.category)}" for each in code.categories
             ]
-            rows = [*code.origin, "categories, whose numbers are the same in every export:", *categories, "", "Blocks"]
+            told = ["categories, whose numbers are the same in every export:", *categories] if categories else []
+            rows = [*code.origin, *told, "", "Blocks"]
             rows += [line for text in blocks for line in textwrap.wrap(text, WIDTH - 5, subsequent_indent="    ")]
         else:
             rows = textwrap.wrap(paragraph, WIDTH - 5)
@@ -249,14 +250,15 @@ def load_block(code: ControllerCode) -> str:
         "END_VAR",
         "",
         f"Found := (TableNo >= 0) AND (TableNo <= {last});",
-        "Table.Stages := 0;",
+        f"Table.{st_name(code.empty)} := {'0' if members[code.empty].kind is Kind.INT else '0.0'};",
         "IF Found THEN",
         *(f"    {line}" for line in body),
         "END_IF;",
         "END_FUNCTION_BLOCK",
         "",
     ]
-    return LOAD_HEAD.format(load=load_of(code), last=last, type=table_type(code)) + "\n".join(lines)
+    head = LOAD_HEAD.format(load=load_of(code), last=last, type=table_type(code), empty=st_name(code.empty))
+    return head + "\n".join(lines)
 
 
 def part_of_tables(code: ControllerCode, part: str, group: Sequence[str]) -> tuple[list[str], list[str]]:
