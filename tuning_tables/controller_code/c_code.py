@@ -67,6 +67,9 @@ STATUSES: Final = """\
 #define RETARDER_NO_TARGET (-2) /* no number, or below the lowest target: every table would let the cut out too fast */
 """
 
+CATEGORIES_NOTE: Final = """\
+/* Weight categories: their numbers are the same in every export, and so they may be kept elsewhere. */"""
+
 SELECT_NOTE: Final = """\
 Fill `chosen` with the table for a cut of this category and number of axles that shall leave with commanded_m_s.
 Candidates are the tables of the category and number of axles; of several masses the largest. {between}
@@ -141,7 +144,10 @@ def c_header(code: ControllerCode) -> str:
             *head_comment(code),
             GUARD.format(macro=macro),
             *(STATUSES.split("\n") if code.chooses else []),
-            *category_macros(code),
+            *([CATEGORIES_NOTE] if code.categories else []),
+            *(f"#define RETARDER_CATEGORY_{each.macro} {each.number} /* {comment_text(each.category)} */"
+              for each in code.categories),
+            "",
             f"#define {tag_name(code)} 0x{code.tag:08x}u /* of all files of one export, so that they cannot be mixed */",
             "",
             *record_types(code),
@@ -161,15 +167,6 @@ def c_header(code: ControllerCode) -> str:
             FOOT,
         ]
     )  # fmt: skip
-
-
-def category_macros(code: ControllerCode) -> Iterator[str]:
-    """Names for the numbers of the categories, where tables have any."""
-    if code.categories:
-        yield "/* Weight categories: their numbers are the same in every export, and so they may be kept elsewhere. */"
-        for each in code.categories:
-            yield f"#define RETARDER_CATEGORY_{each.macro} {each.number} /* {comment_text(each.category)} */"
-        yield ""
 
 
 def select_of(code: ControllerCode) -> str:

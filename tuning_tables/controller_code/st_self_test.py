@@ -7,8 +7,9 @@ those for 0), no -0.0.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Final
+import textwrap
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +17,7 @@ import numpy.typing as npt
 from tuning_tables.category_names import comment_text
 from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
 from tuning_tables.controller_code.st_choice_test import choice_tests
-from tuning_tables.controller_code.st_code import load_of, st_names, table_type
+from tuning_tables.controller_code.st_code import WIDTH, load_of, st_names, table_type
 from tuning_tables.controller_code.st_test_block import (
     TestBlock,
     block_text,
@@ -30,14 +31,13 @@ from tuning_tables.language.records import Kind, st_name
 from tuning_tables.language.structured_text import broken
 from tuning_tables.st_literals import LONGEST_ARRAY, bool_array, int_array, is_portable, real_array
 
-HEAD: Final = """\
-(* Self-test of {file}, for the controller that is to run it. Generated: do not edit, export again.
-
-   Call one instance of {block} once a cycle until Done; Failed must be 0. It compares every constant with a
-   second copy, and the answers of the blocks with those of the reference implementation. Questions that are not finite
-   or denormal are left out, because they have no portable literal. REAL numbers are compared for equality on purpose:
-   every bit is due. Remove the blocks after the test if memory is short. *)
-"""
+HEAD: Final = (
+    "Self-test of {file}, for the controller that is to run it. Generated: do not edit, export again.",
+    "Call one instance of {block} once a cycle until Done; Failed must be 0. It compares every constant with a second "
+    "copy, and the answers of the blocks with those of the reference implementation. Questions that are not finite or "
+    "denormal are left out, because they have no portable literal. REAL numbers are compared for equality on purpose: "
+    "every bit is due. Remove the blocks after the test if memory is short.",
+)
 
 RUN_ALL: Final = """\
 FUNCTION_BLOCK {name}
@@ -168,14 +168,15 @@ def questions_text(
             if parameter.record is not None:
                 value = "Table" if not parameter.record.is_state else st_name(parameter.name)
             elif parameter.name in kinds:
-                value = f"{held(parameter.name)}[Index]" + " = 1" * (
-                    parameter.kind is Kind.BOOL and kinds[parameter.name] is Kind.INT
-                )
+                is_number = parameter.kind is Kind.BOOL and kinds[parameter.name] is Kind.INT
+                value = f"{held(parameter.name)}[Index]" + " = 1" * is_number
             else:
                 continue
             given.append(f"{st_name(parameter.name)} := {value}")
         body += broken(f"{instance(rule)}({', '.join(given)});")
-        differs += [f"({instance(rule)}.{st_name(each.name)} <> {held(each.name)}[Index])" for each in program.answers]
+        for answer in program.answers:
+            sign = "XOR" if answer.kind is Kind.BOOL else "<>"
+            differs.append(f"({instance(rule)}.{st_name(answer.name)} {sign} {held(answer.name)}[Index])")
     told = {answer.name for program in programs for answer in program.answers}
     differs += [f"({st_name(state.record.name)}.{st_name(each)} <> {held(each)}[Index])" for state in states
                 for each in questions.expected if each not in told]  # fmt: skip
@@ -184,7 +185,9 @@ def questions_text(
     return block_text(code, name, note, True, [*variables, "Index : INT"], constants, body)
 
 
-ARRAYS: Final = {Kind.REAL: real_array, Kind.INT: int_array, Kind.BOOL: bool_array}
+ARRAYS: Final[Mapping[Kind, Callable[[str, Any], str]]] = {
+    Kind.REAL: real_array, Kind.INT: int_array, Kind.BOOL: bool_array,
+}  # fmt: skip
 """How a column is written."""
 
 
@@ -225,7 +228,10 @@ def run_all(code: ControllerCode, blocks: list[TestBlock]) -> str:
 
 def self_test_head(code: ControllerCode) -> str:
     """The comment at the beginning of the self-test."""
-    return HEAD.format(file=f"retarder_{code.stem}.st", block=self_test_name(code))
+    file = f"retarder_{code.stem}.st"
+    texts = (textwrap.wrap(text.format(file=file, block=self_test_name(code)), WIDTH - 5) for text in HEAD)
+    first, *lines = "\n\n".join("\n".join(text) for text in texts).split("\n")
+    return "\n".join([f"(* {first}", *(f"   {line}".rstrip() for line in lines)]) + " *)\n"
 
 
 def calls(code: ControllerCode, line_checks: int) -> int:
