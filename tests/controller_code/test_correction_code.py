@@ -198,7 +198,8 @@ def test_it_links_beside_the_tables_and_needs_nothing(tmp_path: Path, tool: Tool
         compile_with([tool("gcc"), *CONTRACT, "-Os", "-c", str(tmp_path / name), "-o", str(tmp_path / f"{name}.o")])
     (tmp_path / "main.c").write_text(
         '#include "retarder_table.h"\n#include "retarder_correction.h"\nint main(void)\n{\n    retarder_correction c;\n'
-        "    retarder_begin_correction(&c);\n    retarder_begin_correction(0);\n    retarder_learn_exit(0, 0, 0.0f, 1);\n"
+        "    retarder_begin_correction(&c);\n    retarder_begin_correction(0);\n"
+        "    retarder_learn_exit(0, 0, 0.0f, 1);\n"
         "    const float v = retarder_corrected_speed(retarder_correction_settings, &c, 1.0f);\n"
         "    return (int)retarder_decide(0, 0, 1.0f, v, 0.0f) + (v != 1.0f);\n}\n"
     )

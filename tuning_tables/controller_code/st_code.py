@@ -241,7 +241,7 @@ def load_block(code: ControllerCode) -> str:
     body = [f"Table.{st_name(name)} := {of_tables(name)}[TableNo];" for name in numbers]
     for part in dict.fromkeys(member.part for member in members.values() if member.axes):
         group = [name for name, member in members.items() if member.axes and member.part == part]
-        more, cases = part_of_tables(code, part or "lines", group)
+        more, cases = part_of_tables(code, part or "table", group)
         declared += more
         body += cases
     last = len(code.tables) - 1

@@ -181,7 +181,8 @@ def questions_text(
     differs += [f"({st_name(state.record.name)}.{st_name(each)} <> {held(each)}[Index])" for state in states
                 for each in questions.expected if each not in told]  # fmt: skip
     body = loop(len(rows), [*body, *check("\n    OR ".join(differs))])
-    note = f"{len(rows)} golden {questions.about} of table {number}, {comment_text(code.tables[number].id)}."
+    of_table = f" of table {number}, {comment_text(code.tables[number].id)}" if "table" in kinds else ""
+    note = f"{len(rows)} golden {questions.about}{of_table}."
     return block_text(code, name, note, True, [*variables, "Index : INT"], constants, body)
 
 

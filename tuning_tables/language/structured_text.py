@@ -251,8 +251,10 @@ class _Printer:
         shape = self.sized[record].shape(member)
         text = self.atom(indices[0])
         for place, each in enumerate(indices[1:], start=1):
-            known = text.isdigit()
-            text = f"{int(text) * shape[place]}" if known else f"{text} * {shape[place]}"
+            if text.isdigit():
+                text = f"{int(text) * shape[place]}"
+            elif shape[place] > 1:
+                text = f"{text} * {shape[place]}"
             more = self.atom(each)
             text = f"{text} + {more}" if more != "0" else text
             if text.startswith("0 + "):
