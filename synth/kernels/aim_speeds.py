@@ -14,7 +14,7 @@ speed_by_table = compiled_rule(exit_speed)
 
 
 @njit(cache=True, nogil=True)
-def all_speeds(table, cars, free_distance_m, resistance_n_per_kn, speeds) -> None:  # type: ignore[no-untyped-def]
+def all_speeds(table, cars, free_distance_m, resistance_n_per_kn, speeds) -> None:
     """The answer to each question, -1 for none, into `speeds`; all arrays (n,)."""
     for place in range(len(speeds)):
         speeds[place] = speed_by_table(table, cars[place], free_distance_m[place], resistance_n_per_kn[place])

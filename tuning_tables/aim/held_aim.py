@@ -21,9 +21,11 @@ def aim_grid(
     p_overspeed: float = 0.0,
     coupling_m_s: float = 0.0,
 ) -> AimGrid:
-    """The exit speeds at the nodes of `axes`, in their shape, NaN for none; `ValueError` for another shape."""
+    """The exit speeds at the nodes of `axes`, in their shape, NaN for none. Raises `ValueError`."""
     if exit_speed_m_s.shape != axes.shape:
         raise ValueError(f"aim: speeds have the shape {exit_speed_m_s.shape}, their axes {axes.shape}")
+    if (exit_speed_m_s < 0.0).any():
+        raise ValueError("aim: an exit speed is below 0, which would stand for none")
     resistance = axes.resistance_n_per_kn
     columns = np.zeros(1) if resistance is None else resistance
     speeds = exit_speed_m_s.astype(np.float32).reshape(*axes.shape[:2], -1)

@@ -130,7 +130,7 @@ def test_threads_change_nothing() -> None:
 
 def linear_aim() -> HumpAim:
     """One group and category: exit speed = 1 + distance/100 + resistance/10; by category alone 0.7 + distance/100."""
-    cars, distance, resistance = np.array([1]), np.array([0.0, 500.0]), np.array([-50.0, 50.0])
+    cars, distance, resistance = np.array([1]), np.array([0.0, 500.0]), np.array([-10.0, 50.0])
     plain = aim_grid(AimAxes(cars, distance), 0.7 + distance[None, :] / 100.0)
     speeds = 1.0 + distance[None, :, None] / 100.0 + resistance[None, None, :] / 10.0
     measured = aim_grid(AimAxes(cars, distance, resistance), speeds)
