@@ -18,6 +18,7 @@ from tuning_tables.controller_code.c_code import (
     same_export,
 )
 from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
+from tuning_tables.language.c99_data import c_comment
 from tuning_tables.language.records import Kind
 
 FIRST_ANSWER: Final = 4
@@ -45,11 +46,11 @@ def c_test_header(code: ControllerCode) -> str:
     ]  # fmt: skip
     return "\n".join(
         [
-            f"/* Self-test of retarder_{code.stem}.c. Generated: do not edit, export again.",
-            " *",
-            " * Proves on the processor at hand, with the compiler and switches at hand, that tables and rules are as",
-            f" * exported: arithmetic of the checksum, checksums of all tables, {asked},",
-            f" * {len(code.commands)} golden choices. */",
+            *c_comment(
+                f"Self-test of retarder_{code.stem}.c. Generated: do not edit, export again. Proves on the processor at "
+                "hand, with the compiler and switches at hand, that tables and rules are as exported: arithmetic of the "
+                f"checksum, checksums of all tables, {asked}, {len(code.commands)} golden choices."
+            ),
             GUARD.format(macro=f"{macro}_H").replace("#include <stdint.h>", f'#include "retarder_{code.stem}.h"'),
             *(
                 f"#define {macro_prefix(code)}{name} ({number})" + f" /* {note} */" * bool(note)
