@@ -47,9 +47,9 @@ def c_test_header(code: ControllerCode) -> str:
     return "\n".join(
         [
             *c_comment(
-                f"Self-test of retarder_{code.stem}.c. Generated: do not edit, export again. Proves on the processor at "
-                "hand, with the compiler and switches at hand, that tables and rules are as exported: arithmetic of the "
-                f"checksum, checksums of all tables, {asked}, {len(code.commands)} golden choices."
+                f"Self-test of retarder_{code.stem}.c. Generated: do not edit, export again. Proves on the processor "
+                "at hand, with the compiler and switches at hand, that tables and rules are as exported: arithmetic of "
+                f"the checksum, checksums of all tables, {asked}, {len(code.commands)} golden choices."
             ),
             GUARD.format(macro=f"{macro}_H").replace("#include <stdint.h>", f'#include "retarder_{code.stem}.h"'),
             *(
