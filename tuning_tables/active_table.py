@@ -48,12 +48,7 @@ class ActiveTable:
     def __post_init__(self) -> None:
         for array in (self.coefficients, self.has_line, self.valid_range, self.slopes, self.pressures):
             array.setflags(write=False)
-        held = held_table(
-            self.coefficients, self.has_line, self.valid_range[:2], self.slopes, self.pressures,
-            target_speed_m_s=float(self.target_speed_m_s), has_gauge=self.has_gauge, decisions=self.decisions,
-            approach=self.approach, estimator=self.estimator,
-        )  # fmt: skip
-        object.__setattr__(self, "held", held)
+        object.__setattr__(self, "held", held_table(self))
 
     @property
     def highest_raised(self) -> int:

@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from tuning_tables.errors import InvalidTable
 from tuning_tables.programs.estimate import ESTIMATE, UNSEEN
-from tuning_tables.programs.observe import GATE, LARGEST_OVERPRESSURE_KPA, LEAST_STEP_M
+from tuning_tables.programs.motion_filter import LEAST_STEP_M
+from tuning_tables.programs.observe import GATE, LARGEST_OVERPRESSURE_KPA
 from tuning_tables.requirement import require_between, require_tuple
 
 Floats = npt.NDArray[np.float32]

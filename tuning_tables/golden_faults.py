@@ -8,10 +8,10 @@ from typing import Final
 import numpy as np
 
 from tuning_tables.estimator import Estimator
-from tuning_tables.programs import observe
+from tuning_tables.programs import motion_filter, observe
 
 LARGEST_STEP_M: Final = float(observe.LARGEST_STEP_M)
-LEAST_SPEED_M_S: Final = float(observe.LEAST_SPEED_M_S)
+LEAST_SPEED_M_S: Final = float(motion_filter.LEAST_SPEED_M_S)
 
 Reading = tuple[float, float, float]
 """Path in m, measured speed in m/s, overpressure in kPa."""
@@ -56,6 +56,17 @@ def wrong_at_first(estimator: Estimator) -> Iterator[Reading]:
         least,
     )
     step = min((last - first) / len(speeds), 0.4)
+    for sample, speed in enumerate(speeds):
+        yield first + sample * step, speed, 0.0
+
+
+def leaping_after_three(estimator: Estimator) -> Iterator[Reading]:
+    """Three readings that agree, then far ones that leap on and on: none is believed, however many they are."""
+    first, last = float(estimator.work[0, 0]), float(estimator.work[0, -1])
+    leap = 12.0 * estimator.speed_noise_m_s + 1.0
+    leaps = [4.0 + leap * (1 + i % 2) for i in range(min(estimator.doubted_readings, 40) + 2)]
+    speeds = [4.0, 4.05, 3.95, *leaps, 4.0]
+    step = min((last - first) / len(speeds), 0.1)
     for sample, speed in enumerate(speeds):
         yield first + sample * step, speed, 0.0
 

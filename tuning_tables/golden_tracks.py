@@ -20,6 +20,7 @@ from tuning_tables.golden_faults import (
     Reading,
     faulty_radar,
     hardest,
+    leaping_after_three,
     rising_while_braked,
     wrong_at_first,
 )
@@ -115,6 +116,7 @@ def _tracks(estimator: Estimator) -> Iterator[list[Reading]]:
     yield _incredible(estimator)
     yield list(faulty_radar(estimator))
     yield list(wrong_at_first(estimator))
+    yield list(leaping_after_three(estimator))
     yield list(rising_while_braked(estimator))
     yield list(_cut(estimator, 3, 2.6, 6.0, 0.0))
     yield list(_cut(estimator, 4, 0.2, 6.0, 0.0))

@@ -138,7 +138,7 @@ def _pressures(table: ControllerTable, stage: int, count: int) -> Floats:
     """`count` pressures in turn: both ends of their range, its middle, and outside."""
     low, high = table.pressures[0], table.pressures[table.highest_raised]
     middle = low + (high - low) / np.float32(2.0)
-    turn = (high, low, low - OUTSIDE_KPA, middle, high + OUTSIDE_KPA, np.float32(LARGEST))
+    turn = (high, low, low - OUTSIDE_KPA, middle, high + OUTSIDE_KPA, np.float32(LARGEST), np.float32(-LARGEST))
     return np.resize(np.roll(np.array(turn, dtype=np.float32), stage), count)
 
 

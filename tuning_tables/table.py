@@ -104,12 +104,7 @@ class ControllerTable:
         for name, array in zip(("coefficients", "has_line", "valid_range", "slopes", "pressures"), arrays, strict=True):
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-        held = held_table(
-            coefficients, has_line, valid_range[:2], slopes, pressures,
-            target_speed_m_s=self.target_speed_m_s, has_gauge=self.has_gauge, decisions=self.decisions,
-            approach=self.approach, estimator=self.estimator,
-        )  # fmt: skip
-        object.__setattr__(self, "held", held)
+        object.__setattr__(self, "held", held_table(self))
 
     @property
     def entrance_stage(self) -> int:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
-from typing import Final
+from typing import Final, NamedTuple
 
 from synth.checker.canonical import crc32
 from synth.checker.finding import DamagedError, shown
@@ -155,8 +155,7 @@ def st_arrays(text: str) -> dict[str, list[list[float]]]:
     return found
 
 
-@dataclass(frozen=True)
-class StRecords:
+class StRecords(NamedTuple):
     """The tables of an export in Structured Text: members, and for each table its numbers, where they can be found."""
 
     members: Sequence[Member]

@@ -41,6 +41,7 @@ _KERNEL_SOURCES = (
     "tuning_tables/programs/decide.py",
     "tuning_tables/programs/estimate.py",
     "tuning_tables/programs/line_table.py",
+    "tuning_tables/programs/motion_filter.py",
     "tuning_tables/programs/numbers.py",
     "tuning_tables/programs/observe.py",
     "tuning_tables/programs/passage_table.py",

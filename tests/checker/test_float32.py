@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import zlib
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from tuning_tables import Decisions
 from tuning_tables.canonical import canonical_json
 from tuning_tables.held_table import held_table
 from tuning_tables.programs.decide import decide as rule_of_tables
+from tuning_tables.rule import readings
 
 REAL = st.floats(allow_nan=False)
 SINGLE = st.floats(allow_nan=False, allow_infinity=False, width=32)
@@ -78,11 +80,13 @@ def test_rule_is_that_of_the_controller(
     coefficients = np.array([[line or missing for line in both] for both in lines], dtype=np.float32)
     has_line = np.array([[line is not None for line in both] for both in lines])
     valid = np.array([begin, 10.0, 0.0, 9.0], dtype=np.float32)
-    held = held_table(
-        coefficients, has_line, valid[:2], np.zeros((len(lines), 2), np.float32), np.zeros(len(lines), np.float32),
-        target_speed_m_s=3.0, has_gauge=False, decisions=Decisions.AT_REST if farthest > 1 else Decisions.AT_ANY_TIME,
-        approach=None, estimator=None,
-    )._replace(entrance_stage=entrance)  # fmt: skip
+    parts = SimpleNamespace(
+        coefficients=coefficients, has_line=has_line, valid_range=valid, slopes=np.zeros((len(lines), 2), np.float32),
+        pressures=np.zeros(len(lines), np.float32), target_speed_m_s=3.0, has_gauge=False, approach=None,
+        estimator=None, decisions=Decisions.AT_REST if farthest > 1 else Decisions.AT_ANY_TIME,
+    )  # fmt: skip
+    s, v = (float(each) for each in readings(s, v))
+    held = held_table(parts)._replace(entrance_stage=entrance)
     farthest = len(lines) - 1 if farthest > 1 else 1
     expected = rule_of_tables(held, stage, s, v, math.nan)
     assert decide(lines, (begin, 10.0), entrance, farthest, stage, s, v) == expected

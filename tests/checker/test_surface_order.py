@@ -47,7 +47,7 @@ def test_the_rule_with_a_pressure_is_that_of_the_controller(
     own = read_table(to_json(table))
     added = rises(own.slopes, own.pressures_kpa, own.top_stage, stage, kpa)
     if 0 <= stage < 4:
-        assert added == tuple(map(float, rule.rises_at(table, stage, np.float64(kpa))))
+        assert added == tuple(map(float, rule.rises_at(table, stage, np.array(kpa))))
     line = own.lines[stage][side] if 0 <= stage < 4 else None
     on = horner(line or (4.0, 0.0), min(max(s, own.path_m[0]), own.path_m[1]))
     v = rounded(on + added[side])

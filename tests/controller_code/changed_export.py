@@ -12,6 +12,9 @@ from scripts.studies.in_the_loop.controller_process import compile_with
 COMPILE = ("gcc", "-std=c99", "-w", "-O0")
 """The quickest way: a fault in the text is one at every level."""
 
+SECONDS = 10
+"""A self-test that hangs has found a fault, too."""
+
 Said = subprocess.CompletedProcess[str]
 
 
@@ -42,7 +45,9 @@ class ChangedExport:
         said = []
         for others in self.others:
             compile_with(["gcc", changed, *others, "-o", program])
-            said.append(subprocess.run([program, "self-test"], capture_output=True, text=True, timeout=60, check=False))
+            said.append(
+                subprocess.run([program, "self-test"], capture_output=True, text=True, timeout=SECONDS, check=False)
+            )
         return said
 
 

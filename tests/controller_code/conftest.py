@@ -11,7 +11,7 @@ import pytest
 
 from scripts.studies.in_the_loop.controller_process import Controller, build_controller
 from tests.controller_code.changed_export import ChangedExport, changed_export
-from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
+from tests.controller_code.sample_book import estimating_book, sample_book, surface_book
 from tuning_tables.table_book import TableBook
 
 Tool = Callable[[str], str]
@@ -21,7 +21,7 @@ Built = Callable[[TableBook], Controller]
 BOOKS: dict[str, Callable[[], TableBook]] = {
     "measured": sample_book,
     "estimated": estimating_book,
-    "approached": approaching_book,
+    "gauged": lambda: surface_book(sample_book()),
     "surfaces": surface_book,
 }
 
@@ -43,7 +43,7 @@ def tool() -> Tool:
 
 @pytest.fixture(scope="session", params=list(BOOKS.values()), ids=list(BOOKS))
 def book(request: pytest.FixtureRequest) -> TableBook:
-    """Tables of many shapes, without and with estimators, approaches and slopes."""
+    """Tables of many shapes, without and with estimators, approaches and slopes: all parts that an export may lack."""
     made: TableBook = request.param()
     return made
 

@@ -1,4 +1,4 @@
-"""Lines between two targets are taken only of tables that differ in nothing but target and lines, in Python and in C."""
+"""Lines between two targets are taken only of tables that differ in nothing but target and lines: Python and C."""
 
 from __future__ import annotations
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import csv
 import io
-import zlib
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from tuning_tables.table_block import block_of, block_size
 
 from scripts.studies.in_the_loop.controller_process import (
     CONTRACT,
@@ -19,10 +17,12 @@ from scripts.studies.in_the_loop.controller_process import (
     sources_of,
     write_sources,
 )
-from tests.controller_code.conftest import Built, ToChange, Tool
+from scripts.studies.in_the_loop.held_words import held_record, held_words, places
+from tests.controller_code.conftest import Built, Tool
 from tuning_tables import InvalidTable, decide_for, from_json, read_book, to_json, write_book
 from tuning_tables.c_literals import hex_float
-from tuning_tables.c_source import c_files, export_tag
+from tuning_tables.c_source import c_files
+from tuning_tables.controller_code.line_code import line_code
 from tuning_tables.self_test_size import FULL, SMALL
 from tuning_tables.table_book import TableBook
 
@@ -73,7 +73,7 @@ def test_cppcheck_has_nothing_to_say(book: TableBook, tmp_path: Path, tool: Tool
     write_sources(book, tmp_path)
     # The interface is the same in every export; without estimators retarder_observe leaves the estimate alone.
     names = ("constParameter", "constParameterPointer", "unmatchedSuppression")  # as versions call it
-    interface = () if block_size(book).breaks else [f"--suppress={name}" for name in names]
+    interface = () if held_record(book).room["breaks"] else [f"--suppress={name}" for name in names]
     # It reads no system headers, so it is told what <float.h> says.
     said = compile_with(
         [tool("cppcheck"), "--enable=all", "--inconclusive", "--std=c99", "--quiet", "--error-exitcode=3",
@@ -107,7 +107,9 @@ def test_exports_of_other_numbers_have_another_tag(book: TableBook) -> None:
     """Also where shapes are equal."""
     first = book.tables[0]
     changed = replace(first, stages=(replace(first.stages[0], upper=first.stages[1].upper), *first.stages[1:]))
-    assert export_tag(TableBook((first,))) != export_tag(TableBook((changed,)))
+    tags = {line_code(TableBook((table,)), SMALL).tag for table in (first, changed)}
+    assert len(tags) == 2
+    assert line_code(TableBook((first,)), FULL).tag in tags
 
 
 @pytest.mark.parametrize("standard", ["c++98", "c++11", "c++14", "c++17"])
@@ -127,59 +129,15 @@ def test_cxx_takes_the_headers_and_since_17_the_code(
             compile_with([*compiler, str(tmp_path / "retarder_table.c")])
 
 
-def test_every_changed_byte_of_a_block_is_found(book: TableBook, built: Built) -> None:
+def test_every_changed_byte_of_a_table_is_found(book: TableBook, built: Built) -> None:
     controller = built(book)
-    right = block_of(book, 0).words
+    right = held_words(book, 0)
     assert controller.intact(right[None, :]).all()
     length = 4 * len(right)
     damaged = np.repeat(right.view(np.uint8)[None, :], len(CHANGES) * length, axis=0)
     place, change = np.divmod(np.arange(len(damaged)), len(CHANGES))
     damaged[np.arange(len(damaged)), place] ^= CHANGES[change]
     assert not controller.intact(damaged.view(np.uint32)).any()
-    # Sizes that would lead out of the table are found even under a right checksum.
-    size = block_size(book)
-    wrong = [(2, 0x7FFFFFFF), (2, size.stages + 1), (3, 0), (3, 99)]
-    for word, value in wrong + [(size.estimator.start, breaks) for breaks in (1, size.breaks + 1)] * (size.breaks > 0):
-        forged = right.copy()
-        forged[word] = value
-        forged[-1] = zlib.crc32(forged[:-1].astype("<u4").tobytes())
-        assert not controller.intact(forged[None, :]).any()
-
-
-@pytest.mark.parametrize(
-    ("before", "after", "fault"),
-    [
-        ("{0x1.cp+1f", "{0x1.c00002p+1f", "fault 2 at 0"),  # the last bit of one coefficient
-        ("v_m_s < line_speed(", "v_m_s <= line_speed(", "fault 3 at"),
-        ("v_m_s > line_speed(", "v_m_s >= line_speed(", "fault 3 at"),
-        ("v_m_s >= 0.0f &&", "", "fault 3 at"),
-        ("v_m_s <= FLT_MAX))", "1))", "fault 3 at"),
-        ("s = table->s_max_m", "s = s_m", "fault 3 at"),
-        ("table->stages - 1u; left", "1u; left", "fault 3 at"),  # one stage a command
-        ("table->stages - 1u; left", "table->stages - 2u; left", "fault 3 at"),
-        ("step == -before", "step == 9", "fault 3 at"),  # on after the opposite answer
-        ("wanted += step", "wanted = stage + step", "fault 3 at"),
-        ("s_m >= -FLT_MAX &&", "", "fault 3 at"),
-        ("(lines & 2u) != 0u &&", "", "fault 3 at"),
-        ("chosen->target_m_s = speed_m_s;", "", "fault 4 at"),
-        ("rounded(rounded(speed * s_m) + coefficients[power])", "(float)((double)speed * (double)s_m + "
-         "(double)coefficients[power])", "fault 3 at"),
-        ("0xEDB88320u", "0xEDB88321u", "fault 1 at 0"),
-        ("table->mass_t < heaviest_t", "table->mass_t > heaviest_t", "fault 4 at"),
-        ("slower->target_m_s >= speed_m_s", "slower->target_m_s > speed_m_s", "fault 4 at"),
-        ("rounded(weight * rise)", "(weight * rise * 1.0000002f)", "fault 4 at"),
-        ("faster == 0 || !is_interpolable(slower, faster)", "faster == 0", "fault 4 at"),
-    ],
-)  # fmt: skip
-def test_the_self_test_finds_a_wrong_controller(
-    before: str, after: str, fault: str, book: TableBook, tmp_path: Path, to_change: ToChange
-) -> None:
-    if block_size(book).gauge:
-        before, after = (each.replace("line_speed(", "surface_speed(") for each in (before, after))
-    export = to_change([sources_of(book, size) for size in (FULL, SMALL)], "retarder_table.c")
-    for said in export.self_tests(before, after, tmp_path):
-        assert said.stdout.startswith(fault)
-        assert said.returncode == int(fault.split()[1])
 
 
 def test_json_book_and_c_hold_the_same_bits(book: TableBook, tmp_path: Path, built: Built) -> None:
@@ -187,44 +145,36 @@ def test_json_book_and_c_hold_the_same_bits(book: TableBook, tmp_path: Path, bui
     way_round = TableBook(tuple(from_json(to_json(table)) for table in read_book(tmp_path / "book.h5")))
     assert way_round == book
     assert c_files(way_round) == c_files(book)
-    dumped = built(way_round).dump()
-    size = block_size(book)
-    for table, held in zip(book.tables, dumped, strict=True):
-        coefficients = held[size.coefficients].view(np.float32).reshape(size.stages, 2, size.powers)
+    record, where = held_record(book), places(book)
+    for table, words in zip(book.tables, built(way_round).dump(), strict=True):
+        lines = words[where["coefficient"]].view(np.float32).reshape(record.shape("coefficient"))
+        has_line = words[where["has_line"]].reshape(record.shape("has_line"))
+        assert words[where["stages"]] == len(table.stages)
+        assert words[where["powers"]] == table.degree + 1
         for stage in table.stages:
             for index, line in enumerate((stage.lower, stage.upper)):
-                assert bool(held[4 + stage.k] >> index & 1) == (line is not None)
-                if line is not None:
-                    exported = coefficients[stage.k, index, : table.degree + 1].astype(np.float64)
-                    assert np.array_equal(exported.view(np.uint64), np.array(line).view(np.uint64))
-        if size.gauge:
-            highest, *kept = held[size.pressures].view(np.float32)
-            assert highest == (table.pressures[table.highest_raised] if table.has_gauge else 0.0)
-            pressures, slopes = np.array(kept[: size.stages]), np.reshape(kept[size.stages :], (size.stages, 2))
-            for number, stage in enumerate(table.stages if table.has_gauge else ()):
-                assert pressures[number] == np.float32(stage.pressure_kpa)
-                assert slopes[number].tolist() == [each or 0.0 for each in stage.slopes]
-            assert table.has_gauge or not (pressures.any() or slopes.any())
-        if size.breaks:
-            estimator, words = table.estimator, held[size.estimator]
-            assert words[0] == (0 if estimator is None else len(estimator.s_m))
-            work = words[12:].view(np.float32).reshape(3, size.breaks)[:, : words[0]]
-            if estimator is not None:
-                noise, cv, along, touch, excess, _, frozen, doubted, lost, _, unlikely = words[1:12].view(np.float32)
-                assert (noise, cv) == (np.float32(estimator.speed_noise_m_s**2), np.float32(estimator.friction_cv**2))
-                assert along == np.float32(2.0 * estimator.path_std**2 * estimator.correlation_length_m)
-                assert touch == np.float32(estimator.touch_pressure_kpa)
-                assert excess == np.float32(estimator.resistance_std_m_s2**2)
-                assert (frozen, doubted) == (estimator.frozen_readings, estimator.doubted_readings)
-                assert lost == np.float32(estimator.lost_speed_std_m_s**2)
-                assert unlikely == np.float32(estimator.unlikely_deviation)
-                assert np.array_equal(work, estimator.work)
+                assert has_line[stage.k, index] == (line is not None)
+                held = lines[stage.k, index, : table.degree + 1].astype(np.float64)
+                assert np.array_equal(held.view(np.uint64), np.array(line or 0.0 * held).view(np.uint64))
+        if "slope" in where:
+            pressures = [stage.pressure_kpa if table.has_gauge else 0.0 for stage in table.stages]
+            assert words[where["pressure_kpa"]].view(np.float32)[: len(pressures)].tolist() == pressures
+            slopes = words[where["slope"]].view(np.float32).reshape(-1, 2)[: len(pressures)]
+            assert slopes.tolist() == [[each or 0.0 for each in stage.slopes] for stage in table.stages]
+        if table.estimator is not None:
+            work = [words[where[name]].view(np.float32)[: len(table.estimator.s_m)]
+                    for name in ("place_m", "drive", "brake")]  # fmt: skip
+            assert np.array_equal(work, table.estimator.work)
+            for name, value in table.estimator.numbers.items():
+                assert words[where[name]].view(np.float32)[0] == np.float32(value), name
 
 
 def test_golden_vectors_as_csv_are_answered_as_they_say(book: TableBook) -> None:
     rows = list(csv.DictReader(io.StringIO(c_files(book)["golden_vectors.csv"].decode("utf-8"), newline="")))
     assert len(rows) > 300 * len(book.tables)
-    columns = {"s_bits": "s_m", "v_bits": "v_m_s"} | ({"p_bits": "pressure_kpa"} if block_size(book).gauge else {})
+    columns = {"s_bits": "s_m", "v_bits": "v_m_s"} | (
+        {"p_bits": "pressure_kpa"} if held_record(book).room["gauge"] else {}
+    )
     assert {*rows[0]} == {"table", "id", "stage", *columns, *columns.values(), "answer"}
     for row in rows:
         reading = [np.array([int(row[key], 16)], np.uint32).view(np.float32)[0] for key in columns]
@@ -244,7 +194,7 @@ def test_the_text_is_plain_whatever_names_hold(book: TableBook) -> None:
             assert "@" not in text
             assert all(len(line.rstrip()) == len(line) for line in text.splitlines())
     header = content["retarder_table.h"].decode("ascii")
-    assert "#define RETARDER_CATEGORY_ST 4u /* <U+0421><U+0422> */" in header
+    assert "#define RETARDER_CATEGORY_ST 4 /* <U+0421><U+0422> */" in header
     assert "??/" not in header
 
 

@@ -25,10 +25,10 @@ from tests.controller_code.test_export import FLOAT_H, PEDANTIC
 from tuning_tables.c_correction import correction_c_files
 from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.code import crc32_of, words_of
-from tuning_tables.controller_code.passage_code import passage_code
+from tuning_tables.controller_code.passage_code import Ask, passage_code
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
-from tuning_tables.passages.c_source import Ask, passage_c_files
+from tuning_tables.passages.c_source import passage_c_files
 from tuning_tables.passages.golden_passages import few_golden_passages, golden_passages
 from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_book import PassageBook

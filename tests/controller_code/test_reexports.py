@@ -13,8 +13,8 @@ from synth.retarder.configuration.config_file import parse_config
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
 from tuning_tables import ControllerTable
-from tuning_tables.c_source import category_lines
-from tuning_tables.golden_choices import GoldenChoice, golden_choices
+from tuning_tables.category_names import category_names
+from tuning_tables.golden_choices import golden_choices
 from tuning_tables.table_book import TableBook
 
 MASSES = {"Л": 23.0, "ЛС": 36.0, "С": 52.0, "СТ": 66.0, "Т": 85.0}
@@ -48,12 +48,13 @@ AFTER = [
 """Reordered, with classes added before, between and behind, with classes removed."""
 
 
-def choices_by_class(of: TableBook) -> dict[int, list[GoldenChoice]]:
-    """The golden choices with a table, by number of the category."""
-    found: dict[int, list[GoldenChoice]] = {}
+def choices_by_class(of: TableBook) -> dict[int, list[tuple[object, ...]]]:
+    """By number of the category the golden choices with a table: command, status, target speed and coefficients."""
+    found: dict[int, list[tuple[object, ...]]] = {}
     for choice in golden_choices(of):
-        if choice.status >= 0:
-            found.setdefault(choice.category, []).append(choice)
+        if choice.table is not None:
+            chosen = choice.table.target_speed_m_s, choice.table.coefficients.tobytes()
+            found.setdefault(choice.category, []).append((choice.commanded_m_s, choice.status, *chosen))
     return found
 
 
@@ -61,7 +62,7 @@ def choices_by_class(of: TableBook) -> dict[int, list[GoldenChoice]]:
 def test_numbers_and_golden_choices_stay(after: tuple[str, ...]) -> None:
     first, second = book(*BEFORE), book(*after)
     assert dict(second.category_numbers) == {category: FIXED[category] for category in after}
-    assert set(category_lines(first)) <= set(category_lines(second))
+    assert {*category_names(first.exported_numbers())} <= {*category_names(second.exported_numbers())}
     before, now = choices_by_class(first), choices_by_class(second)
     assert set(now) == {FIXED[category] for category in after}
     for category in {*BEFORE} & {*after}:
@@ -94,7 +95,7 @@ def commands() -> np.ndarray:
     """Every number from 0 to 17 at speeds around all targets."""
     speeds = np.linspace(1.9, 3.3, 141, dtype=np.float32).tolist()
     exact = [table.target_speed_m_s for category in FIXED for table in tables(category)]
-    rows = [(2, number, 4, speed) for number in range(18) for speed in (*speeds, *exact)]
+    rows = [(number, 4, speed) for number in range(18) for speed in (*speeds, *exact)]
     return np.array(rows, COMMAND)
 
 

@@ -10,10 +10,10 @@ from importlib.resources import files
 from pathlib import Path
 
 import pytest
-from tuning_tables.table_block import block_size
 
 from scripts.studies.in_the_loop.agreement import Questions, Tracks, ask, differences, follow
 from scripts.studies.in_the_loop.controller_process import CONTRACT, Controller, compile_with
+from scripts.studies.in_the_loop.held_words import table_words
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimating_book, park_book, sample_book
 from tuning_tables.c_source import c_files
@@ -32,7 +32,7 @@ int park_main(int count, char **arguments);
 int main(int count, char **arguments)
 {
     /* Categories are the same for both; tables are of two types. */
-    if (BUNCH_CATEGORY_ST != PARK_CATEGORY_ST || BUNCH_STAGES == PARK_STAGES || count < 3) {
+    if (BUNCH_CATEGORY_ST != PARK_CATEGORY_ST || sizeof(bunch_table) == sizeof(park_table) || count < 3) {
         return 6;
     }
     return strcmp(arguments[1], "bunch") == 0 ? bunch_main(count - 1, arguments + 1)
@@ -84,7 +84,7 @@ def asked(name: str) -> tuple[Questions, Tracks]:
 def test_both_answer_as_alone(small: bool, compiled: Callable[[bool], Path]) -> None:
     program = compiled(small)
     for name, book in POSITIONS.items():
-        controller = Controller((str(program), name), block_size(book).words)
+        controller = Controller((str(program), name), table_words(book))
         assert controller.self_test() == "fault 0 at 0"
         assert differences(controller, *asked(name)).none
 

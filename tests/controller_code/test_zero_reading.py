@@ -6,8 +6,8 @@ from pathlib import Path
 
 from tests.controller_code.sample_book import sample_book
 from tuning_tables.c_source import c_files
-from tuning_tables.estimator import begin, hand_on, unseen_samples
-from tuning_tables.rule import decide_for
+from tuning_tables.estimator import begin, unseen_samples
+from tuning_tables.rule import decide_for, speed_for
 from tuning_tables.st_source import TABLE_FILE, st_files
 
 PAGE = Path(__file__).parents[2] / "docs" / "controllers.md"
@@ -15,10 +15,10 @@ PAGE = Path(__file__).parents[2] / "docs" / "controllers.md"
 
 def test_zero_is_believed_and_lowers() -> None:
     table, state = sample_book().tables[0], begin()
-    assert hand_on(state, 0.0) == 0.0
+    assert speed_for(table, state, 5.0, 0.0, 0.0) == 0.0
     assert unseen_samples(state) == 0
     assert decide_for(table, 2, 5.0, 0.0) == 0
-    assert hand_on(state, -1.0) == -1.0
+    assert speed_for(table, state, 5.0, -1.0, 0.0) == -1.0
     assert unseen_samples(state) == 1
     assert decide_for(table, 2, 5.0, -1.0) == 2
 

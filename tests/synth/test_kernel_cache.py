@@ -16,8 +16,8 @@ SOURCES = (
     "scripts/studies/peers/kernels/peer.py",
     "synth/kernels/sweep/bellman.py",
     "synth/kernels/deep/er.py",
-    "tuning_tables/rule.py",
-    "tuning_tables/estimator.py",
+    "tuning_tables/programs/decide.py",
+    "tuning_tables/programs/observe.py",
 )
 
 
@@ -26,6 +26,7 @@ OTHERS = (
     "scripts/studies/peers/study.py",
     "synth/retarder/configuration/settings.py",
     "tuning_tables/table.py",
+    "tuning_tables/rule.py",
 )
 
 

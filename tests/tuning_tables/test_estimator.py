@@ -16,7 +16,8 @@ from tuning_tables.estimator import CAUTION, Estimator, begin
 from tuning_tables.held_table import lines_apart
 from tuning_tables.programs.alarms import HEAVIER_ALARM, LOST_ALARM, SENSOR_ALARM, alarms, table_after
 from tuning_tables.programs.estimate import UNSEEN
-from tuning_tables.programs.observe import LEAST_FACTOR, observe
+from tuning_tables.programs.motion_filter import LEAST_FACTOR
+from tuning_tables.programs.observe import observe
 
 PERIOD_S = 0.1
 BREAKS = (0.0, 1.85, 8.0, 12.5, 20.0, 30.0)
@@ -299,10 +300,9 @@ def test_the_rule_is_asked_with_the_estimated_speed(estimated_table: ControllerT
         speed = speed_for(estimated_table, state, *reading)
         assert speed == float(observe(lines_apart(estimator), direct, *reading))
         assert speed == speed_for(active(estimated_table), state.copy(), reading[0] - 30.0, np.nan, 0.0)
-        assert (
-            speed_for(replace(estimated_table, estimator=None, predicted=Predicted(0, 0, 0, 0)), state, *reading)
-            == np.float32(reading[1])
-        )
+        assert speed_for(
+            replace(estimated_table, estimator=None, predicted=Predicted(0, 0, 0, 0)), state, *reading
+        ) == np.float32(reading[1])
 
 
 def test_lines_are_taken_between_tables_of_one_estimator_only(estimated_table: ControllerTable) -> None:

@@ -45,7 +45,7 @@ def test_the_worked_answers_are_those_of_the_rule() -> None:
     for stage, s, v, pressure, lower, upper, answer in rows:
         kpa = float("nan") if pressure == "silent" else float(pressure)
         assert decide_for(example, int(stage), float(s), float(v), kpa) == int(stage) + ANSWERS[answer]
-        rise = rises_at(example, int(stage), np.float64(kpa))
+        rise = rises_at(example, int(stage), np.array(kpa))
         for side, told in enumerate((lower, upper)):
             assert (told == "–") == (not example.has_line[int(stage), side])
             if told != "–":

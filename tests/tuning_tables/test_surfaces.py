@@ -97,13 +97,13 @@ def test_one_who_gives_no_pressure_is_one_whose_gauge_is_silent(tilted_table: Co
 def test_the_highest_pressure_is_that_of_the_highest_stage_that_is_raised_to(surface_table: ControllerTable) -> None:
     table = with_stage(surface_table, 3, lower_slope_m_s_per_kpa=-(2.0**-7))
     assert table.highest_raised == active(table).highest_raised == 2
-    at_299, at_300, at_301, at_most = (rises_at(table, 1, np.float64(kpa)) for kpa in (299.0, 300.0, 301.0, 3.4e38))
+    at_299, at_300, at_301, at_most = (rises_at(table, 1, np.array(kpa)) for kpa in (299.0, 300.0, 301.0, 3.4e38))
     assert (at_300 == at_301).all()
     assert (at_300 == at_most).all()
     assert (at_300 != at_299).any()
     # Stage 3 is above it: a pressure as its own counts as that of stage 2, silence as its own.
     assert rises_at(table, 3, np.array([450.0, 300.0])).tolist() == [[150.0 / 128.0, 0.0]] * 2
-    assert rises_at(table, 3, np.float64(NAN)).tolist() == [0.0, 0.0]
+    assert rises_at(table, 3, np.array(NAN)).tolist() == [0.0, 0.0]
 
 
 @pytest.mark.parametrize("stage", [-1, 4, -(2**31), 2**31])

@@ -93,6 +93,8 @@ def c_header(code: ControllerCode) -> str:
             *head_comment(code),
             GUARD.format(macro=macro),
             *(STATUSES.split("\n") if code.chooses else []),
+            *(f"#define RETARDER_{name} ({value}) /* {meaning} */" for name, value, meaning in code.named),
+            *([""] if code.named else []),
             "/* Weight categories: their numbers are the same in every export, and so they may be kept elsewhere. */",
             *(f"#define RETARDER_CATEGORY_{each.macro} {each.number} /* {comment_text(each.category)} */"
               for each in code.categories),

@@ -17,6 +17,7 @@ from tuning_tables.controller_code.c_code import (
     crc32_name,
     same_export,
 )
+from tuning_tables.controller_code.c_odd_test import odd_is_right
 from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
 from tuning_tables.language.c99_data import c_comment
 from tuning_tables.language.records import Kind
@@ -43,6 +44,8 @@ def c_test_header(code: ControllerCode) -> str:
         *((f"BAD_{each.about.upper()}", FIRST_ANSWER + place, f"one of the golden {each.about} is another")
           for place, each in enumerate(code.questions)),
         ("BAD_NOTHING", FIRST_ANSWER + len(code.questions), "a function without a record answers otherwise"),
+        *([("BAD_ODD", FIRST_ANSWER + len(code.questions) + 1, "a changed table answers otherwise")]
+          if code.odd else []),
     ]  # fmt: skip
     return "\n".join(
         [
@@ -86,6 +89,7 @@ def c_test_source(code: ControllerCode) -> str:
             part("found.c"),
             *(is_right(code, place, each) for place, each in enumerate(code.questions)),
             nothing_is_safe(code),
+            *([odd_is_right(code)] if code.odd else []),
             f"int32_t retarder_{stem}(uint32_t *where)",
             "{",
             f"    static const unsigned char digits[9] = {{{', '.join(f'0x3{digit}u' for digit in range(1, 10))}}};",
@@ -105,6 +109,9 @@ def c_test_source(code: ControllerCode) -> str:
             "    if (nothing_is_safe() != 1) {",
             f"        return found({macro_prefix(code)}BAD_NOTHING, 0u, where);",
             "    }",
+            *(["    if (odd_is_right() != 1) {",
+               f"        return found({macro_prefix(code)}BAD_ODD, 0u, where);",
+               "    }"] if code.odd else []),
             f"    return found({macro_prefix(code)}SOUND, 0u, where);",
             "}",
             "",

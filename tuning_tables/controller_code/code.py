@@ -56,6 +56,9 @@ class Questions:
     rules: tuple[Rule, ...]
     rows: npt.NDArray[np.void]
 
+    def __post_init__(self) -> None:
+        self.rows.setflags(write=False)
+
     @property
     def asked(self) -> tuple[str, ...]:
         """The parameters that are numbers, each once."""
@@ -87,13 +90,31 @@ class Commanded:
     chosen: Values | None
 
 
+Place = tuple[int, ...]
+"""A place in the axes of a member."""
+
+
+@dataclass(frozen=True)
+class OddQuestion:
+    """What is changed beforehand, and stays so: (member, place in its axes, number); then a rule, and its answer.
+
+    `given`: the numbers that the rule is asked with. A state has just begun.
+    """
+
+    changes: tuple[tuple[str, Place, float], ...]
+    rule: Rule
+    given: Mapping[str, float]
+    wanted: float
+
+
 @dataclass(frozen=True, eq=False)
 class ControllerCode:
     """An export: a book of tables of one kind.
 
     `stem`: of its files, "table" in retarder_table.c; tables with lines have it, and their names are the short ones.
     `head`: paragraphs for the head of each file. `records`: of the table, then of the states, each with the name of its
-    type. `chooses`: the rule `choose`, and `blend` where there is something between two tables.
+    type. `chooses`: the rule `choose`, and `blend` where there is something between two tables. `odd`: questions to a
+    changed copy of table 0. `named`: numbers that have names in C, with what they mean.
     """
 
     stem: str
@@ -109,6 +130,8 @@ class ControllerCode:
     chooses: tuple[Rule, ...]
     questions: tuple[Questions, ...]
     commands: tuple[Commanded, ...]
+    odd: tuple[OddQuestion, ...] = ()
+    named: tuple[tuple[str, int, str], ...] = ()
 
     @cached_property
     def sized(self) -> Mapping[str, SizedRecord]:

@@ -11,16 +11,18 @@ import numpy.typing as npt
 from tuning_tables.active_table import ActiveTable, active
 from tuning_tables.category_names import category_names, comment_text
 from tuning_tables.controller_code.code import Commanded, ControllerCode, HeldTable, Questions, Rule, Values, padded
+from tuning_tables.controller_code.odd_tables import odd_questions
 from tuning_tables.golden_choices import golden_choices
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.golden_vectors import GoldenVectors
 from tuning_tables.language.records import SizedRecord, record_of
-from tuning_tables.programs.alarms import alarms
+from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM, alarms
 from tuning_tables.programs.choose import Tables, blend, choose
 from tuning_tables.programs.decide import decide
 from tuning_tables.programs.estimate import ESTIMATE
 from tuning_tables.programs.line_table import LINE_TABLE
-from tuning_tables.programs.observe import begin_cut, observe
+from tuning_tables.programs.motion_filter import begin_cut
+from tuning_tables.programs.observe import observe
 from tuning_tables.self_test_size import SelfTestSize
 from tuning_tables.table_book import TableBook
 
@@ -42,9 +44,19 @@ HEAD: Final = (
     "the pressure that is there, and not by the stage that was commanded. Where the gauge fails, hand over what "
     "is no number (NaN): then the lines at the pressure of the stage count. Other tables do not look at the "
     "pressure; hand over 0.",
+    "A reading of 0 of a table without estimator is believed: the cut stands, so the brake is released. If the "
+    "radar shows 0 where it has lost its target, hand over -1 in place of that 0. The state counts in `unseen` for "
+    "how many samples no reading was believed; the supervision compares it with a limit of its own, and acts.",
     "Alarms. 1: the speed is known too badly, and `observe` answers less than the estimate; 2: readings of the "
     "radar are doubted, or one repeats itself; 4, 8: the brake works more, or less, on this cut than on any of "
     "its category.",
+)
+
+NAMED: Final = (
+    ("LOST", LOST_ALARM, "alarm: the speed is known too badly"),
+    ("SENSOR_DOUBTED", SENSOR_ALARM, "alarm: readings are doubted, or one repeats itself"),
+    ("LIGHTER", LIGHTER_ALARM, "alarm: the brake works more on this cut than on any of its category"),
+    ("HEAVIER", HEAVIER_ALARM, "alarm: it works less"),
 )
 
 
@@ -67,6 +79,8 @@ def line_code(book: TableBook, self_test: SelfTestSize) -> ControllerCode:
         chooses=CHOOSES,
         questions=(decisions(book, self_test), estimates(book)),
         commands=tuple(commands(book, record)),
+        named=NAMED,
+        odd=odd_questions(record, held[0].values, DECIDE, OBSERVE),
     )
 
 

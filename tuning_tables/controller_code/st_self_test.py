@@ -18,6 +18,7 @@ from tuning_tables.category_names import comment_text
 from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
 from tuning_tables.controller_code.st_choice_test import choice_tests
 from tuning_tables.controller_code.st_code import WIDTH, load_of, st_names, table_type
+from tuning_tables.controller_code.st_odd_test import odd_test
 from tuning_tables.controller_code.st_test_block import (
     TestBlock,
     block_text,
@@ -99,6 +100,7 @@ def st_test_units(code: ControllerCode, line_checks: int) -> list[str]:
     blocks = [
         *(constants_test(code, number) for number in range(len(code.tables))),
         *(test for questions in code.questions for test in questions_tests(code, questions)),
+        *([odd_test(code)] if code.odd else []),
         *(choice_tests(code, line_checks) if code.commands else []),
     ]
     return [*(block.text for block in blocks), run_all(code, blocks)]

@@ -67,7 +67,8 @@ def choose(
                     faster = number
                     faster_m_s = target
         number = number + 1
-    if slower >= 0 and NOUGHT < commanded_m_s <= LARGEST_NUMBER:
+    # Every target is above 0, and so is a command that is not below one; no comparison with a NaN is true.
+    if slower >= 0 and commanded_m_s <= LARGEST_NUMBER:
         status = SLOWER
         if slower_m_s >= commanded_m_s:
             status = TUNED

@@ -29,14 +29,7 @@ from tuning_tables.language.records import flag, real
 from tuning_tables.programs.estimate import (
     BEGUN,
     BELIEVED,
-    CROSS_COVARIANCE,
     DOUBTED,
-    EXCESS,
-    EXCESS_COVARIANCE,
-    EXCESS_VARIANCE,
-    FACTOR,
-    FACTOR_COVARIANCE,
-    FACTOR_VARIANCE,
     PATH_M,
     READING_M_S,
     REPEATED,
@@ -46,11 +39,11 @@ from tuning_tables.programs.estimate import (
     Estimate,
 )
 from tuning_tables.programs.line_table import LineTable
+from tuning_tables.programs.motion_filter import LEAST_SPEED_M_S, begin_at, correct, predict
 from tuning_tables.programs.numbers import (
     MINUS_ONE,
     NOUGHT,
     ONE,
-    TWO,
     Answer,
     MeasuredSpeed,
     Overpressure,
@@ -65,132 +58,12 @@ LARGEST_OVERPRESSURE_KPA: Final = np.float32(2000.0)
 LARGEST_STEP_M: Final = np.float32(20.0)
 """Readings beyond these cannot be true, and one of them would spoil the state for the rest of the pass."""
 
-LEAST_SPEED_M_S: Final = np.float32(0.2)
-LEAST_STEP_M: Final = np.float32(0.001)
-LEAST_FACTOR: Final = np.float32(0.3)
-LARGEST_FACTOR: Final = np.float32(1.9)
-"""Beyond the default floor of ξ_cut, and six standard deviations at a CV of 0.15."""
-
-LARGEST_EXCESS_M_S2: Final = np.float32(0.5)
-LEAST_EXCESS_M_S2: Final = np.float32(-0.5)
-
 GATE: Final = 5.0
 """Standard deviations of a surprise, beyond which a reading that leapt is doubted."""
 GATE_SQUARED: Final = np.float32(GATE**2)
 
 FEW_READINGS: Final = np.float32(3.0)
 """As long as fewer were believed, a doubted one begins the estimate anew: the first ones may have been the false."""
-
-
-def begin_cut(estimate: Estimate) -> None:
-    """Forget the last cut: to be called once for each cut before its first sample."""
-    estimate[BEGUN] = NOUGHT
-    estimate[PATH_M] = NOUGHT
-    estimate[SPEED_M_S] = NOUGHT
-    estimate[FACTOR] = NOUGHT
-    estimate[EXCESS] = NOUGHT
-    estimate[SPEED_VARIANCE] = NOUGHT
-    estimate[FACTOR_COVARIANCE] = NOUGHT
-    estimate[EXCESS_COVARIANCE] = NOUGHT
-    estimate[FACTOR_VARIANCE] = NOUGHT
-    estimate[CROSS_COVARIANCE] = NOUGHT
-    estimate[EXCESS_VARIANCE] = NOUGHT
-    estimate[UNSEEN] = NOUGHT
-    estimate[READING_M_S] = NOUGHT
-    estimate[REPEATED] = NOUGHT
-    estimate[BELIEVED] = NOUGHT
-    estimate[DOUBTED] = NOUGHT
-
-
-def work_until(table: LineTable, s: Path) -> Answer:
-    """What grade and brake have done from the first break to path s."""
-    last = table.breaks - 1
-    place = min(max(s, table.place_m[0]), table.place_m[last])
-    j = 0
-    k = 1
-    while k < last:
-        if place > table.place_m[k]:
-            j = k
-            k = k + 1
-        else:
-            k = last
-    part = (place - table.place_m[j]) / (table.place_m[j + 1] - table.place_m[j])
-    drive = table.drive[j] + part * (table.drive[j + 1] - table.drive[j])
-    brake = table.brake[j] + part * (table.brake[j + 1] - table.brake[j])
-    return drive, brake
-
-
-def predict(table: LineTable, estimate: Estimate, s: Path, kpa: Annotated[Any, real("overpressure, kPa")]) -> Answer:
-    """Carry speed and covariances on to path s; returns the speed that the brake takes at a factor of 1."""
-    v = estimate[SPEED_M_S]
-    drive, brake = work_until(table, s)
-    drive_before, brake_before = work_until(table, estimate[PATH_M])
-    way = s - estimate[PATH_M]
-    work_at_one = kpa * (brake - brake_before)
-    gained = drive - drive_before - estimate[EXCESS] * way
-    gained = gained - estimate[FACTOR] * work_at_one
-    mean = max((v + v + gained / v) / TWO, LEAST_SPEED_M_S)
-    predicted = max(v + gained / mean, LEAST_SPEED_M_S)
-    slope = v / predicted
-    effect = work_at_one / mean
-    drag = way / mean
-    path_part = table.path_variance / max(way, LEAST_STEP_M)
-    # The covariances of speed and factor, of speed and excess, and the variance of the speed.
-    cross = slope * estimate[FACTOR_COVARIANCE] - effect * estimate[FACTOR_VARIANCE]
-    cross = cross - drag * estimate[CROSS_COVARIANCE]
-    excess = slope * estimate[EXCESS_COVARIANCE] - effect * estimate[CROSS_COVARIANCE]
-    excess = excess - drag * estimate[EXCESS_VARIANCE]
-    square = slope * estimate[SPEED_VARIANCE] - effect * estimate[FACTOR_COVARIANCE]
-    square = slope * (square - drag * estimate[EXCESS_COVARIANCE])
-    square = square - effect * (cross - effect * path_part)
-    estimate[PATH_M] = s
-    estimate[SPEED_M_S] = predicted
-    estimate[SPEED_VARIANCE] = max(square - drag * excess, NOUGHT)
-    estimate[FACTOR_COVARIANCE] = cross
-    estimate[EXCESS_COVARIANCE] = excess
-    return effect
-
-
-def correct(table: LineTable, estimate: Estimate, v: Speed) -> None:
-    """Weigh a measured speed by the covariances."""
-    square = estimate[SPEED_VARIANCE]
-    cross = estimate[FACTOR_COVARIANCE]
-    excess = estimate[EXCESS_COVARIANCE]
-    total = square + table.speed_variance
-    gain = square / total
-    factor_gain = cross / total
-    excess_gain = excess / total
-    surprise = v - estimate[SPEED_M_S]
-    estimate[SPEED_M_S] = max(estimate[SPEED_M_S] + gain * surprise, LEAST_SPEED_M_S)
-    factor = estimate[FACTOR] + factor_gain * surprise
-    estimate[FACTOR] = min(max(factor, LEAST_FACTOR), LARGEST_FACTOR)
-    added = estimate[EXCESS] + excess_gain * surprise
-    estimate[EXCESS] = min(max(added, LEAST_EXCESS_M_S2), LARGEST_EXCESS_M_S2)
-    estimate[SPEED_VARIANCE] = square - gain * square
-    estimate[FACTOR_COVARIANCE] = cross - gain * cross
-    estimate[EXCESS_COVARIANCE] = excess - gain * excess
-    estimate[FACTOR_VARIANCE] = max(estimate[FACTOR_VARIANCE] - factor_gain * cross, NOUGHT)
-    estimate[CROSS_COVARIANCE] = estimate[CROSS_COVARIANCE] - factor_gain * excess
-    estimate[EXCESS_VARIANCE] = max(estimate[EXCESS_VARIANCE] - excess_gain * excess, NOUGHT)
-    estimate[BELIEVED] = estimate[BELIEVED] + ONE
-    estimate[DOUBTED] = NOUGHT
-
-
-def begin_at(table: LineTable, estimate: Estimate, s: Path, v: Speed) -> None:
-    """Begin the estimate with a measured speed, taken as it is."""
-    estimate[BEGUN] = ONE
-    estimate[PATH_M] = s
-    estimate[SPEED_M_S] = v
-    estimate[FACTOR] = ONE
-    estimate[EXCESS] = NOUGHT
-    estimate[SPEED_VARIANCE] = table.speed_variance
-    estimate[FACTOR_COVARIANCE] = NOUGHT
-    estimate[EXCESS_COVARIANCE] = NOUGHT
-    estimate[FACTOR_VARIANCE] = table.factor_variance
-    estimate[CROSS_COVARIANCE] = NOUGHT
-    estimate[EXCESS_VARIANCE] = table.excess_variance
-    estimate[BELIEVED] = ONE
-    estimate[DOUBTED] = NOUGHT
 
 
 def follow(
@@ -230,6 +103,15 @@ def follow(
             correct(table, estimate, v)
             how = 1
     return how
+
+
+def told(table: LineTable, estimate: Estimate) -> Answer:
+    """The speed to decide with: a cut whose speed is known too badly is taken for slower than it seems."""
+    speed = MINUS_ONE
+    if estimate[BEGUN] > NOUGHT:
+        beyond = max(estimate[SPEED_VARIANCE] - table.lost_variance, NOUGHT)
+        speed = max(estimate[SPEED_M_S] - table.caution * beyond, NOUGHT)
+    return speed
 
 
 def observe(
@@ -286,10 +168,7 @@ def observe(
         if how == 2:
             begin_at(table, estimate, s, v)
         is_seen = how > 0
-        if estimate[BEGUN] > NOUGHT:
-            # A cut whose speed is known too badly is taken for slower than it seems.
-            beyond = max(estimate[SPEED_VARIANCE] - table.lost_variance, NOUGHT)
-            observed = max(estimate[SPEED_M_S] - table.caution * beyond, NOUGHT)
+        observed = told(table, estimate)
     if is_seen:
         estimate[UNSEEN] = NOUGHT
     else:

@@ -28,7 +28,7 @@ CODE: Final = "retarder_table.c"
 
 @dataclass(frozen=True)
 class Coverage:
-    """(reached, all there are) of lines, branches and MC/DC; `rest`: what is not reached, "line 7: `the text`: what"."""
+    """(reached, all there are) of lines, branches and MC/DC; `rest`: what is not reached, a line each."""
 
     lines: tuple[int, int]
     branches: tuple[int, int]

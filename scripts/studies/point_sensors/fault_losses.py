@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,14 @@ from synth.simulation.random_passes import RandomPasses
 from synth.simulation.sensor_fault_figures import FaultCase, FaultFigures, fault_figures, single_faults
 from synth.simulation.sensor_faults import together
 
-WIDE_LIMITS = (0.01, 40.0, 10.0, 10.0, 0.9, 10.0)
+WIDE: dict[str, Any] = {
+    "least_m_s": np.float32(0.01),
+    "greatest_m_s": np.float32(40.0),
+    "acceleration_m_s2": np.float32(10.0),
+    "deceleration_m_s2": np.float32(10.0),
+    "speed_tolerance": np.float32(0.9),
+    "path_tolerance_m": np.float32(10.0),
+}
 """The widest that a table may have: hardly a pair of pulses is not believed."""
 
 
@@ -24,7 +32,7 @@ def fault_rows(site: Site, axles: str, made: SensorTable, passes: RandomPasses) 
     """A row for every fault, after the one without; all on the same passes."""
     target, draws, loop = site.target_m_s, made.loop.draws(passes), made.loop
     controller = of_table(made.table, tracking=True)
-    wide = replace(controller, rule=controller.rule._replace(limits=np.array(WIDE_LIMITS, dtype=np.float32)))
+    wide = replace(controller, rule=controller.rule._replace(**WIDE))
     whole = loop.run(controller, draws, together(loop.sensors, ()))
     cases = single_faults(loop.sensors, target, made.plant.entry.high_m_s)
     figures = fault_figures(loop, controller, draws, target, cases)

@@ -10,18 +10,20 @@ from numpy.typing import NDArray
 from synth.kernels.loop.lane_places import Floats, Ints
 from synth.kernels.vector import packs
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+from tuning_tables.programs.motion_filter import (
+    LARGEST_EXCESS_M_S2,
+    LARGEST_FACTOR,
+    LEAST_FACTOR,
+    LEAST_SPEED_M_S,
+    LEAST_STEP_M,
+)
 from tuning_tables.programs.numbers import NOUGHT, ONE, TWO
 from tuning_tables.programs.observe import (
     FEW_READINGS,
     GATE_SQUARED,
-    LARGEST_EXCESS_M_S2,
-    LARGEST_FACTOR,
     LARGEST_OVERPRESSURE_KPA,
     LARGEST_SPEED_M_S,
     LARGEST_STEP_M,
-    LEAST_FACTOR,
-    LEAST_SPEED_M_S,
-    LEAST_STEP_M,
 )
 
 FIELDS = 16

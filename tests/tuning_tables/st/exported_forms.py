@@ -77,7 +77,8 @@ def _named(book: TableBook, *ids: str) -> TableBook:
     return TableBook(tuple(table for table in book.tables if table.id in ids))
 
 
-def _default_book() -> TableBook:
+def default_book() -> TableBook:
+    """Two classes of the book that `tune` makes without a configuration."""
     files = sorted((Path(__file__).parent / "default_book").glob("*.json"))
     return TableBook(tuple(read_json(file) for file in files))
 
@@ -85,7 +86,7 @@ def _default_book() -> TableBook:
 def _line_forms() -> tuple[Form, ...]:
     pair, shapes = ("light-2.0", "light-3.3"), ("shadow-1.5", "turning", "constant", "many-stages")
     return (
-        Form("default book", lambda: st_files(_default_book(), self_test=SMALL)),
+        Form("default book", lambda: st_files(default_book(), self_test=SMALL)),
         Form(
             "degree 1 with prefix",
             lambda: st_files(_two_targets(), ExportPrefix("PARK"), self_test=SMALL),

@@ -8,43 +8,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tests.tuning_tables.st.compiler import (
-    BINARY32,
-    COMPILERS,
-    DOUBLE,
-    LONG_LITERALS,
-    MATIEC,
-    NO_TURN,
-    ONE_TURN_TOO_MANY,
-    WORST,
-    Compiler,
-)
-from tests.tuning_tables.st.exported_forms import FORMS, LINE_FORMS, Form, Outcome, self_tested
+from tests.tuning_tables.st.compiler import BINARY32, COMPILERS, Compiler, name_of
+from tests.tuning_tables.st.exported_forms import FORMS, Form, Outcome, self_tested
 from tests.tuning_tables.st.syntax import Node, parse, part, walk, word
 
-LOOPS = "st_decide.py, st_estimate.py, st_blocks.py: FOR with ends that only the controller knows, or one table"
-CHECKS = "st_approach.py, st_any_time.py: bare literals in the self-test"
-LINES = {form.name for form in LINE_FORMS}
-FEW_TURNS = LINES - {"default book"}
-BARE_CHECKS = {"approach", "slopes and estimators", "slopes", "slopes small", "split files"}
-XFAILS = {
-    (NO_TURN, MATIEC): (FEW_TURNS, LOOPS),
-    (ONE_TURN_TOO_MANY,): ({"one table of degree 0", "approach", "split files"}, LOOPS),
-    (DOUBLE, LONG_LITERALS): (BARE_CHECKS, CHECKS),
-    (WORST,): (BARE_CHECKS | {"one table of degree 0"}, f"{CHECKS}; {LOOPS}"),
-}
-"""What waits for files that are being rewritten: forms by compilers, and why."""
-
 text_of = cache(Form.text)
-
-
-def runs() -> Iterator[object]:
-    """Every form under every compiler."""
-    for form in FORMS:
-        for compiler in COMPILERS:
-            whys = [why for compilers, (forms, why) in XFAILS.items() if compiler in compilers and form.name in forms]
-            marks = [pytest.mark.xfail(strict=True, reason=why) for why in whys]
-            yield pytest.param(form, compiler, marks=marks, id=f"{form.name}, {compiler.name}")
 
 
 @cache
@@ -53,7 +21,8 @@ def right(form: Form) -> Outcome:
     return self_tested(form, text_of(form), BINARY32)
 
 
-@pytest.mark.parametrize(("form", "compiler"), [*runs()])
+@pytest.mark.parametrize("compiler", COMPILERS, ids=name_of)
+@pytest.mark.parametrize("form", FORMS, ids=lambda form: form.name)
 def test_every_form_finds_nothing_wrong_under_every_compiler(form: Form, compiler: Compiler) -> None:
     """And executes the same operations: a self-test that leaves out what it should ask would find nothing either."""
     found = right(form) if compiler is BINARY32 else self_tested(form, text_of(form), compiler)
@@ -91,23 +60,18 @@ def blocks_of(form: Form, is_test: bool) -> Iterator[Node]:
                 yield node
 
 
-def sides(waits: dict[bool, tuple[set[str], str]]) -> Iterator[object]:
-    """Every form without its self-test, and the self-test alone; with what waits for others."""
-    for form in FORMS:
-        for is_test, (forms, why) in waits.items():
-            marks = [pytest.mark.xfail(strict=True, reason=why)] if form.name in forms else []
-            yield pytest.param(form, is_test, marks=marks, id=f"{form.name}, {'self-test' if is_test else 'tables'}")
+SIDES = pytest.mark.parametrize("is_test", [False, True], ids=["tables", "self-test"])
+EACH = pytest.mark.parametrize("form", FORMS, ids=lambda form: form.name)
 
 
-@pytest.mark.parametrize(("form", "is_test"), [*sides({False: (LINES, LOOPS), True: (set(), "")})])
+@EACH
+@SIDES
 def test_no_for_may_turn_once_or_never(form: Form, is_test: bool) -> None:
     assert [loop for block in blocks_of(form, is_test) for loop in short_loops(block)] == []
 
 
-@pytest.mark.parametrize(
-    ("form", "is_test"),
-    [*sides({False: (LINES, "st_decide.py, st_blocks.py: 3.4028235E+38"), True: (BARE_CHECKS, CHECKS)})],
-)
+@EACH
+@SIDES
 def test_no_literal_in_a_statement_is_rounded_by_real(form: Form, is_test: bool) -> None:
     assert [literal for block in blocks_of(form, is_test) for literal in long_literals(block)] == []
 

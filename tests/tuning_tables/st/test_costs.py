@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
-from tests.controller_code.sample_book import estimator_of, with_approach, with_slopes
+from tests.controller_code.sample_book import estimator_of, with_slopes
 from tests.tuning_tables.st.conftest import texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Array, Kind, Record, Scalar, Value
-from tuning_tables import ControllerTable, Decisions
+from tuning_tables import ControllerTable
 from tuning_tables.golden_tracks import golden_tracks
-from tuning_tables.self_test_size import FULL, SMALL
+from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
 
@@ -53,12 +53,25 @@ def size(kind: Kind) -> int:
     return sum(size(member[0]) for member in kind.members.values())
 
 
-@pytest.fixture(scope="module")
-def program(default_book: TableBook) -> Program:
-    return Program(texts_of(default_book)[TABLE_FILE])
+def sloped_book(tables: tuple[ControllerTable, ...]) -> TableBook:
+    """The tables with slopes."""
+    return TableBook(tuple(with_slopes(table, -0.003, -0.003) for table in tables))
 
 
-def dearest_decision(program: Program, tables: int, **pressure: Value) -> list[int]:
+def estimating(book: TableBook) -> TableBook:
+    """The tables with an estimator of 16 breaks for each class."""
+    made = estimator_of(16, 37.45)
+    shares = (0.15 if table.cut.mass_t < 30.0 else 0.16 for table in book.tables)
+    pairs = zip(book.tables, shares, strict=True)
+    return TableBook(tuple(replace(table, estimator=replace(made, friction_cv=cv)) for table, cv in pairs))
+
+
+def program_of(book: TableBook) -> Program:
+    """The text of a book."""
+    return Program(texts_of(book, SMALL)[TABLE_FILE])
+
+
+def dearest_decision(program: Program, tables: int, kpa: float = 0.0) -> tuple[int, int]:
     """Operations of the dearest decision, and those on REAL among them."""
     worst = (0, 0)
     for number in range(tables):
@@ -67,133 +80,90 @@ def dearest_decision(program: Program, tables: int, **pressure: Value) -> list[i
         for stage in range(5):
             for s in (-1.0, 10.0, 40.0):
                 for v in np.array([0.0, 2.0, 3.0, 4.0, 5.0, 9.0], np.float32):
-                    asked = {"Stage": stage, "Path_m": s, "Speed_m_s": v, "Table": table, **pressure}
-                    worst = max(worst, executed(program, "RETARDER_DECIDE", **asked))
-    return list(worst)
+                    asked = {"Stage": stage, "Path_m": s, "Speed_m_s": v, "Pressure_kpa": np.float32(kpa)}
+                    worst = max(worst, executed(program, "RETARDER_DECIDE", **asked, Table=table))
+    return worst
 
 
-def test_operations_of_a_decision(program: Program, default_book: TableBook) -> None:
-    assert stated("`RETARDER_DECIDE`") == dearest_decision(program, len(default_book.tables))
-
-
-def test_costs_of_slopes(program: Program, default_book: TableBook) -> None:
-    sloped = Program(texts_of(sloped_book(default_book.tables))[TABLE_FILE])
-    costs = [dearest_decision(sloped, len(default_book.tables), Pressure_kpa=np.float32(kpa)) for kpa in (-9.0, 900.0)]
-    assert stated("a decision with slopes") == max(costs)
-    names = ("RETARDER_TABLE", "RETARDER_LOAD")
-    more = [size(sloped.types["RETARDER_TABLE"]) - size(program.types["RETARDER_TABLE"])]
-    first, second = (
-        [size(Program(texts_of(book)[TABLE_FILE]).types[names[1]]) for book in (TableBook(of), sloped_book(of))]
-        for of in (default_book.tables[:1], default_book.tables[:2])
-    )
-    more.append((second[1] - second[0]) - (first[1] - first[0]))
-    assert stated("times of decision and slopes: more") == more
-    timed = Program(texts_of(TableBook(tuple(map(at_any_time, default_book.tables))))[TABLE_FILE])
-    assert size(timed.types[names[0]]) - size(program.types[names[0]]) == stated("times of decision alone: more")[0]
-
-
-def sloped_book(tables: tuple[ControllerTable, ...]) -> TableBook:
-    """The tables with slopes."""
-    return TableBook(tuple(with_slopes(table, -0.003, -0.003) for table in tables))
-
-
-def at_any_time(table: ControllerTable) -> ControllerTable:
-    """The table without slopes that decides at any time."""
-    return replace(table, decisions=Decisions.AT_ANY_TIME)
-
-
-@pytest.fixture(scope="module")
-def estimating(default_book: TableBook) -> TableBook:
-    """The default book with an estimator of 16 breaks for each class."""
-    made = estimator_of(16, 37.45)
-    return TableBook(
-        tuple(
-            replace(table, estimator=replace(made, friction_cv=0.15 if table.cut.mass_t < 30.0 else 0.16))
-            for table in default_book.tables
-        )
-    )
-
-
-def test_operations_of_an_estimate(estimating: TableBook) -> None:
-    program = Program(texts_of(estimating)[TABLE_FILE])
+def dearest_estimate(book: TableBook) -> tuple[int, int]:
+    """Operations of the dearest sample."""
+    program, worst = program_of(book), (0, 0)
     table, estimate, observer = (program.new(f"RETARDER_{name}") for name in ("TABLE", "ESTIMATE", "OBSERVE"))
     executed(program, "RETARDER_LOAD", TableNo=0, Table=table)
-    worst = (0, 0)
-    for track in golden_tracks(estimating)[:7]:
+    for track in golden_tracks(book)[:7]:
         program.call("RETARDER_BEGIN", program.new("RETARDER_BEGIN"), Estimate=estimate)
         for s, v, kpa, *_ in zip(*track.samples, strict=True):
             program.done.clear()
-            program.call("RETARDER_OBSERVE", observer, Path_m=s, Speed_m_s=v, Overpressure_kpa=kpa, Table=table,
-                         Estimate=estimate)  # fmt: skip
+            given = {"Path_m": s, "Speed_m_s": v, "Overpressure_kpa": kpa}
+            program.call("RETARDER_OBSERVE", observer, **given, Table=table, Estimate=estimate)
             worst = max(worst, counted(program.done))
-    assert stated("`RETARDER_OBSERVE`, 16 breaks") == list(worst)
-    twice = executed(program, "RETARDER_LOAD", TableNo=0, Table=table)
-    assert stated("`RETARDER_LOAD`, table with an estimator") == list(twice)
+    return worst
 
 
-def test_bytes_of_an_estimator(estimating: TableBook, default_book: TableBook) -> None:
-    program, plain = (Program(texts_of(book)[TABLE_FILE]) for book in (estimating, default_book))
-    assert stated("one `RETARDER_ESTIMATE`") == [size(program.types["RETARDER_ESTIMATE"])]
-    assert stated("one `RETARDER_TABLE` with estimator") == [size(program.types["RETARDER_TABLE"])]
-    three = Program(texts_of(TableBook(estimating.tables[:3]))[TABLE_FILE])
-    few = Program(texts_of(TableBook(estimating.tables[:4]))[TABLE_FILE])
-    growth = size(few.types["RETARDER_LOAD"]) - size(three.types["RETARDER_LOAD"])
-    lines = Program(texts_of(TableBook(default_book.tables[:4]))[TABLE_FILE])
-    fewer = Program(texts_of(TableBook(default_book.tables[:3]))[TABLE_FILE])
-    # The fourth table brings its own constants, its touch pressure and number, and the second estimator.
-    alone = growth - (size(lines.types["RETARDER_LOAD"]) - size(fewer.types["RETARDER_LOAD"])) - 6
-    assert stated("constants of one estimator") == [alone]
-    assert plain.blocks["RETARDER_DECIDE"].inputs == program.blocks["RETARDER_DECIDE"].inputs
+def dearest_test(book: TableBook, self_test: SelfTestSize) -> tuple[int, int]:
+    """Operations of the dearest call of the self-test."""
+    program = Program(b"".join(texts_of(book, self_test).values()))
+    instance, worst = program.new("RETARDER_SELF_TEST"), (0, 0)
+    while not instance["DONE"].value:
+        program.done.clear()
+        program.call("RETARDER_SELF_TEST", instance, Restart=False)
+        worst = max(worst, counted(program.done))
+    return worst
 
 
-def test_operations_of_a_choice(program: Program, default_book: TableBook) -> None:
-    def choice(book: TableBook, speed: float) -> tuple[int, int]:
-        each = Program(texts_of(book)[TABLE_FILE])
-        table = each.new("RETARDER_TABLE")
-        return executed(each, "RETARDER_SELECT", Layout=2, Category=1, Axles=4, Commanded_m_s=speed, Table=table)
-
-    tables = default_book.tables
-    others = [
-        replace(table, id=f"other {table.id}", cut=replace(table.cut, category="X", category_number=16))
-        for table in tables
-    ]
-    twice = TableBook((*tables, *others))
-    between, more = choice(default_book, 2.5), choice(twice, 2.5)
-    assert stated("`RETARDER_SELECT`, between") == list(between)
-    assert stated("`RETARDER_SELECT`, tuned") == list(choice(default_book, 3.0))
-    assert stated("`RETARDER_SELECT`, each further") == [(more[0] - between[0]) // len(others), 0]
-    assert (more[0] - between[0]) % len(others) == 0
-    table = program.new("RETARDER_TABLE")
-    assert stated("`RETARDER_LOAD`, table without") == list(executed(program, "RETARDER_LOAD", TableNo=0, Table=table))
+def choice(book: TableBook, speed: float) -> tuple[int, int]:
+    """Operations of a choice."""
+    program = program_of(book)
+    asked = {"Category": 1, "Axles": 4, "Commanded_m_s": speed}
+    return executed(program, "RETARDER_SELECT", **asked, Table=program.new("RETARDER_TABLE"))
 
 
-def test_operations_of_the_self_test(default_book: TableBook) -> None:
-    for label, self_test in (("`RETARDER_SELF_TEST`, 6", FULL), ("`RETARDER_SELF_TEST`, small", SMALL)):
-        program = Program(b"".join(texts_of(default_book, self_test).values()))
-        instance, worst = program.new("RETARDER_SELF_TEST"), (0, 0)
-        while not instance["DONE"].value:
-            program.done.clear()
-            program.call("RETARDER_SELF_TEST", instance, Restart=False)
-            worst = max(worst, counted(program.done))
-        assert stated(label) == list(worst)
+def loading(book: TableBook) -> tuple[int, int]:
+    """Operations of loading table 0."""
+    program = program_of(book)
+    return executed(program, "RETARDER_LOAD", TableNo=0, Table=program.new("RETARDER_TABLE"))
 
 
-def test_bytes(default_book: TableBook) -> None:
-    files = texts_of(default_book)
-    program = Program(files[TABLE_FILE])
-    few = Program(texts_of(TableBook(default_book.tables[:5]))[TABLE_FILE])
-    constants = sum(
-        size(program.types[name]) - size(few.types[name]) for name in ("RETARDER_LOAD", "RETARDER_SELECT")
-    ) - (size(program.types["RETARDER_LOAD"]) - size(few.types["RETARDER_LOAD"]))  # SELECT holds an instance of LOAD
-    assert stated("one `RETARDER_TABLE` without") == [size(program.types["RETARDER_TABLE"])]
-    assert stated("constants of one table") == [constants]
-    one = default_book.tables[1]  # whose lines keep their order before the entrance, too
-    alone, approached = (
-        Program(texts_of(TableBook((table,)))[TABLE_FILE]).types for table in (one, with_approach(one, 4.0, 2))
+def other_class(table: ControllerTable) -> ControllerTable:
+    """The table as one of another category."""
+    return replace(table, id=f"other {table.id}", cut=replace(table.cut, category="X", category_number=16))
+
+
+def measured(book: TableBook) -> Mapping[str, tuple[int, ...]]:
+    """All figures of the page by their labels."""
+    plain, sloped, estimated = (program_of(each) for each in (book, sloped_book(book.tables), estimating(book)))
+    tables = len(book.tables)
+    others = [other_class(table) for table in book.tables]
+    between, more = choice(book, 2.5), choice(TableBook((*book.tables, *others)), 2.5)
+    small, full = (
+        Program(b"".join(texts_of(book, each).values())).types["RETARDER_SELF_TEST"] for each in (SMALL, FULL)
     )
-    more = [size(approached[name]) - size(alone[name]) for name in ("RETARDER_TABLE", "RETARDER_LOAD")]
-    assert stated("an approach: more") == more
-    for label, self_test in (("self-test of one table", FULL), ("the same, small", SMALL)):
-        program = Program(b"".join(texts_of(default_book, self_test).values()))
-        tests = [size(program.types[f"RETARDER_TEST_{number}"]) for number in range(len(default_book.tables))]
-        assert stated(label) == [min(tests), max(tests), size(program.types["RETARDER_SELF_TEST"])]
+    return {
+        "one `RETARDER_TABLE` of a plain book": (size(plain.types["RETARDER_TABLE"]),),
+        "one `RETARDER_TABLE` of a book with estimators": (size(estimated.types["RETARDER_TABLE"]),),
+        "one `RETARDER_TABLE` of a book with slopes": (size(sloped.types["RETARDER_TABLE"]),),
+        "one `RETARDER_ESTIMATE`": (size(plain.types["RETARDER_ESTIMATE"]),),
+        "constants of 6 tables, `RETARDER_LOAD`": (size(plain.types["RETARDER_LOAD"]),),
+        "self-test of 6 tables, with all that it calls": (size(full),),
+        "the same, small": (size(small),),
+        "`RETARDER_DECIDE`, at rest": dearest_decision(plain, tables),
+        "`RETARDER_DECIDE`, at any time with slopes": max(
+            dearest_decision(sloped, tables, kpa) for kpa in (-9.0, 900.0)
+        ),
+        "`RETARDER_LOAD`, plain book": loading(book),
+        "`RETARDER_LOAD`, book with estimators": loading(estimating(book)),
+        "`RETARDER_OBSERVE`, 16 breaks": dearest_estimate(estimating(book)),
+        "`RETARDER_SELECT`, between two tables": between,
+        "`RETARDER_SELECT`, tuned": choice(book, 3.0),
+        "`RETARDER_SELECT`, each further table": (
+            (more[0] - between[0]) // len(others),
+            (more[1] - between[1]) // len(others),
+        ),
+        "`RETARDER_SELF_TEST`, full": dearest_test(book, FULL),
+        "`RETARDER_SELF_TEST`, small": dearest_test(book, SMALL),
+    }
+
+
+def test_the_figures_of_the_page(default_book: TableBook) -> None:
+    found = measured(default_book)
+    assert {label: tuple(stated(label)) for label in found} == found

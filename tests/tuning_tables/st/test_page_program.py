@@ -19,7 +19,8 @@ FUNCTION_BLOCK PAGE_PROGRAM
 VAR_INPUT Begins : BOOL; Told : INT; CutAxles : INT; Command_m_s : REAL;
     FirstAxle : REAL; Radar : REAL; MeanOver : REAL; END_VAR
 VAR_OUTPUT Present : INT; Speeds : ARRAY[1..5] OF REAL; There : ARRAY[1..5] OF BOOL; END_VAR
-VAR After : INT; Word : INT; Select : RETARDER_SELECT; NewCut : RETARDER_BEGIN; Observe : RETARDER_OBSERVE;
+VAR After : INT; Raised : INT; Select : RETARDER_SELECT; NewCut : RETARDER_BEGIN; Observe : RETARDER_OBSERVE;
+    Alarms : RETARDER_ALARMS;
 """
 
 

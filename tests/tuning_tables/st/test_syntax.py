@@ -63,7 +63,7 @@ def test_the_usual_books_give_structured_text(
     ("right", "wrong"),
     [
         ("END_IF;", ";"),
-        ("END_FOR;", ""),
+        ("END_WHILE;", ""),
         ("END_CASE;", ""),
         ("END_VAR", ""),
         ("END_STRUCT;", ""),
@@ -78,7 +78,7 @@ def test_the_usual_books_give_structured_text(
         ("];", ";"),
         ("[", ""),
         (" := [", " [ "),
-        ("(Stage >= 0)", "(Stage >= 0"),
+        ("(0 <= Stage)", "(0 <= Stage"),
         ("Line * Path", "Line * * Path"),
     ],
 )
@@ -91,7 +91,7 @@ def test_a_broken_text_is_found(small_book: TableBook, right: str, wrong: str) -
 
 @pytest.mark.parametrize(
     ("right", "wrong"),
-    [("Table.Powers - 1]", "Table.Power - 1]"), ("Path : REAL;", "Path : INT;"), ("Stage_0[Index]", "Stage_9[Index]")],
+    [("Table.Powers - 1;", "Table.Power - 1;"), ("Path : REAL;", "Path : INT;"), ("Stages[Index]", "Stage_9[Index]")],
 )
 def test_a_wrong_name_or_type_is_found(small_book: TableBook, right: str, wrong: str) -> None:
     text = b"".join(texts_of(small_book).values()).decode("ascii")

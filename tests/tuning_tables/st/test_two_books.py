@@ -6,20 +6,14 @@ import re
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
-import numpy as np
 import pytest
 
-from scripts.studies.in_the_loop.agreement import ask
 from tests.controller_code.sample_book import estimating_book, park_book
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.syntax import faults, parse
-from tests.tuning_tables.st.test_select import require_equal, select
-from tests.tuning_tables.st.test_self_test import calls_of
+from tests.tuning_tables.st.test_self_test import MOST_CALLS
 from tuning_tables.export_prefix import ExportPrefix
-from tuning_tables.golden_tracks import golden_tracks
-from tuning_tables.golden_vectors import golden_vectors
-from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
-from tuning_tables.st_literals import is_portable
+from tuning_tables.self_test_size import SMALL, SelfTestSize
 from tuning_tables.st_source import st_files, st_unit_files
 from tuning_tables.table_book import TableBook
 
@@ -53,43 +47,13 @@ def test_it_is_one_text_without_a_name_twice(text: bytes) -> None:
     assert b"RETARDER_" not in text
 
 
-@pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
-def test_both_self_tests_find_nothing(self_test: SelfTestSize) -> None:
-    program = Program(project(self_test))
-    for name, book in POSITIONS.items():
+def test_both_self_tests_find_nothing(text: bytes) -> None:
+    program = Program(text)
+    for name in POSITIONS:
         instance = program.new(f"{name}_SELF_TEST")
-        for _ in range(calls_of(book)):
+        for _ in range(MOST_CALLS):
             program.call(f"{name}_SELF_TEST", instance, Restart=False)
         assert (instance["DONE"].value, instance["FAILED"].value) == (True, 0)
-
-
-def test_both_choose_as_alone(text: bytes) -> None:
-    for name, book in POSITIONS.items():
-        questions = ask(book, 60_000, 3_000, 20261122)
-        require_equal(book, questions, *select(book, questions.commands, text=text, prefix=name))
-
-
-def test_both_answer_their_golden_vectors_and_tracks(text: bytes) -> None:
-    program = Program(text)
-    for name, book in POSITIONS.items():
-        table, observer, estimate = (program.new(f"{name}_{kind}") for kind in ("TABLE", "OBSERVE", "ESTIMATE"))
-        for number, source in enumerate(book.tables):
-            program.call(f"{name}_LOAD", program.new(f"{name}_LOAD"), TableNo=number, Table=table)
-            vectors, decider = golden_vectors(source), program.new(f"{name}_DECIDE")
-            program.call(
-                f"{name}_DECIDE", decider, Stage=vectors.stage, Path_m=vectors.s_m, Speed_m_s=vectors.v_m_s, Table=table
-            )
-            assert np.array_equal(decider["WANTED"].value, vectors.answer)
-        for track in golden_tracks(book):
-            program.call(f"{name}_LOAD", program.new(f"{name}_LOAD"), TableNo=track.number, Table=table)
-            program.call(f"{name}_BEGIN", program.new(f"{name}_BEGIN"), Estimate=estimate)
-            for s, v, kpa, right, unseen, alarms in zip(*track.samples, strict=True):
-                program.call(
-                    f"{name}_OBSERVE", observer, Path_m=s, Speed_m_s=v, Overpressure_kpa=kpa, Table=table,
-                    Estimate=estimate,
-                )  # fmt: skip
-                assert not is_portable(np.array([right]))[0] or observer["OBSERVED_M_S"].value == right
-                assert (observer["UNSEEN"].value, observer["ALARMS"].value) == (unseen, alarms)
 
 
 def test_split_files_in_the_order_of_their_names_are_the_same_program() -> None:
@@ -103,7 +67,7 @@ def test_split_files_in_the_order_of_their_names_are_the_same_program() -> None:
         comments = rb"\(\* Self-test of .*?\*\)\n\n"
         joined = b"\n".join(whole.values())
         assert re.sub(comments, b"", joined, count=1, flags=re.DOTALL) == b"\n".join(units.values())
-    Program(project(FULL, st_unit_files))
+    Program(project(SMALL, st_unit_files))
 
 
 def test_the_longest_names_stay_within_32_characters() -> None:
