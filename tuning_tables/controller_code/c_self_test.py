@@ -153,7 +153,11 @@ def is_right(code: ControllerCode, place: int, questions: Questions) -> str:
         state = each.record.name
         lines += [f"    {state}->{name} = float_of(golden->{BEFORE}{name});" for name in questions.members_before]
         if "begins" in kinds:
-            lines += ["    if (golden->begins == 1) {", f"        {begin_of(code, state)}({state});", "    }"]
+            lines += [
+                "    if (golden->begins == 1) {",
+                f"        retarder_{code.beginning(state).name}({state});",
+                "    }",
+            ]
     tests = []
     for program in programs:
         given = []
@@ -191,12 +195,6 @@ def is_right(code: ControllerCode, place: int, questions: Questions) -> str:
     )
 
 
-def begin_of(code: ControllerCode, state: str) -> str:
-    """The function that begins a state."""
-    rule = next(each for each in code.rules if each.name.startswith("begin") and state in code.program(each).records)
-    return f"retarder_{rule.name}"
-
-
 def asking(code: ControllerCode, place: int, questions: Questions) -> Iterator[str]:
     """The loop over questions of one kind."""
     programs = [code.program(rule) for rule in questions.rules]
@@ -222,7 +220,7 @@ def nothing_is_safe(code: ControllerCode) -> str:
     joined = "\n        && ".join(tests)
     table = f"    const {table_type(code)} *const table = &{tables_of(code)}[0];"
     uses = [table] if "(table" in joined else []
-    begun = [f"    {begin_of(code, each.record.name)}(0);" for each in code.states]
+    begun = [f"    retarder_{code.beginning(each.record.name).name}(0);" for each in code.states]
     return "\n".join(
         ["static int nothing_is_safe(void)", "{", *uses, *states, *begun, f"    return {joined};", "}", ""]
     )

@@ -159,7 +159,7 @@ def questions_text(
     ]
     body, differs = [], []
     for each in states:
-        rule = begin_rule(code, each.record.name)
+        rule = code.beginning(each.record.name)
         state = st_name(each.record.name)
         variables += [
             f"{instance(rule)} : {names.block(code.program(rule))}",
@@ -196,11 +196,6 @@ def held(name: str) -> str:
 def instance(rule: Rule) -> str:
     """The instance of a rule's block."""
     return f"{st_name(rule.name)}Block"
-
-
-def begin_rule(code: ControllerCode, state: str) -> Rule:
-    """The rule that begins a state."""
-    return next(each for each in code.rules if each.name.startswith("begin") and state in code.program(each).records)
 
 
 def run_all(code: ControllerCode, blocks: list[TestBlock]) -> str:
