@@ -25,7 +25,8 @@ def odd_is_right(code: ControllerCode) -> str:
     ]
     for each in code.odd:
         lines += [f"    {changed(code, *change)}" for change in each.changes]
-        lines += [f"    retarder_begin(&{name});" for name in asked if name in code.program(each.rule).records]
+        lines += [f"    retarder_{code.beginning(name).name}(&{name});" for name in asked
+                  if name in code.program(each.rule).records]  # fmt: skip
         lines.append(f"    right = right && {question(code, each)};")
     lines.append(f"    return right && {table_type(code)}_intact(&table) == 0;")
     return "\n".join([*lines, "}", ""])

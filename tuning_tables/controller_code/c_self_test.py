@@ -20,6 +20,7 @@ from tuning_tables.controller_code.c_code import (
 from tuning_tables.controller_code.c_odd_test import odd_is_right
 from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
 from tuning_tables.language.c99 import wrapped
+from tuning_tables.language.c99_data import c_comment
 from tuning_tables.language.records import Kind
 from tuning_tables.language.tree import Program
 
@@ -53,10 +54,11 @@ def c_test_header(code: ControllerCode) -> str:
     ]  # fmt: skip
     return "\n".join(
         [
-            f"/* Self-test of retarder_{code.stem}.c. Generated: do not edit, export again.",
-            " *",
-            " * Proves on the processor at hand, with the compiler and switches at hand, that tables and rules are as",
-            f" * exported: arithmetic of the checksum, checksums of all tables, {asked}. */",
+            *c_comment(
+                f"Self-test of retarder_{code.stem}.c. Generated: do not edit, export again. Proves on the processor "
+                "at hand, with the compiler and switches at hand, that tables and rules are as exported: arithmetic of "
+                f"the checksum, checksums of all tables, {asked}."
+            ),
             GUARD.format(macro=f"{macro}_H").replace("#include <stdint.h>", f'#include "retarder_{code.stem}.h"'),
             *(
                 f"#define {macro_prefix(code)}{name} ({number})" + f" /* {note} */" * bool(note)
@@ -157,7 +159,11 @@ def is_right(code: ControllerCode, place: int, questions: Questions) -> str:
         state = each.record.name
         lines += [f"    {state}->{name} = float_of(golden->{BEFORE}{name});" for name in questions.members_before]
         if "begins" in kinds:
-            lines += ["    if (golden->begins == 1) {", f"        {begin_of(code, state)}({state});", "    }"]
+            lines += [
+                "    if (golden->begins == 1) {",
+                f"        retarder_{code.beginning(state).name}({state});",
+                "    }",
+            ]
     for program in programs:
         call = call_of(code, program, kinds)
         if not program.answers:
@@ -204,12 +210,6 @@ def call_of(code: ControllerCode, program: Program, kinds: Mapping[str, Kind]) -
     return f"{names.function(program)}({', '.join(given)})"
 
 
-def begin_of(code: ControllerCode, state: str) -> str:
-    """The function that begins a state."""
-    rule = next(each for each in code.rules if each.name.startswith("begin") and state in code.program(each).records)
-    return f"retarder_{rule.name}"
-
-
 def asking(code: ControllerCode, place: int, questions: Questions) -> Iterator[str]:
     """The loop over questions of one kind."""
     programs = [code.program(rule) for rule in questions.rules]
@@ -235,7 +235,7 @@ def nothing_is_safe(code: ControllerCode) -> str:
     joined = "\n        && ".join(tests)
     table = f"    const {table_type(code)} *const table = &{tables_of(code)}[0];"
     uses = [table] if "(table" in joined else []
-    begun = [f"    {begin_of(code, each.record.name)}(0);" for each in code.states]
+    begun = [f"    retarder_{code.beginning(each.record.name).name}(0);" for each in code.states]
     return "\n".join(
         ["static int nothing_is_safe(void)", "{", *uses, *states, *begun, f"    return {joined};", "}", ""]
     )

@@ -179,6 +179,12 @@ class ControllerCode:
                 found.setdefault(program.name, program)
         return tuple(found.values())
 
+    def beginning(self, state: str) -> Rule:
+        """The rule that begins a state."""
+        return next(
+            each for each in self.rules if each.name.startswith("begin") and state in self.program(each).records
+        )
+
     def program(self, rule: Rule) -> Program:
         """The folded program of a rule."""
         return next(each for each in self.programs if each.name == rule.function.__name__)

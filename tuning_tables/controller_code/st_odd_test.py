@@ -19,8 +19,8 @@ def odd_test(code: ControllerCode) -> TestBlock:
     variables = [f"{st_name(rule.name)}Block : {names.block(code.program(rule))}" for rule in rules.values()]
     body, constants = [], ["    Zero : INT := 0;"]
     for state in begun:
-        rule = next(each for each in code.rules if each.name.startswith("begin"))
-        variables += [f"BeginBlock : {names.block(code.program(rule))}",
+        rule = code.beginning(state.record.name)
+        variables += [f"{st_name(rule.name)}Block : {names.block(code.program(rule))}",
                       f"{st_name(state.record.name)} : {names.types[state.record.name]}"]  # fmt: skip
     for each in code.odd:
         program = code.program(each.rule)
@@ -30,7 +30,8 @@ def odd_test(code: ControllerCode) -> TestBlock:
             if taken.record is not None:
                 given.append(f"{st_name(taken.name)} := {st_name(taken.name)}")
                 if taken.record.is_state:
-                    body.append(f"BeginBlock({st_name(taken.name)} := {st_name(taken.name)});")
+                    begin = f"{st_name(code.beginning(taken.name).name)}Block"
+                    body.append(f"{begin}({st_name(taken.name)} := {st_name(taken.name)});")
             elif taken.name in looked_at(program):
                 number = each.given[taken.name]
                 given.append(f"{st_name(taken.name)} := {real(number) if taken.kind is Kind.REAL else int(number)}")

@@ -159,7 +159,7 @@ def questions_text(
         variables.append(f"{state} : {names.types[each.record.name]}")
         body += [f"{state}.{st_name(name)} := {held(BEFORE + name)}[Index];" for name in questions.members_before]
         if "begins" in kinds:
-            rule = begin_rule(code, each.record.name)
+            rule = code.beginning(each.record.name)
             variables.append(f"{instance(rule)} : {names.block(code.program(rule))}")
             body += ["IF Begins[Index] = 1 THEN", f"    {instance(rule)}({state} := {state});", "END_IF;"]
     for rule, program in zip(questions.rules, programs, strict=True):
@@ -203,11 +203,6 @@ def held(name: str) -> str:
 def instance(rule: Rule) -> str:
     """The instance of a rule's block."""
     return f"{st_name(rule.name)}Block"
-
-
-def begin_rule(code: ControllerCode, state: str) -> Rule:
-    """The rule that begins a state."""
-    return next(each for each in code.rules if each.name.startswith("begin") and state in code.program(each).records)
 
 
 def run_all(code: ControllerCode, blocks: list[TestBlock]) -> str:

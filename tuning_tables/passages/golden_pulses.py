@@ -20,7 +20,7 @@ from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.pulse_sequences import heard_cuts
 from tuning_tables.programs.at_pulse import at_pulse
-from tuning_tables.programs.passage_table import NONE
+from tuning_tables.programs.passage_table import NONE, HeldPassages
 from tuning_tables.programs.tracker import LONGEST_WAIT_S, TRACKER, begin_cut, believed_passage
 
 State: TypeAlias = tuple[float, ...]
@@ -139,7 +139,7 @@ def _edges(table: PassageTable, most: int) -> Iterator[tuple[State, int, float, 
     Cuts that keep their speed, lose or gain some, crawl, and leave a crawl: so every bound of the way is the one that
     counts somewhere. Then, over the shortest ways, the least and the greatest speed that may follow.
     """
-    count = len(table.heard_path_m)
+    count, held = len(table.heard_path_m), held_by(table)
     ways = [(here, there) for here in range(count) for there in range(here + 1, min(here + 4, count))]
     least, greatest = map(float, table.limits[:2])
     usual, crawl = min(max(table.target_speed_m_s, least), greatest), min(1.25 * least, greatest)
@@ -151,12 +151,12 @@ def _edges(table: PassageTable, most: int) -> Iterator[tuple[State, int, float, 
         other = (NONE, 0.0, 0.0) if place % 2 else (count - 1, least, 1.0)
         last = (here, before_m_s, 0.0)
         waits = [0.0, *np.geomspace(1e-3, 1e3, 61).tolist(), _way(table, here, there) / now_m_s, LONGEST_S]
-        for since_s in _turning(partial(_is_believed, table, last, there, v_m_s=now_m_s), waits):
+        for since_s in _turning(partial(_is_believed, held, last, there, v_m_s=now_m_s), waits):
             yield (*last, *other) if place % 3 else (NONE, 0.0, 0.0, *last), sensor, since_s, now_m_s
     for here, there in sorted(ways, key=lambda each: _way(table, *each))[:3]:
         last, since_s = (here, usual, 0.0), float(np.float32(_way(table, here, there) / usual))
         readings = np.linspace(least, greatest, 41).tolist()
-        for v_m_s in _turning(partial(_is_believed, table, last, there, since_s), readings):
+        for v_m_s in _turning(partial(_is_believed, held, last, there, since_s), readings):
             yield (*last, NONE, 0.0, 0.0), int(table.heard_sensor[there]), since_s, v_m_s
 
 
@@ -164,11 +164,11 @@ def _way(table: PassageTable, here: int, there: int) -> float:
     return float(table.heard_path_m[there] - table.heard_path_m[here])
 
 
-def _is_believed(table: PassageTable, last: State, there: int, since_s: float, v_m_s: float) -> bool:
+def _is_believed(held: HeldPassages, last: State, there: int, since_s: float, v_m_s: float) -> bool:
     """Whether a pair of the sensor of `there` is believed where `last` alone was passed."""
     state = np.array((*last, NONE, 0.0, 0.0), dtype=np.float32)
-    given = (int(table.heard_sensor[there]), np.float32(since_s), np.float32(v_m_s))
-    return bool(believed_passage(held_by(table), state, *given) != NONE)
+    given = (int(held.sensor[there]), np.float32(since_s), np.float32(v_m_s))
+    return bool(believed_passage(held, state, *given) != NONE)
 
 
 def _turning(is_so: Callable[[float], bool], values: list[float]) -> Iterator[float]:

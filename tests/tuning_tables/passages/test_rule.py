@@ -65,11 +65,12 @@ def test_the_rule_counts_the_speeds_on_the_way(speeds: Speeds, passage: int, dat
 @settings(derandomize=True, max_examples=120, deadline=None)
 @example(np.zeros((3, 2, 1), np.float32), 0, 0, 3.5e38, 0, 0)
 def test_no_number_is_an_error_and_compiled_text_gives_the_same(
-    speeds: Speeds, passage: int, stage: int, v: float, entrance: int, before: int
+    speeds: Speeds, passage: int, stage: int, told: float, entrance: int, before: int
 ) -> None:
     table = deciding(speeds, entrance, before)
     with np.errstate(over="ignore"):
-        wanted = wanted_stage(table, passage, stage, v)
+        v = np.float32(told)
+    wanted = wanted_stage(table, passage, stage, v)
     assert COMPILED(table, passage, stage, v) == wanted
     known = 0 <= passage < 3 and 0 <= stage <= speeds.shape[2]
     if not known or not 0.0 <= v <= float(np.finfo(np.float32).max):

@@ -213,7 +213,7 @@ def test_the_text_is_plain_and_fits_beside_all_others() -> None:
 
 def test_a_file_each_unit_holds_the_same() -> None:
     units = passage_st_unit_files(BOOK, RETARDER, few_golden_passages)
-    assert len(units) == 16 + 4 * len(TABLES) + 2
+    assert len(units) == 16 + 4 * len(TABLES) + 3
     assert self_tested(b"\n".join(units.values()).decode("ascii")) == (0, -1, -1)
 
 
