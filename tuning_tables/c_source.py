@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tuning_tables.controller_code.c_code import c_header, c_source
-from tuning_tables.controller_code.c_self_test import c_test_header, c_test_source
+from tuning_tables.controller_code.c_self_test import c_test_header, c_test_source, test_stem
 from tuning_tables.controller_code.code import ControllerCode
 from tuning_tables.controller_code.line_code import line_code
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
@@ -31,7 +31,7 @@ def c_files(book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTes
 
 def c_texts(code: ControllerCode, prefix: ExportPrefix) -> Mapping[str, bytes]:
     """The four files of C99 of any export, by name."""
-    test = "self_test" if code.stem == "table" else f"{code.stem}_self_test"
+    test = test_stem(code)
     texts = {
         f"retarder_{code.stem}.h": c_header(code),
         f"retarder_{code.stem}.c": c_source(code),

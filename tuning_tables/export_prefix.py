@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 FORM: Final = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*")
@@ -15,10 +15,12 @@ LONGEST: Final = 10
 class ExportPrefix:
     """`text` in capitals takes the place of RETARDER, in small letters that of retarder, before every "_".
 
+    `kind`: the word that names of a kind of tables begin with, behind the prefix; "" for those that have RETARDER.
     Raises `ValueError` for what is no identifier in C and Structured Text, or too long.
     """
 
     text: str = "RETARDER"
+    kind: str = ""
 
     def __post_init__(self) -> None:
         if len(self.text) > LONGEST or FORM.fullmatch(self.text) is None:
@@ -36,8 +38,13 @@ class ExportPrefix:
 
     def renamed(self, code: str) -> str:
         """`code`, or the name of a file, with this prefix; ids of tables stay, for `comment_text` sees to it."""
-        code = re.sub(r"\bRETARDER_", f"{self.text.upper()}_", code)
-        return re.sub(r"\bretarder_", f"{self.text.lower()}_", code)
+        word = "_".join(filter(None, ("" if self.kind and self.is_default else self.text, self.kind)))
+        code = re.sub(r"\bRETARDER_", f"{word.upper()}_", code)
+        return re.sub(r"\bretarder_", f"{word.lower()}_", code)
+
+    def of_kind(self, kind: str) -> ExportPrefix:
+        """The prefix for a kind whose names begin with a word of its own."""
+        return replace(self, kind=kind)
 
     def data_file(self, name: str) -> str:
         """The name of a file beside the code that holds no code."""

@@ -12,15 +12,14 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.correction import (
+from tuning_tables.correction import Correction, begun_correction
+from tuning_tables.programs.correct import (
     FEWEST_SAMPLES,
     LARGEST_ERROR_M_S,
     LARGEST_EXCESS_M_S,
     LARGEST_SPEED_M_S,
     MOST_LEARNT,
     MOST_MISSING,
-    Correction,
-    begin_correction,
     corrected_speed,
     learn_exit,
     usable_exit,
@@ -29,14 +28,13 @@ from tuning_tables.correction import (
 Exit: TypeAlias = tuple[float, bool, float]
 """Error, whether it is credible, and a speed to correct."""
 
-INPUT_FIELDS: Final = ("mean_m_s", "correction_m_s", "learnt", "error_m_s", "speed_m_s")
-OUTPUT_FIELDS: Final = ("new_mean_m_s", "new_correction_m_s", "new_learnt", "corrected_m_s")
-ROW: Final = np.dtype([*((name, np.float32) for name in INPUT_FIELDS), ("credible", np.bool_),
-                       *((name, np.float32) for name in OUTPUT_FIELDS)])  # fmt: skip
-COUNTS: Final = ("samples", "missing", "at_top")
-FLAGS: Final = ("ends_at_top", "by_hand", "stalled")
-PASS: Final = np.dtype([*((name, np.int16) for name in COUNTS), *((name, np.bool_) for name in FLAGS),
+BEFORE_FIELDS: Final = ("before_mean_m_s", "before_correction_m_s", "before_learnt")
+NUMBERS: Final = (*BEFORE_FIELDS, "error_m_s", "v_m_s", "mean_m_s", "correction_m_s", "learnt", "corrected")
+STEP: Final = np.dtype([("credible", np.bool_), *((name, np.float32) for name in NUMBERS)])
+PASS: Final = np.dtype([*((name, np.int16) for name in ("samples", "missing", "at_top")),
+                        *((name, np.bool_) for name in ("ends_at_top", "by_hand", "stalled")),
                         ("error_m_s", np.float32), ("usable", np.bool_)])  # fmt: skip
+"""Questions to `learn_exit` and `corrected_speed`, and to `usable_exit`, by the names of what they take and answer."""
 
 SEQUENCE: Final = 60
 SMALLEST: Final = float(np.finfo(np.float32).smallest_subnormal)
@@ -44,38 +42,33 @@ LARGEST: Final = float(np.finfo(np.float32).max)
 
 
 def answered(correction: Correction, rows: npt.NDArray[np.void]) -> npt.NDArray[np.void]:
-    """`rows` of type `ROW` with the state after each exit and the corrected speed filled in, as a copy."""
+    """`rows` of type `STEP` with the state after each exit and the corrected speed filled in, as a copy."""
     filled = rows.copy()
     for row in filled:
-        state = np.array([row[name] for name in INPUT_FIELDS[:3]], dtype=np.float32)
-        learn_exit(correction.parameters, state, float(row["error_m_s"]), bool(row["credible"]))
-        row["new_mean_m_s"], row["new_correction_m_s"], row["new_learnt"] = state
-        row["corrected_m_s"] = corrected_speed(correction.parameters, state, float(row["speed_m_s"]))
+        state = np.array([row[name] for name in BEFORE_FIELDS], dtype=np.float32)
+        learn_exit(correction.setting, state, row["error_m_s"], row["credible"])
+        row["mean_m_s"], row["correction_m_s"], row["learnt"] = state
+        row["corrected"] = corrected_speed(correction.setting, state, row["v_m_s"])
     return filled
 
 
 def golden_exits(correction: Correction) -> npt.NDArray[np.void]:
-    """All rows, of type `ROW`: sequences of passes, then states and readings at, beside and beyond every bound."""
+    """All rows, of type `STEP`: sequences of passes, then states and readings at, beside and beyond every bound."""
     rows = [row for exits in _sequences(correction) for row in _run(correction, exits)]
-    rows += [row for state in _states(correction) for row in _asked(state, _readings(correction))]
-    return answered(correction, np.array(rows, dtype=ROW))
+    rows += [_row(state, reading) for state in _states(correction) for reading in _readings(correction)]
+    return answered(correction, np.array(rows, dtype=STEP))
 
 
 def _row(state: Iterable[float], reading: Exit) -> tuple[float | bool, ...]:
     error, credible, speed = reading
-    return (*state, error, speed, credible, 0.0, 0.0, 0.0, 0.0)
-
-
-def _asked(state: Iterable[float], readings: Iterable[Exit]) -> list[tuple[float | bool, ...]]:
-    state = tuple(state)
-    return [_row(state, reading) for reading in readings]
+    return (credible, *state, error, speed, 0.0, 0.0, 0.0, 0.0)
 
 
 def _run(correction: Correction, exits: Iterable[Exit]) -> Iterator[tuple[float | bool, ...]]:
-    state = begin_correction()
+    state = begun_correction()
     for error, credible, speed in exits:
         yield _row(map(float, state), (error, credible, speed))
-        learn_exit(correction.parameters, state, float(np.float32(error)), credible)
+        learn_exit(correction.setting, state, np.float32(error), credible)
 
 
 def _sequences(correction: Correction) -> Iterator[list[Exit]]:
@@ -91,21 +84,22 @@ def _sequences(correction: Correction) -> Iterator[list[Exit]]:
 
 def _states(correction: Correction) -> Iterator[tuple[float, float, float]]:
     """Begun, at the bounds, about to stop counting, and such as cannot be."""
-    limit, reach, t = map(float, (correction.parameters[2], correction.parameters[3], correction.threshold_m_s))
+    limit, reach, t = float(correction.setting.limit_m_s), float(correction.setting.reach_m_s), correction.threshold_m_s
+    most = float(MOST_LEARNT)
     yield from ((0.0, limit, 7.0), (0.0, -limit, 7.0))
-    yield from ((0.0, 0.0, 0.0), (reach, limit, 9.0), (-reach, -limit, MOST_LEARNT), (1.5 * t, 0.0, MOST_LEARNT - 1.0))
+    yield from ((0.0, 0.0, 0.0), (reach, limit, 9.0), (-reach, -limit, most), (1.5 * t, 0.0, most - 1.0))
     yield from ((_above(reach), 0.0, 5.0), (0.0, _above(limit), 5.0), (0.0, -_above(limit), 5.0), (0.0, 0.0, -1.0))
-    yield from ((-_above(reach), 0.0, 5.0), (0.01, 0.001, 2.0 * MOST_LEARNT))
+    yield from ((-_above(reach), 0.0, 5.0), (0.01, 0.001, 2.0 * most))
     yield from ((np.nan, 0.01, 5.0), (0.01, np.inf, 5.0), (0.01, 0.001, np.nan), (-np.inf, np.nan, 5.0))
     yield (SMALLEST, -SMALLEST, 3.0)
 
 
 def _readings(correction: Correction) -> list[Exit]:
     """At, beside and beyond what is believed and what is clipped."""
-    clip, fastest = float(correction.parameters[4]), LARGEST_SPEED_M_S
+    clip, fastest, largest = map(float, (correction.setting.clip_m_s, LARGEST_SPEED_M_S, LARGEST_ERROR_M_S))
     return [
-        (0.02, True, 3.0), (0.02, False, 0.001), (LARGEST_ERROR_M_S, True, 0.0), (-LARGEST_ERROR_M_S, True, fastest),
-        (_above(LARGEST_ERROR_M_S), True, _above(fastest)), (-_above(LARGEST_ERROR_M_S), True, -1.0),
+        (0.02, True, 3.0), (0.02, False, 0.001), (largest, True, 0.0), (-largest, True, fastest),
+        (_above(largest), True, _above(fastest)), (-_above(largest), True, -1.0),
         (0.9 * clip, True, 0.3), (-0.9 * clip, True, 12.5), (1.1 * clip, True, 1e-3), (-1.1 * clip, True, 0.15),
         (np.nan, True, 2.0), (np.inf, True, np.nan), (0.0, True, np.inf), (-LARGEST, True, -np.inf),
         (SMALLEST, True, SMALLEST), (0.01, True, LARGEST),
@@ -116,7 +110,7 @@ def _above(value: float) -> float:
     return float(np.nextafter(np.float32(value), np.float32(np.inf)))
 
 
-def golden_passes(correction: Correction) -> npt.NDArray[np.void]:
+def golden_passes() -> npt.NDArray[np.void]:
     """Passes, of type `PASS`, at and beyond each condition of `usable_exit`, with its answer."""
     few, most = FEWEST_SAMPLES, MOST_MISSING
     counts = [
@@ -126,20 +120,17 @@ def golden_passes(correction: Correction) -> npt.NDArray[np.void]:
     ]  # fmt: skip
     passes = [(*each, *flags, 0.05, False) for each in counts for flags in ((False,) * 3, (True, False, False))]
     passes += [(60, 0, 5, False, hand, stalled, 0.0, False) for hand in (True, False) for stalled in (True, False)]
-    one, excess = LARGEST_ERROR_M_S, LARGEST_EXCESS_M_S
-    errors = [one, -one, _above(one), -_above(one), float(np.float32(excess)), _above(excess), -excess, 0.5]
+    one, excess = float(LARGEST_ERROR_M_S), float(LARGEST_EXCESS_M_S)
+    errors = [one, -one, _above(one), -_above(one), excess, _above(excess), -excess, 0.5]
     errors += [np.nan, np.inf, -np.inf]
     passes += [(60, 0, 5, ends, False, False, error, False) for error in errors for ends in (True, False)]
-    return judged(correction, np.array(passes, dtype=PASS))
+    return judged(np.array(passes, dtype=PASS))
 
 
-def judged(correction: Correction, passes: npt.NDArray[np.void]) -> npt.NDArray[np.void]:
+def judged(passes: npt.NDArray[np.void]) -> npt.NDArray[np.void]:
     """`passes` of type `PASS` with the answer of `usable_exit` filled in, as a copy."""
     filled = passes.copy()
     for each in filled:
-        samples, missing, at_top = (int(each[name]) for name in COUNTS)
-        ends, hand, stalled = (bool(each[name]) for name in FLAGS)
-        each["usable"] = usable_exit(
-            correction.parameters, samples, missing, at_top, ends, hand, stalled, float(each["error_m_s"])
-        )
+        samples, missing, at_top, ends, hand, stalled, error_m_s, _ = each.tolist()
+        each["usable"] = usable_exit(samples, missing, at_top, ends, hand, stalled, error_m_s)
     return filled

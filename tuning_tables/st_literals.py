@@ -44,9 +44,8 @@ def real_constant(name: str, value: float | np.floating) -> str:
     return f"    {name} : REAL := {real(value)};"
 
 
-LEAST_REAL: Final = real_constant("LeastReal", np.finfo(np.float32).min)
 GREATEST_REAL: Final = real_constant("GreatestReal", np.finfo(np.float32).max)
-"""Declarations of the ends of REAL: a number is finite if it lies between them."""
+"""Declaration of the greatest REAL: a number above 0 is finite if it is not greater."""
 
 
 def is_portable(values: npt.NDArray[np.float32]) -> npt.NDArray[np.bool_]:

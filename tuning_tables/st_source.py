@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from tuning_tables.controller_code.c_self_test import test_stem
 from tuning_tables.controller_code.code import ControllerCode
 from tuning_tables.controller_code.line_code import line_code
 from tuning_tables.controller_code.st_code import head, st_units
@@ -31,20 +32,28 @@ def st_files(book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTe
     Equal books give equal bytes. Raises `InvalidTable` for more than `MOST_TABLES` tables, and for a category without
     number.
     """
-    code = _exportable(book, self_test)
-    files = {
-        TABLE_FILE: "\n".join([head(code), *st_units(code)]),
-        SELF_TEST_FILE: "\n".join([self_test_head(code), *st_test_units(code, self_test.line_checks)]),
-    }
-    return {prefix.renamed(name): prefix.renamed(text).encode("ascii") for name, text in files.items()}
+    return st_texts(_exportable(book, self_test), prefix, self_test.line_checks)
 
 
 def st_unit_files(
     book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL
 ) -> Mapping[str, bytes]:
     """The same units, a file each; by their names in the order in which they need each other. Raises as `st_files`."""
-    code = _exportable(book, self_test)
-    texts = [prefix.renamed(text) for text in (*st_units(code), *st_test_units(code, self_test.line_checks))]
+    return st_unit_texts(_exportable(book, self_test), prefix, self_test.line_checks)
+
+
+def st_texts(code: ControllerCode, prefix: ExportPrefix, line_checks: int = 0) -> Mapping[str, bytes]:
+    """The two files of any export, by name."""
+    files = {
+        f"retarder_{code.stem}.st": "\n".join([head(code), *st_units(code)]),
+        f"retarder_{test_stem(code)}.st": "\n".join([self_test_head(code), *st_test_units(code, line_checks)]),
+    }
+    return {prefix.renamed(name): prefix.renamed(text).encode("ascii") for name, text in files.items()}
+
+
+def st_unit_texts(code: ControllerCode, prefix: ExportPrefix, line_checks: int = 0) -> Mapping[str, bytes]:
+    """The units of any export, a file each, in the order in which they need each other."""
+    texts = [prefix.renamed(text) for text in (*st_units(code), *st_test_units(code, line_checks))]
     texts[0] = "\n".join([prefix.renamed(head(code)), texts[0]])
     return unit_files(texts)
 

@@ -1,7 +1,8 @@
 """Records in exported code, read without the program that wrote it: of each table the numbers by member.
 
 C: members from the struct of the header, numbers from the initialisers. Structured Text: members from the TYPE; numbers
-from constant arrays, those of all tables in `MemberOf`; arrays of one table in `Member_k`, k from `PartPart`.
+from constant arrays, those of all tables in `MemberOf`; arrays of one table in `Member_k`, k from `PartPart`, and where
+they are long in `Member_k_1` and on.
 """
 
 from __future__ import annotations
@@ -184,17 +185,26 @@ def st_records(text: str, record: str, load: str) -> StRecords:
     part_of = {stem: part_named(block[1], stem) for stem in numbered}
     for number in range(count):
         for member in members:
-            stem = next((each for each in numbered if is_short(member.name, each)), None)
+            stem = None if member.name in columns else next((x for x in numbered if is_short(member.name, x)), None)
             if stem is None:
-                column = next((columns[each] for each in columns if is_short(member.name, each)), None)
+                short = next((columns[each] for each in columns if is_short(member.name, each)), None)
+                column = columns.get(member.name, short)
                 if column is not None and number < len(column):
                     tables[number][member.name] = [column[number]]
                 continue
             part = parts.get(part_of[stem], [])
             name = f"{stem}_{part[number]}" if number < len(part) else ""
             if name in own:
-                tables[number][member.name] = own[name][0]
+                tables[number][member.name] = [*own[name][0], *further(own, name)]
     return StRecords(members, tables, faults)
+
+
+def further(arrays: Mapping[str, list[list[float]]], name: str) -> Iterator[float]:
+    """What goes on in arrays of their own, `Member_k_1`, `Member_k_2`: a constant array has a greatest length."""
+    piece = 1
+    while f"{name}_{piece}" in arrays:
+        yield from arrays[f"{name}_{piece}"][0]
+        piece += 1
 
 
 def part_named(block: str, stem: str) -> str:
@@ -210,7 +220,7 @@ def is_short(member: str, stem: str) -> bool:
     return member == short or (member.startswith(short) and member.removeprefix(short) in UNITS)
 
 
-UNITS: Final = ("", "m", "ms", "ms2", "kpa", "t", "s", "m2s2", "mskpa")
+UNITS: Final = ("", "m", "ms", "ms2", "kpa", "t", "s", "m2s2", "mskpa", "nperkn")
 
 
 def differences(number: int, found: Numbers, due: Numbers) -> Iterator[str]:

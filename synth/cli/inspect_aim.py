@@ -83,12 +83,13 @@ def speed_table(table: AimTable) -> PrintedTable[SpeedRow]:
     """Exit speeds at some free distances, for every number of cars; at the ends and the middle of the resistances."""
     distance, resistance = table.axes.free_distance_m, table.axes.resistance_n_per_kn
     shown = np.unique(np.linspace(0, len(distance) - 1, SHOWN_DISTANCES).round().astype(int))
-    count = table.speed_nodes.shape[2]
+    nodes = table.exit_speed_m_s.reshape(*table.axes.shape[:2], -1)
+    count = nodes.shape[2]
     rows = []
     for row, cars in enumerate(table.axes.cars.tolist()):
         for column in sorted({0, count // 2, count - 1}):
             of = "" if resistance is None else f", {resistance[column]:g} N/kN"
-            rows.append(SpeedRow(f"{counted(cars, 'car')}{of}", table.speed_nodes[row, shown, column].tolist()))
+            rows.append(SpeedRow(f"{counted(cars, 'car')}{of}", nodes[row, shown, column].tolist()))
 
     def speed_column(place: int, distance_m: float) -> Column[SpeedRow]:
         def cell(row: SpeedRow) -> str:

@@ -21,10 +21,11 @@ from tests.tuning_tables.aim.hard_questions import answers, hard_questions, samp
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, random_table, reported_of
 from tuning_tables.aim import AimTables
 from tuning_tables.aim.aim_table import AimTable
-from tuning_tables.aim.block import aim_block, aim_block_size
 from tuning_tables.aim.c_source import aim_c_files
 from tuning_tables.aim.golden_aims import GoldenAims, few_golden_aims, golden_aims
 from tuning_tables.c_source import c_files
+from tuning_tables.controller_code.aim_code import aim_code
+from tuning_tables.controller_code.code import crc32_of, words_of
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 
 QUESTIONS = 200_000
@@ -39,14 +40,15 @@ int main(int count, char **arguments)
     static aim_table given;
     if (count > 1 && strcmp(arguments[1], "self-test") == 0) {
         uint32_t where = 0u;
-        const int fault = aim_self_test(&where);
+        const int fault = (int)aim_self_test(&where);
         printf("fault %d at %u\n", fault, (unsigned)where);
         return 0;
     }
     if (count > 1) {
         while (fread(&given, sizeof given, 1, stdin) == 1) {
             const float speed = aim_exit_speed(&given, 5, 60.0f, 2.0f);
-            printf("%d %d\n", aim_table_intact(&given), speed >= 0.5f && speed <= 7.0f ? 1 : speed == -1.0f ? 0 : 2);
+            const int sound = (int)aim_table_intact(&given);
+            printf("%d %d\n", sound, speed >= 0.5f && speed <= 7.0f ? 1 : speed == -1.0f ? 0 : 2);
         }
         return 0;
     }
@@ -56,7 +58,7 @@ int main(int count, char **arguments)
         memcpy(&cars, question + 1, 4);
         memcpy(&distance, question + 2, 4);
         memcpy(&resistance, question + 3, 4);
-        speed = aim_exit_speed(question[0] < aim_table_count ? &aim_tables[question[0]] : 0, (int)cars, distance,
+        speed = aim_exit_speed(question[0] < (uint32_t)aim_table_count ? &aim_tables[question[0]] : 0, cars, distance,
                                resistance);
         fwrite(&speed, sizeof speed, 1, stdout);
     }
@@ -167,41 +169,44 @@ def test_nothing_but_itself_is_linked_and_nothing_is_variable(aims: AimTables, t
 
 
 MUTANTS = (
-    ("0x1.666666p+0f", "0x1.666668p+0f", "fault 2 at"),  # the last bit of a speed
-    ("value > nodes[found.below] &&", "", "fault 3 at"),
-    ("found.below + 1u < count) {", "1) {", "fault 3 at"),
-    ("rounded(value - begin) /", "rounded(value) /", "fault 3 at"),
-    ("nodes[found.above] - begin", "nodes[found.above]", "fault 3 at"),
-    ("return end < speed ? end : speed;", "return end;", "fault 3 at"),
-    ("return end > speed ? end : speed;", "return end;", "fault 3 at"),
-    ("if (begin < end) {", "if (begin > end) {", "fault 3 at"),
-    ("begin >= 0.0f && end >= 0.0f", "begin >= 0.0f", "fault 3 at"),
-    ("begin >= 0.0f && end >= 0.0f", "end >= 0.0f", "fault 3 at"),
-    ("begin >= 0.0f && begin <= end", "begin <= end", "fault 3 at"),
-    ("begin >= 0.0f && begin <= end", "begin >= 0.0f", "fault 3 at"),
-    ("begin >= 0.0f && begin <= end", "begin >= 0.0f && begin < end", "fault 3 at"),
-    ("if (is_beyond) {\n        return", "if (0) {\n        return", "fault 3 at"),
-    ("rounded(end - begin)", "rounded(begin - end)", "fault 3 at"),
-    ("(uint32_t)cars < table->cars[0]", "0", "fault 3 at"),
-    ("(uint32_t)cars > table->cars[table->cars_count - 1u]", "0", "fault 3 at"),
-    ("cars < 0 ||", "", None),  # as an unsigned number it is beyond the last
-    ("free_distance_m >= table->distance_m[0] &&", "free_distance_m >= 0.0f &&", "fault 3 at"),
-    ("free_distance_m <= FLT_MAX", "1", "fault 3 at"),
-    ("resistance_n_per_kn <= FLT_MAX", "1", "fault 3 at"),
-    ("resistance_n_per_kn >= -FLT_MAX", "1", "fault 3 at"),
-    ("(uint32_t)cars >= table->cars[row + 1u]", "(uint32_t)cars > table->cars[row + 1u]", "fault 3 at"),
-    ("? row + 1u : row;", "? row : row;", "fault 3 at"),
-    ("if (speed < least) {", "if (speed > least) {", "fault 3 at"),
-    ("row, way, share.above, is_beyond", "row, way, share.below, is_beyond", "fault 3 at"),
-    ("along(first, second, share.part)", "along(first, second, way.part)", "fault 3 at"),
-    ("if (table->resistances > 0u) {", "if (table->resistances > 99u) {", "fault 3 at"),
-    ("(table->resistances != 0u) == (measured != 0)", "1", "fault 4 at"),
-    ("table->category == category &&", "", "fault 4 at"),
-    ("0xEDB88320u", "0xEDB88321u", "fault 1 at 0"),
+    ("0x1.666666p+0f", "0x1.666668p+0f", 2),  # the last bit of a speed
+    ("distance > table->distance_m[below]", "1", 4),
+    ("below < (table->distances - 1)", "1", 4),
+    ("rounded(distance - table->distance_m[below]) /", "rounded(distance) /", 4),
+    ("speed = smaller(speed, far);", "speed = far;", 4),
+    ("speed = larger(speed, far);", "speed = far;", 4),
+    ("if (near < far) {", "if (near > far) {", 4),
+    ("near >= 0.0f && far >= 0.0f", "near >= 0.0f", 4),
+    ("near >= 0.0f && far >= 0.0f", "far >= 0.0f", 4),
+    ("0.0f <= near && near <= far", "near <= far", 4),
+    ("0.0f <= near && near <= far", "0.0f <= near", 4),
+    ("0.0f <= near && near <= far", "0.0f <= near && near < far", 4),
+    ("if (beyond) {", "if (0) {", 4),
+    ("beyond = 1;", "beyond = 0;", 4),
+    ("below = below - 1;", "below = below - 0;", 4),
+    ("rounded(far - near)", "rounded(near - far)", 4),
+    ("last = first + 1;", "last = first;", 4),
+    ("if (last >= table->listed) {", "if (last > table->listed) {", 4),
+    ("cars >= table->cars[row]", "cars > table->cars[row]", 4),
+    ("cars > table->cars[first]", "0", 4),
+    ("distance >= table->distance_m[0]", "distance >= 0.0f", 4),
+    ("LEAST_NUMBER <= free_distance_m &&", "", None),  # it is nearer than the first
+    ("&& free_distance_m <= LARGEST_NUMBER", "", 4),
+    ("resistance_n_per_kn && resistance_n_per_kn <= LARGEST_NUMBER", "resistance_n_per_kn", 4),
+    ("LEAST_NUMBER <=\n                resistance_n_per_kn &&", "", 4),
+    ("distance >= table->distance_m[node]", "distance > table->distance_m[node]", 4),
+    ("upper = lower + 1;", "upper = lower;", 4),
+    ("if (row == first || found < least) {", "if (row == first || found > least) {", 4),
+    ("over_distance(table, row, upper,", "over_distance(table, row, lower,", 4),
+    ("along(low, high, share)", "along(low, high, part)", 4),
+    ("float share = 0.0f;\n            if (table->is_measured == 1) {", "float share = 0.0f;\n            if (0) {", 4),
+    ("&& aim_tables[number].is_measured == wanted", "", 5),
+    ("aim_tables[number].category == category &&", "", 5),
+    ("if (table == 0) {\n        return -1.0f;", "if (table == 0) {\n        return 0.0f;", 6),
+    ("0xEDB88320u", "0xEDB88321u", 1),
 )
 
 
-@cache
 @cache
 def to_mutate(golden: Callable[[AimTable], GoldenAims]) -> Mapping[str, bytes]:
     """An export that shows every fault of `MUTANTS`, and the program around it."""
@@ -219,12 +224,12 @@ def to_mutate(golden: Callable[[AimTable], GoldenAims]) -> Mapping[str, bytes]:
     ("before", "after", "fault"), MUTANTS, ids=[f"{each[1][:30]}-{n}" for n, each in enumerate(MUTANTS)]
 )
 def test_the_self_test_finds_a_wrong_controller(
-    before: str, after: str, fault: str | None, tmp_path: Path, to_change: ToChange
+    before: str, after: str, fault: int | None, tmp_path: Path, to_change: ToChange
 ) -> None:
     export = to_change([to_mutate(golden) for golden in (golden_aims, few_golden_aims)], SOURCES[0])
     for said in export.self_tests(before, after, tmp_path):
         assert said.returncode == 0
-        assert said.stdout.startswith(fault) if fault else said.stdout == "fault 0 at 0\n"
+        assert said.stdout.startswith(f"fault {fault} at") if fault else said.stdout == "fault 0 at 0\n"
 
 
 def test_a_damaged_table_is_found_and_leads_nowhere(tmp_path: Path, tool: Tool) -> None:
@@ -232,18 +237,19 @@ def test_a_damaged_table_is_found_and_leads_nowhere(tmp_path: Path, tool: Tool) 
     tool("gcc")
     aims = AimTables((category_table(), measured_table()))
     command = built(aim_c_files(aims), tmp_path, Build("gcc", ("-O1", "-g", "-fsanitize=address,undefined")))
-    size = aim_block_size(aims)
-    sound = aim_block(aims.tables[1], size)
+    code = aim_code(aims, golden_aims)
+    words = words_of(code.table, code.tables[1].values)
+    sound = np.append(words, np.uint32(crc32_of(words)))
     damaged = np.repeat(sound[None, :], 4 * len(sound), axis=0)
     places = np.arange(4 * len(sound))
     damaged.view(np.uint8)[places, places] ^= (1 + places % 255).astype(np.uint8)
-    for word, value in ((1, 0), (1, size.cars + 1), (2, 0), (2, 2**31), (3, size.resistances + 1), (3, 2**32 - 1)):
+    for word, value in ((2, 0), (2, 6), (3, 0), (3, 2**31), (4, 6), (4, 2**32 - 1)):
         forged = sound.copy()
         forged[word] = value
         damaged = np.vstack([damaged, forged])
     for bits in (0x7F800000, 0x7FC00000, 0x7F000000, 0xBF000000, 0x3A000000):  # speeds: inf, NaN, huge, negative, tiny
         forged = sound.copy()
-        forged[size.nodes] = bits
+        forged[-1 - code.table.length("speed_m_s") : -1] = bits
         damaged = np.vstack([damaged, forged])
     lines = told(command, "given", given=np.vstack([sound, damaged]).tobytes()).decode().splitlines()
     assert lines[0] == "1 1"
@@ -270,7 +276,7 @@ def test_aim_tables_of_two_positions_and_controller_tables_fit_into_one_program(
     files |= aim_c_files(AimTables((random_table(3, True),)), ExportPrefix("Park_2"))
     main = '#include "park_self_test.h"\n#include "park_aim_self_test.h"\n#include "park_2_aim_self_test.h"\n'
     main += "int main(void) { return park_self_test(0) + park_aim_self_test(0) + park_2_aim_self_test(0)"
-    main += " + (PARK_AIM_CATEGORY_ST != PARK_CATEGORY_ST) + (park_2_aim_select(1u, 0) != 0); }\n"
+    main += " + (PARK_AIM_CATEGORY_ST != PARK_CATEGORY_ST) + (park_2_aim_select(1, 0) >= 0); }\n"
     written({**files, "all.c": main.encode()}, tmp_path)
     sources = [name for name in files if name.endswith(".c")]
     assert sorted(sources)[:2] == ["park_2_aim_self_test.c", "park_2_aim_table.c"]

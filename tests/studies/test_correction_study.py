@@ -17,7 +17,8 @@ from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
 from synth.simulation.random_passes import random_passes
 from tuning_tables.active_table import ActiveTable, active
-from tuning_tables.correction import Correction, corrected_speed
+from tuning_tables.correction import Correction
+from tuning_tables.programs.correct import corrected_speed
 from tuning_tables.rule import decide_for
 
 PASSES = 300
@@ -40,7 +41,7 @@ def test_lower_lines_decide_as_the_rule_at_the_corrected_speed(ready: tuple[Case
         shifted = corrected(table, state[1])
         for _ in range(1000):
             s, v, stage = rng.uniform(0.0, 40.0), np.float32(rng.uniform(1.0, 8.0)), int(rng.integers(0, 4))
-            asked = float(corrected_speed(correction.parameters, state, float(v)))
+            asked = float(corrected_speed(correction.setting, state, float(v)))
             differ += decide_for(table, stage, s, asked) != decide_for(shifted, stage, s, float(v))
     # Only the last bit of a line or of a speed is another.
     assert differ <= 1

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,16 +9,10 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numba import njit
 
 from tuning_tables import InvalidTable
-from tuning_tables.correction import (
-    Correction,
-    begin_correction,
-    corrected_speed,
-    learn_exit,
-    usable_exit,
-)
+from tuning_tables.correction import Correction, begun_correction
+from tuning_tables.programs.correct import corrected_speed, learn_exit, usable_exit
 
 CORRECTION = Correction()
 WORDS = st.integers(0, 2**32 - 1)
@@ -44,19 +37,19 @@ def state_of(values: tuple[float, float, float]) -> npt.NDArray[np.float32]:
 def test_whatever_comes_in_the_correction_is_bounded(
     correction: Correction, exits: list[tuple[float, bool]], speed: float
 ) -> None:
-    state = begin_correction()
-    limit, step = correction.parameters[2], float(correction.parameters[5])
+    state = begun_correction()
+    limit, step = correction.setting.limit_m_s, float(correction.setting.step_m_s)
     for error, credible in exits:
         before = float(state[1])
         with np.errstate(all="raise", under="ignore"):  # a tiny number squared is 0, and meant to be
-            learn_exit(correction.parameters, state, error, credible)
+            learn_exit(correction.setting, state, error, credible)
         assert np.isfinite(state).all()
         assert abs(state[1]) <= limit
         # One step, and the rounding of a sum that is 0.6 at most.
         assert abs(float(state[1]) - before) <= step + 3e-8
         if not credible or not -1.0 <= error <= 1.0:
             assert float(state[1]) == before
-    corrected = corrected_speed(correction.parameters, state, speed)
+    corrected = corrected_speed(correction.setting, state, speed)
     if 0.0 <= speed <= 40.0:
         assert max(speed - float(limit), 0.0) - 4e-6 <= float(corrected) <= speed + float(limit) + 4e-6
     else:
@@ -70,11 +63,11 @@ def test_from_any_state_one_pass_leads_back_into_the_bounds(
 ) -> None:
     """A memory that lost its content: no word of it is believed that cannot be, by either function."""
     state = state_of(words)
-    assert abs(float(corrected_speed(CORRECTION.parameters, state, speed)) - speed) <= 0.15 + 4e-6
-    learn_exit(CORRECTION.parameters, state, error, credible)
+    assert abs(float(corrected_speed(CORRECTION.setting, state, speed)) - speed) <= 0.15 + 4e-6
+    learn_exit(CORRECTION.setting, state, error, credible)
     assert np.isfinite(state).all()
-    assert abs(state[1]) <= CORRECTION.parameters[2]
-    assert abs(state[0]) <= CORRECTION.parameters[3]
+    assert abs(state[1]) <= CORRECTION.setting.limit_m_s
+    assert abs(state[0]) <= CORRECTION.setting.reach_m_s
     assert 0 <= int(state[2]) <= 2**24
 
 
@@ -82,12 +75,12 @@ def test_one_exit_moves_it_by_its_share_at_most() -> None:
     """Beyond the threshold c follows b at a slope of 2 at most, and b moves by gain times clip at most."""
     most = 2.0 * CORRECTION.gain * 3.0 * CORRECTION.spread_m_s
     for error in (1.0, -1.0):
-        state = begin_correction()
+        state = begun_correction()
         for number in range(400):
-            learn_exit(CORRECTION.parameters, state, 0.1 + 0.05 * np.sin(number), True)
+            learn_exit(CORRECTION.setting, state, 0.1 + 0.05 * np.sin(number), True)
         before = float(state[1])
         assert before > 0.05
-        learn_exit(CORRECTION.parameters, state, error, True)
+        learn_exit(CORRECTION.setting, state, error, True)
         assert abs(float(state[1]) - before) <= 1.01 * most
 
 
@@ -110,9 +103,9 @@ def in_double_precision(correction: Correction, errors: npt.NDArray[np.float64])
 def test_it_is_the_recursion_of_the_page(bias_m_s: float) -> None:
     rng = np.random.default_rng(4)
     errors = np.clip(bias_m_s + 0.05 * rng.standard_normal(3000), -0.99, 0.99)
-    state, found = begin_correction(), []
+    state, found = begun_correction(), []
     for error in errors:
-        learn_exit(CORRECTION.parameters, state, float(np.float32(error)), True)
+        learn_exit(CORRECTION.setting, state, float(np.float32(error)), True)
         found.append(state[1])
     assert np.array(found) == pytest.approx(in_double_precision(CORRECTION, errors), abs=2e-5)
 
@@ -132,10 +125,10 @@ def test_the_gain_is_that_of_the_steady_kalman_filter() -> None:
 def closed(plant_bias_m_s: npt.NDArray[np.float64], seed: int) -> npt.NDArray[np.float64]:
     """Exits of a plant that obeys the correction: error = bias - c + noise."""
     rng = np.random.default_rng(seed)
-    state, errors = begin_correction(), []
+    state, errors = begun_correction(), []
     for bias in plant_bias_m_s:
         errors.append(bias - float(state[1]) + CORRECTION.spread_m_s * rng.standard_normal())
-        learn_exit(CORRECTION.parameters, state, float(np.float32(errors[-1])), abs(errors[-1]) <= 1.0)
+        learn_exit(CORRECTION.setting, state, float(np.float32(errors[-1])), abs(errors[-1]) <= 1.0)
     return np.array(errors)
 
 
@@ -156,22 +149,6 @@ def test_a_bias_beyond_the_limit_does_not_wind_it_up() -> None:
     assert abs(errors[-50:].mean()) < 0.06
 
 
-def test_numba_compiles_the_same_numbers() -> None:
-    compiled_texts: tuple[Callable[..., Any], ...] = (njit(learn_exit), njit(corrected_speed), njit(usable_exit))
-    learn, speed, usable = compiled_texts
-    rng = np.random.default_rng(5)
-    plain, compiled = begin_correction(), begin_correction()
-    for _ in range(3000):
-        error = float(np.float32(rng.choice([0.1 + 0.05 * rng.standard_normal(), np.nan, 2.0], p=[0.9, 0.05, 0.05])))
-        v, credible = float(np.float32(40.5 * rng.random())), bool(rng.random() < 0.9)
-        learn_exit(CORRECTION.parameters, plain, error, credible)
-        learn(CORRECTION.parameters, compiled, error, credible)
-        assert np.array_equal(plain.view(np.uint32), compiled.view(np.uint32))
-        assert corrected_speed(CORRECTION.parameters, plain, v) == speed(CORRECTION.parameters, compiled, v)
-        told: tuple[Any, ...] = (60, int(rng.integers(5)), int(rng.integers(61)), credible, False, False, error)
-        assert usable_exit(CORRECTION.parameters, *told) == usable(CORRECTION.parameters, *told)
-
-
 USABLE: dict[str, Any] = {
     "samples": 60, "missing": 0, "at_top": 10, "ends_at_top": False, "by_hand": False, "stalled": False,
     "error_m_s": 0.05,
@@ -188,13 +165,13 @@ USABLE: dict[str, Any] = {
     ids=str,
 )  # fmt: skip
 def test_each_condition_alone_makes_a_pass_unusable(change: dict[str, Any]) -> None:
-    assert usable_exit(CORRECTION.parameters, **USABLE)
-    assert not usable_exit(CORRECTION.parameters, **{**USABLE, **change})
+    assert usable_exit(**USABLE)
+    assert not usable_exit(**{**USABLE, **change})
 
 
 def test_what_is_just_allowed_is_usable() -> None:
     for change in ({"missing": 3}, {"at_top": 30}, {"ends_at_top": True, "error_m_s": 0.1}, {"error_m_s": -1.0}):
-        assert usable_exit(CORRECTION.parameters, **{**USABLE, **change})
+        assert usable_exit(**{**USABLE, **change})
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.aim_tables import AimTables
 from tuning_tables.aim.axes import AimAxes
 from tuning_tables.aim.csv_file import to_aim_csv, write_aim_csv
-from tuning_tables.aim.exit_speed import aim_exit_speed, aim_exit_speeds
+from tuning_tables.aim.exit_speed import aim_exit_speed
 from tuning_tables.aim.json_file import from_aim_json, read_aim_json, to_aim_json, write_aim_json
 from tuning_tables.aim.purpose import (
     AimCategory,
@@ -32,7 +32,6 @@ __all__ = [
     "Reported",
     "Required",
     "aim_exit_speed",
-    "aim_exit_speeds",
     "aim_schema",
     "from_aim_json",
     "read_aim_json",

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from tuning_tables.aim.axes import AimAxes
+from tuning_tables.aim.held_aim import aim_grid
 from tuning_tables.aim.nodes import Nodes, nodes_of, require_all
 from tuning_tables.aim.purpose import FASTEST_M_S, AimCategory, CategoryAlone, Knowledge, ParkPosition, Required
 from tuning_tables.aim.reported import Reported
 from tuning_tables.errors import InvalidTable
+from tuning_tables.programs.aim_table import AimGrid
 from tuning_tables.provenance import Generator
 from tuning_tables.requirement import (
     UTC_INSTANT,
@@ -41,8 +42,7 @@ class AimTable:
     No exit speed is less than one for a smaller resistance, at the same cars and distance. With the distance and with
     the number of cars a speed may fall: where the track is steeper than a cut resists, it has to.
 
-    Derived from these, float32 and read-only, for `exit_speed`: `distance_nodes` (D,), `resistance_nodes` (R,), one 0
-    in a table by category, and `speed_nodes` (C, D, R), NaN for none.
+    Derived from these: `held`, what a controller holds, with one resistance of 0 in a table by category.
 
     Raises `InvalidTable`.
     """
@@ -59,25 +59,18 @@ class AimTable:
     bounds_m_s: tuple[float, float]
     interpolation_error_m_s: float
     reported: Reported
-    distance_nodes: npt.NDArray[np.float32] = field(init=False, repr=False)
-    resistance_nodes: npt.NDArray[np.float32] = field(init=False, repr=False)
-    speed_nodes: npt.NDArray[np.float32] = field(init=False, repr=False)
+    held: AimGrid = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         self._require_fields()
         speeds = nodes_of(self.exit_speed_m_s, "exit_speed_m_s", self.axes.shape)
         self._require_speeds(speeds)
         self.reported.require_nodes(speeds)
-        resistance = self.axes.resistance_n_per_kn
-        arrays: dict[str, npt.NDArray[np.floating]] = {
-            "exit_speed_m_s": speeds,
-            "distance_nodes": self.axes.free_distance_m.astype(np.float32),
-            "resistance_nodes": np.zeros(1, np.float32) if resistance is None else resistance.astype(np.float32),
-            "speed_nodes": speeds.astype(np.float32).reshape(*self.axes.shape[:2], -1),
-        }
-        for name, array in arrays.items():
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
+        speeds.setflags(write=False)
+        object.__setattr__(self, "exit_speed_m_s", speeds)
+        required = (self.required.p_overspeed, self.required.coupling_speed_m_s)
+        held = aim_grid(self.axes, speeds, self.bounds_m_s, self.category.number, *required)
+        object.__setattr__(self, "held", held)
 
     @property
     def is_measured(self) -> bool:

@@ -11,8 +11,9 @@ import numpy.typing as npt
 
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.aim_tables import AimTables
-from tuning_tables.aim.exit_speed import aim_exit_speeds
+from tuning_tables.aim.held_aim import NO_ANSWER
 from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN
+from tuning_tables.programs.aim_speed import exit_speed
 
 Floats = npt.NDArray[np.float32]
 Question = tuple[int, float, float]
@@ -25,8 +26,6 @@ INT_LIMITS: Final = (-32768, 32767)
 
 MOST_PLACES: Final = 80
 """On one axis, for one number of cars."""
-
-NO_ANSWER: Final = np.float32(-1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +51,7 @@ def golden_aims(table: AimTable) -> GoldenAims:
     Of an axis with many nodes each number of cars takes some. And beyond the ends of both, numbers of cars between and
     beyond the listed ones, and what is no number. The same table gives the same questions, in order, each once.
     """
-    far, high = _places(table.distance_nodes), _places(table.resistance_nodes)
+    far, high = _places(table.held.distance_m), _places(table.held.resistance_n_per_kn)
     questions: list[Question] = []
     for row, cars in enumerate(table.axes.cars.tolist()):
         questions += [(cars, d, high[(row + place) % len(high)]) for place, d in enumerate(_some(far, row))]
@@ -69,17 +68,18 @@ def few_golden_aims(table: AimTable) -> GoldenAims:
     At both ends of the distance, at two places between, and at the last node that has a speed for each of the least and
     the largest resistance; numbers of cars below, between and above the listed ones; and what is no number.
     """
-    low, top = table.resistance_nodes[[0, -1]].tolist()
-    first, last = table.distance_nodes[[0, -1]].tolist()
+    held = table.held
+    low, top = held.resistance_n_per_kn[[0, -1]].tolist()
+    first, last = held.distance_m[[0, -1]].tolist()
     near, far = (first + (last - first) * part for part in (0.25, 0.8125))
     between = [low + (top - low) * part for part in (0.1875, 0.75)]
     questions: list[Question] = []
-    for cars, speeds in zip(table.axes.cars.tolist(), table.speed_nodes, strict=True):
+    for cars, speeds in zip(held.cars.tolist(), held.speed_m_s, strict=True):
         questions += [(cars, d, r) for d in (first, near, far, last) for r in between]
         questions += [(cars, near, r) for r in (low, top)] + [(cars, last + 1000.0, between[0])]
         for r, column in ((low, 0), (top, -1)):
-            reached = np.flatnonzero(~np.isnan(speeds[:, column]))
-            questions.append((cars, float(table.distance_nodes[reached[-1] if len(reached) else 0]), r))
+            reached = np.flatnonzero(speeds[:, column] != NO_ANSWER)
+            questions.append((cars, float(held.distance_m[reached[-1] if len(reached) else 0]), r))
     numbers = _numbers_of_cars(table)
     questions += [(cars, near, between[1]) for cars in (*numbers[:4], *numbers[4:-4][:12], *numbers[-4:])]
     return golden_answers(table, [*questions, *_incredible(table, between[1])])
@@ -93,8 +93,9 @@ def golden_answers(table: AimTable, questions: Sequence[Question]) -> GoldenAims
     bits = np.stack([cars.view(np.uint32), distance.view(np.uint32), resistance.view(np.uint32)], axis=1)
     first = np.sort(np.unique(bits, axis=0, return_index=True)[1])
     cars, distance, resistance = cars[first], distance[first], resistance[first]
-    speeds = aim_exit_speeds(table, cars, distance, resistance)
-    return GoldenAims(cars, distance, resistance, np.where(np.isnan(speeds), NO_ANSWER, speeds))
+    asked = zip(cars.tolist(), distance, resistance, strict=True)
+    speeds = np.array([exit_speed(table.held, *each) for each in asked], dtype=np.float32)
+    return GoldenAims(cars, distance, resistance, speeds)
 
 
 def golden_selections(aims: AimTables) -> tuple[tuple[int, bool, int], ...]:
@@ -130,5 +131,5 @@ def _numbers_of_cars(table: AimTable) -> list[int]:
 def _incredible(table: AimTable, resistance: float) -> list[Question]:
     """What cannot be true, or only just can, with the first and the last number of cars."""
     hard = (np.nan, np.inf, -np.inf, LARGEST, -LARGEST, SMALLEST, -SMALLEST, -1.0, -0.0, 0.0)
-    ends, first_m = table.axes.cars[[0, -1]].tolist(), float(table.distance_nodes[0])
+    ends, first_m = table.axes.cars[[0, -1]].tolist(), float(table.held.distance_m[0])
     return [question for cars in ends for x in hard for question in ((cars, x, resistance), (cars, first_m, x))]

@@ -67,6 +67,10 @@ static int is_equal(float one, float other)
 }
 """What some programs use of the language, by how it begins where it is used."""
 
+CATEGORIES_NOTE = (
+    "/* Weight categories: their numbers are the same in every export, and so they may be kept elsewhere. */"
+)
+
 
 def c_names(code: ControllerCode) -> CNames:
     """The names of the export."""
@@ -74,7 +78,7 @@ def c_names(code: ControllerCode) -> CNames:
         types={record: f"retarder_{name}" for record, name in code.records.items()},
         functions={rule.function.__name__: f"retarder_{rule.name}" for rule in code.rules},
         without={rule.function.__name__: rule.without for rule in code.rules},
-        arrays={"tables": tables_of(code)} if code.chooses else {},
+        arrays={"tables": tables_of(code)} if code.looks_at_all else {},
     )
 
 
@@ -95,7 +99,7 @@ def c_header(code: ControllerCode) -> str:
             *(STATUSES.split("\n") if code.chooses else []),
             *(f"#define RETARDER_{name} ({value}) /* {meaning} */" for name, value, meaning in code.named),
             *([""] if code.named else []),
-            "/* Weight categories: their numbers are the same in every export, and so they may be kept elsewhere. */",
+            *([CATEGORIES_NOTE] if code.categories else []),
             *(f"#define RETARDER_CATEGORY_{each.macro} {each.number} /* {comment_text(each.category)} */"
               for each in code.categories),
             "",

@@ -19,8 +19,10 @@ from tuning_tables.controller_code.c_code import (
 )
 from tuning_tables.controller_code.c_odd_test import odd_is_right
 from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
+from tuning_tables.language.c99 import wrapped
 from tuning_tables.language.c99_data import c_comment
 from tuning_tables.language.records import Kind
+from tuning_tables.language.tree import Program
 
 FIRST_ANSWER: Final = 4
 """The fault of the first kind of questions; before it: sound, the arithmetic of the checksum, a table, a choice."""
@@ -35,12 +37,15 @@ def c_test_header(code: ControllerCode) -> str:
     """The text of retarder_..._self_test.h."""
     stem = test_stem(code)
     macro = f"RETARDER_{stem.upper()}"
-    asked = ", ".join(f"{len(each.rows)} golden {each.about}" for each in code.questions)
+    asked = ", ".join(
+        [*(f"{len(each.rows)} golden {each.about}" for each in code.questions),
+         *([f"{len(code.commands)} golden choices"] if code.commands else [])]
+    )  # fmt: skip
     faults = [
         ("SOUND", 0, ""),
         ("BAD_CRC", 1, 'the checksum of "123456789" is wrong'),
         ("BAD_TABLE", 2, "a table is not as exported"),
-        ("BAD_CHOICES", 3, "a golden choice is another"),
+        *([("BAD_CHOICES", 3, "a golden choice is another")] if code.commands else []),
         *((f"BAD_{each.about.upper()}", FIRST_ANSWER + place, f"one of the golden {each.about} is another")
           for place, each in enumerate(code.questions)),
         ("BAD_NOTHING", FIRST_ANSWER + len(code.questions), "a function without a record answers otherwise"),
@@ -52,7 +57,7 @@ def c_test_header(code: ControllerCode) -> str:
             *c_comment(
                 f"Self-test of retarder_{code.stem}.c. Generated: do not edit, export again. Proves on the processor "
                 "at hand, with the compiler and switches at hand, that tables and rules are as exported: arithmetic of "
-                f"the checksum, checksums of all tables, {asked}, {len(code.commands)} golden choices."
+                f"the checksum, checksums of all tables, {asked}."
             ),
             GUARD.format(macro=f"{macro}_H").replace("#include <stdint.h>", f'#include "retarder_{code.stem}.h"'),
             *(
@@ -142,34 +147,26 @@ def row_type(code: ControllerCode, place: int, questions: Questions) -> str:
 
 def is_right(code: ControllerCode, place: int, questions: Questions) -> str:
     """The function that asks one question and compares its answers."""
-    names, kinds = c_names(code), kinds_of(code, questions)
+    kinds = kinds_of(code, questions)
     programs = [code.program(rule) for rule in questions.rules]
     states = [each for each in code.states if any(each.record.name in program.records for program in programs)]
     shared = "".join(f", retarder_{code.records[each.record.name]} *{each.record.name}" for each in states)
-    lines = []
-    if "table" in kinds:
-        lines.append(f"    const {table_type(code)} *table = &{tables_of(code)}[golden->table];")
+    lines, tests = [], []
+    if any(code.declared[0].name in (each.name for each in program.records.values()) for program in programs):
+        number = "golden->table" if "table" in kinds else "0"
+        lines.append(f"    const {table_type(code)} *table = &{tables_of(code)}[{number}];")
     for each in states:
         state = each.record.name
         lines += [f"    {state}->{name} = float_of(golden->{BEFORE}{name});" for name in questions.members_before]
         if "begins" in kinds:
-            lines += [
-                "    if (golden->begins == 1) {",
-                f"        retarder_{code.beginning(state).name}({state});",
-                "    }",
-            ]
-    tests = []
+            begin = f"retarder_{code.beginning(state).name}({state});"
+            lines += ["    if (golden->begins == 1) {", f"        {begin}", "    }"]
     for program in programs:
-        given = []
-        for taken in program.parameters:
-            if taken.record is not None:
-                given.append("table" if not taken.record.is_state else taken.name)
-            elif taken.name not in kinds:
-                given.append("0.0f" if taken.kind is Kind.REAL else "0")
-            else:
-                given.append(f"float_of(golden->{taken.name})" if taken.kind is Kind.REAL else f"golden->{taken.name}")
+        call = call_of(code, program, kinds)
+        if not program.answers:
+            lines.append(wrapped(f"{call};", 1))
+            continue
         (answer,) = program.answers
-        call = f"{names.function(program)}({', '.join(given)})"
         tests.append(
             f"bits_of({call}) == golden->{answer.name}"
             if answer.kind is Kind.REAL
@@ -182,17 +179,32 @@ def is_right(code: ControllerCode, place: int, questions: Questions) -> str:
         for name in questions.expected
         if name not in told
     ]
-    joined = "\n        && ".join(tests)
+    joined = " && ".join(tests)
     return "\n".join(
         [
             f"static int is_right_{place}(const golden_{place} *golden{shared})",
             "{",
             *lines,
-            f"    return {joined};",
+            wrapped(f"return {joined};", 1),
             "}",
             "",
         ]
     )
+
+
+def call_of(code: ControllerCode, program: Program, kinds: Mapping[str, Kind]) -> str:
+    """The call of a program with the numbers of a question."""
+    names, given = c_names(code), []
+    for taken in program.parameters:
+        if taken.name in names.arrays:
+            continue
+        if taken.record is not None:
+            given.append("table" if not taken.record.is_state else taken.name)
+        elif taken.name not in kinds:
+            given.append("0.0f" if taken.kind is Kind.REAL else "0")
+        else:
+            given.append(f"float_of(golden->{taken.name})" if taken.kind is Kind.REAL else f"golden->{taken.name}")
+    return f"{names.function(program)}({', '.join(given)})"
 
 
 def asking(code: ControllerCode, place: int, questions: Questions) -> Iterator[str]:

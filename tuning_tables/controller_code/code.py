@@ -112,9 +112,10 @@ class ControllerCode:
     """An export: a book of tables of one kind.
 
     `stem`: of its files, "table" in retarder_table.c; tables with lines have it, and their names are the short ones.
-    `head`: paragraphs for the head of each file. `records`: of the table, then of the states, each with the name of its
-    type. `chooses`: the rule `choose`, and `blend` where there is something between two tables. `odd`: questions to a
-    changed copy of table 0. `named`: numbers that have names in C, with what they mean.
+    `head`: paragraphs for the head of each file. `records`: of the table, then of the states, each with the name of
+    its type. A record `tables` has what a rule looks at of every table. `chooses`: the rule `choose`, and `blend`
+    where there is something between two tables. `odd`: questions to a changed copy of table 0. `named`: numbers that
+    have names in C, with what they mean. `empty`: the member that is 0 in what is no table.
     """
 
     stem: str
@@ -132,6 +133,7 @@ class ControllerCode:
     commands: tuple[Commanded, ...]
     odd: tuple[OddQuestion, ...] = ()
     named: tuple[tuple[str, int, str], ...] = ()
+    empty: str = "stages"
 
     @cached_property
     def sized(self) -> Mapping[str, SizedRecord]:
@@ -157,6 +159,11 @@ class ControllerCode:
     def blends(self) -> bool:
         """Whether there is something between two tables."""
         return any(rule.name == "blend" for rule in self.chooses)
+
+    @property
+    def looks_at_all(self) -> bool:
+        """Whether a rule looks at all tables."""
+        return any(each.name == "tables" for each in self.declared)
 
     @property
     def states(self) -> tuple[SizedRecord, ...]:
@@ -230,9 +237,12 @@ def kinds_of(code: ControllerCode, questions: Questions) -> Mapping[str, Kind]:
     asked = {name for rule in questions.rules for name in looked_at(code.program(rule))}
     for name in questions.rows.dtype.names or ():
         if name not in questions.asked or name in asked:
-            is_real = questions.rows.dtype[name].kind == "f"
-            found[name] = Kind.REAL if is_real else Kind.INT
+            found[name] = KINDS.get(questions.rows.dtype[name].kind, Kind.INT)
     return found
+
+
+KINDS: Final = {"f": Kind.REAL, "b": Kind.BOOL}
+"""By the kind of a numpy type; all others are whole."""
 
 
 def looked_at(program: Program) -> set[str]:

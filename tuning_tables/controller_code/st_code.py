@@ -104,7 +104,7 @@ VAR_INPUT
     TableNo : INT; (* 0 to {last} *)
 END_VAR
 VAR_IN_OUT
-    Table : {type}; (* filled; where there is no such table its Stages become 0: nothing is commanded *)
+    Table : {type}; (* filled; where there is no such table its {empty} becomes 0 *)
 END_VAR
 VAR_OUTPUT
     Found : BOOL; (* there is such a table *)
@@ -119,7 +119,7 @@ VAR CONSTANT
 def st_names(code: ControllerCode) -> StNames:
     """The names of the export."""
     prefix = f"RETARDER{code.ending.upper()}_"
-    arrays = choice_arrays(code) if code.chooses else []
+    arrays = choice_arrays(code) if code.looks_at_all else []
     return StNames(
         types={record: f"RETARDER_{name.upper()}" for record, name in code.records.items()},
         blocks={rule.function.__name__: f"RETARDER_{rule.name.upper()}" for rule in code.rules},
@@ -171,9 +171,8 @@ def head(code: ControllerCode) -> str:
     if code.chooses:
         told = "once for a cut, when its class and exit speed are known: fills a"
         blocks.insert(0, f"{select_block_of(code)}: {told} {table_type(code)}")
-    categories = [
-        f"{each.number:9d}  {each.macro}, in tables {comment_text(each.category)}" for each in code.categories
-    ]
+    categories = [f"{each.number:9d}  {each.macro}, {comment_text(each.category)}" for each in code.categories]
+    categories[:0] = ["categories, whose numbers are the same in every export:"] if categories else []
     listed = [line for text in blocks for line in textwrap.wrap(text, WIDTH - 5, subsequent_indent="    ")]
     first = (
         f"{code.title} IEC 61131-3 Structured Text. Generated: do not edit, export again. This text may be used, "
@@ -181,7 +180,7 @@ def head(code: ControllerCode) -> str:
     )
     paragraphs = [
         textwrap.wrap(first, WIDTH - 5),
-        [*code.origin, "categories, whose numbers are the same in every export:", *categories],
+        [*code.origin, *categories],
         ["Blocks", *listed],
         *(textwrap.wrap(text, WIDTH - 5) for text in (*code.head, *ARITHMETIC)),
     ]
@@ -247,7 +246,7 @@ def load_block(code: ControllerCode) -> str:
     body = [f"Table.{st_name(name)} := {of_tables(name)}[TableNo];" for name in numbers]
     for part in dict.fromkeys(member.part for member in members.values() if member.axes):
         group = [name for name, member in members.items() if member.axes and member.part == part]
-        more, cases = part_of_tables(code, part or "lines", group)
+        more, cases = part_of_tables(code, part or "table", group)
         declared += more
         body += cases
     last = len(code.tables) - 1
@@ -256,14 +255,15 @@ def load_block(code: ControllerCode) -> str:
         "END_VAR",
         "",
         f"Found := (TableNo >= 0) AND (TableNo <= {last});",
-        "Table.Stages := 0;",
+        f"Table.{st_name(code.empty)} := {'0' if members[code.empty].kind is Kind.INT else '0.0'};",
         "IF Found THEN",
         *(f"    {line}" for line in body),
         "END_IF;",
         "END_FUNCTION_BLOCK",
         "",
     ]
-    return LOAD_HEAD.format(load=load_of(code), last=last, type=table_type(code)) + "\n".join(lines)
+    head = LOAD_HEAD.format(load=load_of(code), last=last, type=table_type(code), empty=st_name(code.empty))
+    return head + "\n".join(lines)
 
 
 def part_of_tables(code: ControllerCode, part: str, group: Sequence[str]) -> tuple[list[str], list[str]]:

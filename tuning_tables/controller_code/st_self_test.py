@@ -8,8 +8,8 @@ those for 0), no -0.0.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
-from typing import Final
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -29,16 +29,16 @@ from tuning_tables.controller_code.st_test_block import (
     test_name,
 )
 from tuning_tables.language.records import Kind, st_name
-from tuning_tables.st_literals import LONGEST_ARRAY, int_array, is_portable, real_array
+from tuning_tables.language.structured_text import broken
+from tuning_tables.st_literals import LONGEST_ARRAY, bool_array, int_array, is_portable, real_array
 
-HEAD: Final = """\
-(* Self-test of {file}, for the controller that is to run it. Generated: do not edit, export again.
-
-   Call one instance of {block} once a cycle until Done; Failed must be 0. It compares
-   every constant with a second copy, and the answers of the blocks with those of the reference implementation.
-   Questions that are not finite or denormal are left out, because they have no portable literal. REAL numbers are
-   compared for equality on purpose: every bit is due. Remove the blocks after the test if memory is short. *)
-"""
+HEAD: Final = (
+    "Self-test of {file}, for the controller that is to run it. Generated: do not edit, export again.",
+    "Call one instance of {block} once a cycle until Done; Failed must be 0. It compares every constant with a second "
+    "copy, and the answers of the blocks with those of the reference implementation. Questions that are not finite or "
+    "denormal are left out, because they have no portable literal. REAL numbers are compared for equality on purpose: "
+    "every bit is due. Remove the blocks after the test if memory is short.",
+)
 
 RUN_ALL: Final = """\
 FUNCTION_BLOCK {name}
@@ -123,9 +123,8 @@ def questions_tests(code: ControllerCode, questions: Questions) -> Iterator[Test
         rows = kept[tables == number]
         for part, start in enumerate(range(0, len(rows), LONGEST_ARRAY)):
             name = f"{short_name(code)}_{questions.about.upper()}_{number}" + f"_{part}" * bool(part)
-            yield TestBlock(
-                name, questions_text(code, name, questions, rows[start : start + LONGEST_ARRAY], number), number
-            )
+            text = questions_text(code, name, questions, rows[start : start + LONGEST_ARRAY], number)
+            yield TestBlock(name, text, number)
 
 
 def portable(questions: Questions) -> npt.NDArray[np.bool_]:
@@ -150,47 +149,55 @@ def questions_text(
     names, kinds = st_names(code), kinds_of(code, questions)
     programs = [code.program(rule) for rule in questions.rules]
     states = [each for each in code.states if any(each.record.name in program.records for program in programs)]
-    constants = [
-        real_array(held(each), rows[each]) if kind is Kind.REAL else int_array(held(each), rows[each])
-        for each, kind in kinds.items() if each != "table"
-    ]  # fmt: skip
+    constants = [ARRAYS[kind](held(each), rows[each]) for each, kind in kinds.items() if each != "table"]
     variables = [
         f"{instance(rule)} : {names.block(program)}" for rule, program in zip(questions.rules, programs, strict=True)
     ]
     body, differs = [], []
     for each in states:
-        rule = code.beginning(each.record.name)
         state = st_name(each.record.name)
-        variables += [
-            f"{instance(rule)} : {names.block(code.program(rule))}",
-            f"{state} : {names.types[each.record.name]}",
-        ]
+        variables.append(f"{state} : {names.types[each.record.name]}")
         body += [f"{state}.{st_name(name)} := {held(BEFORE + name)}[Index];" for name in questions.members_before]
         if "begins" in kinds:
+            rule = code.beginning(each.record.name)
+            variables.append(f"{instance(rule)} : {names.block(code.program(rule))}")
             body += ["IF Begins[Index] = 1 THEN", f"    {instance(rule)}({state} := {state});", "END_IF;"]
     for rule, program in zip(questions.rules, programs, strict=True):
         given = []
         for parameter in program.parameters:
+            if parameter.name in names.arrays:
+                continue
             if parameter.record is not None:
                 value = "Table" if not parameter.record.is_state else st_name(parameter.name)
             elif parameter.name in kinds:
-                value = f"{held(parameter.name)}[Index]" + " = 1" * (parameter.kind is Kind.BOOL)
+                is_number = parameter.kind is Kind.BOOL and kinds[parameter.name] is Kind.INT
+                value = f"{held(parameter.name)}[Index]" + " = 1" * is_number
             else:
                 continue
             given.append(f"{st_name(parameter.name)} := {value}")
-        body += textwrap.wrap(f"{instance(rule)}({', '.join(given)});", WIDTH, subsequent_indent="    ")
-        differs += [f"({instance(rule)}.{st_name(each.name)} <> {held(each.name)}[Index])" for each in program.answers]
+        body += broken(f"{instance(rule)}({', '.join(given)});")
+        for answer in program.answers:
+            sign = "XOR" if answer.kind is Kind.BOOL else "<>"
+            differs.append(f"({instance(rule)}.{st_name(answer.name)} {sign} {held(answer.name)}[Index])")
     told = {answer.name for program in programs for answer in program.answers}
     differs += [f"({st_name(state.record.name)}.{st_name(each)} <> {held(each)}[Index])" for state in states
                 for each in questions.expected if each not in told]  # fmt: skip
     body = loop(len(rows), [*body, *check("\n    OR ".join(differs))])
-    note = f"{len(rows)} golden {questions.about} of table {number}, {comment_text(code.tables[number].id)}."
+    of_table = f" of table {number}, {comment_text(code.tables[number].id)}" if "table" in kinds else ""
+    note = f"{len(rows)} golden {questions.about}{of_table}."
     return block_text(code, name, note, True, [*variables, "Index : INT"], constants, body)
+
+
+ARRAYS: Final[Mapping[Kind, Callable[[str, Any], str]]] = {
+    Kind.REAL: real_array, Kind.INT: int_array, Kind.BOOL: bool_array,
+}  # fmt: skip
+"""How a column is written."""
 
 
 def held(name: str) -> str:
     """The constant array of a column."""
-    return f"{st_name(name).partition('_')[0]}s" if name != "begins" else "Begins"
+    stem = st_name(name).partition("_")[0]
+    return stem if stem.endswith("s") else f"{stem}s"
 
 
 def instance(rule: Rule) -> str:
@@ -220,7 +227,10 @@ def run_all(code: ControllerCode, blocks: list[TestBlock]) -> str:
 
 def self_test_head(code: ControllerCode) -> str:
     """The comment at the beginning of the self-test."""
-    return HEAD.format(file=f"retarder_{code.stem}.st", block=self_test_name(code))
+    file = f"retarder_{code.stem}.st"
+    texts = (textwrap.wrap(text.format(file=file, block=self_test_name(code)), WIDTH - 5) for text in HEAD)
+    first, *lines = "\n\n".join("\n".join(text) for text in texts).split("\n")
+    return "\n".join([f"(* {first}", *(f"   {line}".rstrip() for line in lines)]) + " *)\n"
 
 
 def calls(code: ControllerCode, line_checks: int) -> int:

@@ -95,7 +95,8 @@ def compared(code: ControllerCode, values: Values) -> tuple[list[str], list[str]
     constants, numbers, body = [], [], []
     for name, member in code.table.members.items():
         array = np.atleast_1d(np.asarray(values[name])).ravel()
-        twin = st_name(name).partition("_")[0]
+        # With a word behind it, because Step and Limit alone are words of the language.
+        twin = f"{st_name(name).partition('_')[0]}Due"
         for ending, start, count in pieces(len(array)):
             constants.append(member_array(f"{twin}{ending}", member, array[start : start + count]))
             if member.axes:

@@ -74,7 +74,7 @@ def c_prototype(program: Program, names: CNames) -> str:
         kind = "void"
         taken += [f"{answer.kind.c} *{answer.name}_found" for answer in program.answers]
     static = "" if program.name in names.functions else "static "
-    return _wrapped(f"{static}{kind} {names.function(program)}({', '.join(taken) or 'void'})", 0)
+    return wrapped(f"{static}{kind} {names.function(program)}({', '.join(taken) or 'void'})", 0)
 
 
 def c_function(program: Program, names: CNames) -> str:
@@ -138,7 +138,7 @@ class _Printer:
         return [f"    if ({missing}) {{", f"        return{' ' * bool(answer)}{answer};", "    }"]
 
     def put(self, depth: int, text: str) -> None:
-        self.lines.append(_wrapped(text, depth))
+        self.lines.append(wrapped(text, depth))
 
     def block(self, body: tuple[Statement, ...], depth: int) -> None:
         """Statements one after the other; a variable used nowhere else is declared where it is first assigned."""
@@ -238,7 +238,7 @@ class _Printer:
         return self.bare(value) if isinstance(value, Compare) else self.value(value)
 
 
-def _wrapped(text: str, depth: int) -> str:
+def wrapped(text: str, depth: int) -> str:
     """A line, broken behind commas and operators where it is too long."""
     pad = "    " * depth
     if len(pad) + len(text) <= WIDTH:

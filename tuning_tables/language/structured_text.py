@@ -121,7 +121,7 @@ class _Printer:
         if len(pad) + len(text) <= WIDTH:
             self.lines.append(pad + text)
         else:
-            self.lines += _broken(text, pad)
+            self.lines += broken(text, pad)
 
     def block(self, body: tuple[Statement, ...], depth: int) -> None:
         """Statements one after the other."""
@@ -170,7 +170,8 @@ class _Printer:
     def assign(self, text: str, target: Name | Item, value: Expression, depth: int) -> None:
         """target := value, one REAL operation a statement; the target holds what is not finished, if it may."""
         if not _calculates(value):
-            self.put(depth, f"{text} := {self.bare(value, depth)};")
+            if value != target:
+                self.put(depth, f"{text} := {self.bare(value, depth)};")
             return
         assert isinstance(value, Binary | Extreme)
         later = {*names_in(value.right)} if isinstance(target, Name) else None
@@ -250,8 +251,10 @@ class _Printer:
         shape = self.sized[record].shape(member)
         text = self.atom(indices[0])
         for place, each in enumerate(indices[1:], start=1):
-            known = text.isdigit()
-            text = f"{int(text) * shape[place]}" if known else f"{text} * {shape[place]}"
+            if text.isdigit():
+                text = f"{int(text) * shape[place]}"
+            elif shape[place] > 1:
+                text = f"{text} * {shape[place]}"
             more = self.atom(each)
             text = f"{text} + {more}" if more != "0" else text
             if text.startswith("0 + "):
@@ -271,8 +274,8 @@ def _section(head: str, rows: list[str]) -> Iterator[str]:
         yield from (head, *rows, "END_VAR")
 
 
-def _broken(text: str, pad: str) -> Iterator[str]:
-    """A statement in several lines, broken before AND and OR and behind commas."""
+def broken(text: str, pad: str = "") -> Iterator[str]:
+    """A statement in as many lines as it needs, broken before AND and OR and behind commas."""
     parts = re.sub(r", | (?=AND |OR )", lambda found: found[0].rstrip() + "\n", text).split("\n")
     line = pad + parts[0]
     for part in parts[1:]:

@@ -12,7 +12,8 @@ from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import ClosedLoop, TableController
 from synth.simulation.passes import PassTrace
 from tuning_tables.active_table import ActiveTable
-from tuning_tables.correction import Correction, begin_correction, learn_exit, usable_exit
+from tuning_tables.correction import Correction, begun_correction
+from tuning_tables.programs.correct import learn_exit, usable_exit
 
 Floats = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ def run_sequence(
     loop: ClosedLoop, table: ActiveTable, draws: Draws, readings_m_s: Floats, correction: Correction
 ) -> PassSequence:
     """The passes of `draws` in their order; the exit of each is measured with the error `readings_m_s`, (n,)."""
-    state, count, target = begin_correction(), len(readings_m_s), float(table.target_speed_m_s)
+    state, count, target = begun_correction(), len(readings_m_s), float(table.target_speed_m_s)
     errors, applied = np.empty(count), np.empty(count)
     usable = np.empty(count, dtype=np.bool_)
     for number, reading in enumerate(readings_m_s):
@@ -46,16 +47,14 @@ def run_sequence(
         trace = loop.follow(TableController(corrected(table, state[1])), one)
         errors[number], applied[number] = trace.exit_speed_m_s - target, state[1]
         measured = float(np.float32(errors[number] + reading))
-        usable[number] = is_usable(trace, loop.stages - 1, correction, measured)
-        learn_exit(correction.parameters, state, measured, bool(usable[number]))
+        usable[number] = is_usable(trace, loop.stages - 1, measured)
+        learn_exit(correction.setting, state, measured, bool(usable[number]))
     return PassSequence(errors, applied, usable)
 
 
-def is_usable(trace: PassTrace, top_stage: int, correction: Correction, error_m_s: float) -> bool:
+def is_usable(trace: PassTrace, top_stage: int, error_m_s: float) -> bool:
     """`usable_exit` of a simulated pass; the regulator looks at the speed at its rests alone."""
     looked = trace.stage[~np.isnan(trace.measured_m_s)]
     at_top = int(np.count_nonzero(looked == top_stage))
     ends_at_top = bool(trace.stage[-1] == top_stage)
-    return usable_exit(
-        correction.parameters, len(looked), 0, at_top, ends_at_top, False, bool(trace.stalled), error_m_s
-    )
+    return bool(usable_exit(len(looked), 0, at_top, ends_at_top, False, bool(trace.stalled), error_m_s))

@@ -9,16 +9,15 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
-from synth.checker.aim import c_export, csv_export, st_export
+from synth.checker.aim import code_export, csv_export
 from synth.checker.aim.reading import Aim
-from synth.checker.aim.st_export import read_arrays
 from synth.checker.csv_export import read_rows
 from synth.checker.export_check import Check, Differences
 from synth.checker.finding import DamagedError
 from synth.checker.source_file import content_of, text_of
 
 FOLDERS: Final = ("", "c", "st")
-UNITS: Final = "LOAD|SELECT|EXIT_SPEED"
+UNITS: Final = "TABLE|LOAD|SELECT"
 
 
 @dataclass(frozen=True)
@@ -81,13 +80,12 @@ def is_aim_csv(file: Path) -> bool:
 
 def c_differences(code: AimCode, aims: tuple[Aim, ...]) -> Differences:
     """The C export in a file, and the header beside it."""
-    blocks = c_export.read_blocks(code.text(code.path))
-    yield from c_export.differences(blocks, aims, code.text(code.path.with_suffix(".h")))
+    yield from code_export.c_differences(code.text(code.path), code.text(code.path.with_suffix(".h")), aims)
 
 
 def st_differences(code: AimCode, aims: tuple[Aim, ...]) -> Differences:
     """The Structured Text of an export."""
-    yield from st_export.differences(read_arrays(code.units()), aims)
+    yield from code_export.st_differences(code.units(), aims)
 
 
 def golden_differences(file: Path, aims: tuple[Aim, ...]) -> Differences:

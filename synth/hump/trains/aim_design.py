@@ -18,9 +18,10 @@ from synth.aim.knowledge import ByCategory, ByReading, Requirement
 from synth.aim.position_models import PositionModel
 from synth.aim.scene import AimScene, MeasuredStretch, SceneCuts
 from synth.hump.trains.free_stretch import SHORTEST_M, ResistanceOnStretch
-from synth.hump.trains.hump_aim import AimGrid, CategoryAim, HumpAim
+from synth.hump.trains.hump_aim import CategoryAim, HumpAim
 from synth.hump.trains.hump_routes import HumpRoutes
 from tuning_tables.aim import AimAxes
+from tuning_tables.aim.held_aim import aim_grid
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -144,7 +145,7 @@ def category_aim(route: Route, scene: AimScene, member: WeightCategory, design: 
         rounded_down(chosen(order, ByCategory(), each, of_each, None))[:, 0]
         for each, of_each in zip(cuts, thresholds, strict=True)
     ]
-    by_category = AimGrid(axes, np.stack(plain))
+    by_category = aim_grid(axes, np.stack(plain))
     if isinstance(design.knowledge, ByCategory):
         return CategoryAim(by_category)
     places = positions_m(route)
@@ -157,7 +158,7 @@ def category_aim(route: Route, scene: AimScene, member: WeightCategory, design: 
         else np.repeat(alone[:, None], READINGS, axis=1)
         for each, of_each, alone in zip(cuts, thresholds, plain, strict=True)
     ]
-    measured = AimGrid(AimAxes(axes.cars, axes.free_distance_m, nodes), np.stack(speeds))
+    measured = aim_grid(AimAxes(axes.cars, axes.free_distance_m, nodes), np.stack(speeds))
     return CategoryAim(by_category, measured, float(reading.of(cuts[0]).value.mean()))
 
 

@@ -3,60 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.aim_speeds import aim_exit_speeds
 from tuning_tables.aim import AimAxes
-from tuning_tables.aim.exit_speed import AimNodes, aim_exit_speeds
+from tuning_tables.aim.held_aim import aim_grid
+from tuning_tables.programs.aim_table import AimGrid
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class AimGrid:
-    """Exit speeds (cars, distances), or (cars, distances, resistances), at the nodes of `axes`, NaN for none.
-
-    They are asked by the rule of aim tables, but are in no file: a simulation makes them for itself.
-    """
-
-    axes: AimAxes
-    exit_speed_m_s: Floats
-    distance_nodes: NDArray[np.float32] = field(init=False, repr=False)
-    resistance_nodes: NDArray[np.float32] = field(init=False, repr=False)
-    speed_nodes: NDArray[np.float32] = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        if self.exit_speed_m_s.shape != self.axes.shape:
-            raise ValueError(f"aim: speeds have the shape {self.exit_speed_m_s.shape}, their axes {self.axes.shape}")
-        resistance = self.axes.resistance_n_per_kn
-        nodes = {
-            "distance_nodes": self.axes.free_distance_m.astype(np.float32),
-            "resistance_nodes": np.zeros(1, np.float32) if resistance is None else resistance.astype(np.float32),
-            "speed_nodes": self.exit_speed_m_s.astype(np.float32).reshape(*self.axes.shape[:2], -1),
-        }
-        for name, array in nodes.items():
-            object.__setattr__(self, name, array)
-
-    @property
-    def is_measured(self) -> bool:
-        """Whether the measured resistance of a cut is asked for."""
-        return self.axes.resistance_n_per_kn is not None
-
-
 @dataclass(frozen=True)
 class CategoryAim:
-    """Exit speeds for one weight category: `by_category` alone; `measured`, where a cut's resistance was read.
+    """Exit speeds for one weight category, of a table or made for a simulation alone: `by_category`, and `measured`,
+    where a cut's resistance was read.
 
     `mean_n_per_kn`: the mean reading of such cuts.
     """
 
-    by_category: AimNodes
-    measured: AimNodes | None = None
+    by_category: AimGrid
+    measured: AimGrid | None = None
     mean_n_per_kn: float = np.nan
 
 
@@ -110,16 +81,16 @@ class HumpAim:
         return self.command_m_s(routes, category, cars, free_distance_m, reading)
 
 
-def answer(nodes: AimNodes, cars: Ints, free_distance_m: Floats, reading_n_per_kn: Floats | None = None) -> Floats:
+def answer(table: AimGrid, cars: Ints, free_distance_m: Floats, reading_n_per_kn: Floats | None = None) -> Floats:
     """What the rule answers, NaN for nothing; more cars than listed count as the most that are."""
     reading = np.full(len(cars), np.nan) if reading_n_per_kn is None else reading_n_per_kn
-    listed = np.minimum(cars, nodes.axes.cars[-1])
-    return aim_exit_speeds(nodes, listed, free_distance_m, reading).astype(np.float64)
+    listed = np.minimum(cars, table.cars[table.listed - 1])
+    return aim_exit_speeds(table, listed, free_distance_m, reading).astype(np.float64)
 
 
 def no_speeds() -> AimGrid:
     """Nodes without any speed, for cuts that no train has."""
-    return AimGrid(AimAxes(np.array([1]), np.zeros(1)), np.full((1, 1), np.nan))
+    return aim_grid(AimAxes(np.array([1]), np.zeros(1)), np.full((1, 1), np.nan))
 
 
 def joined_aims(parts: Sequence[tuple[Ints, HumpAim]], routes: int) -> HumpAim:

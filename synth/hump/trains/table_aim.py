@@ -42,7 +42,7 @@ def table_aim(choice: AimChoice, routes: HumpRoutes, kinds: Kinds, design: AimDe
             continue
         read = own[-1] if own[-1].is_measured else None
         mean = mean_reading_n_per_kn(choice, read, routes, member, design) if read is not None else np.nan
-        tables.append(CategoryAim(own[0], read, mean))
+        tables.append(CategoryAim(own[0].held, None if read is None else read.held, mean))
         lowest.append(min(table.bounds_m_s[0] for table in own))
     rows = np.array(choice.rows)
     stretch = np.full((len(rows), 2), np.nan)

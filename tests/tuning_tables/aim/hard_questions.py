@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from synth.kernels.aim_speeds import aim_exit_speeds
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, random_table
-from tuning_tables.aim import AimTable, AimTables, aim_exit_speeds
+from tuning_tables.aim import AimTable, AimTables
 
 QUESTION = np.dtype([("table", "u4"), ("cars", "i4"), ("distance", "f4"), ("resistance", "f4")])
 
@@ -33,7 +34,7 @@ def hard_questions(aims: AimTables, count: int, seed: int) -> npt.NDArray[np.voi
         listed = random.choice(table.axes.cars, len(here)) + random.integers(-1, 3, len(here))
         odd = random.integers(-(2**31), 2**31, len(here)) >> random.integers(0, 31, len(here))
         asked["cars"][here] = np.where(random.random(len(here)) < 0.9, listed, odd)
-        for name, nodes in (("distance", table.distance_nodes), ("resistance", table.resistance_nodes)):
+        for name, nodes in (("distance", table.held.distance_m), ("resistance", table.held.resistance_n_per_kn)):
             kind = random.random(len(here))
             with np.errstate(all="ignore"):
                 beside = np.nextafter(
@@ -53,6 +54,6 @@ def answers(aims: AimTables, asked: npt.NDArray[np.void]) -> npt.NDArray[np.floa
     found = np.full(len(asked), np.float32(-1.0))
     for number, table in enumerate(aims.tables):
         here = asked["table"] == number
-        speeds = aim_exit_speeds(table, asked["cars"][here], asked["distance"][here], asked["resistance"][here])
+        speeds = aim_exit_speeds(table.held, asked["cars"][here], asked["distance"][here], asked["resistance"][here])
         found[here] = np.where(np.isnan(speeds), np.float32(-1.0), speeds)
     return found

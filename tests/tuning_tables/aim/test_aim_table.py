@@ -33,12 +33,7 @@ def test_arrays_are_copies_that_cannot_be_written() -> None:
     table = replace(category_table(), axes=AimAxes(cars, distance), exit_speed_m_s=speeds, reported=reported)
     speeds[:], distance[:], cars[:] = 99.0, 99.0, 99
     assert table.exit_speed_m_s.tolist() == [[1.0, 1.1], [1.2, 1.3]]
-    held: list[npt.NDArray[Any]] = [
-        table.exit_speed_m_s,
-        table.distance_nodes,
-        table.resistance_nodes,
-        table.speed_nodes,
-    ]
+    held: list[npt.NDArray[Any]] = [table.exit_speed_m_s, *table.held[-4:]]
     held += [table.axes.free_distance_m, reported.p_overspeed, reported.mean_gap_m]
     with pytest.raises(ValueError, match="read-only"):
         table.axes.cars[0] = 0
@@ -168,7 +163,7 @@ def test_a_node_may_have_a_speed_and_no_figures_but_not_the_other_way_round() ->
 def test_a_table_may_have_no_answer_at_all() -> None:
     table = category_table()
     nothing = np.full_like(table.exit_speed_m_s, np.nan)
-    assert np.isnan(replace(table, exit_speed_m_s=nothing, reported=reported_of(nothing)).speed_nodes).all()
+    assert (replace(table, exit_speed_m_s=nothing, reported=reported_of(nothing)).held.speed_m_s == -1.0).all()
 
 
 def test_speeds_may_fall_with_distance_and_cars_and_be_null_anywhere() -> None:

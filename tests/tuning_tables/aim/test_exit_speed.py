@@ -9,6 +9,7 @@ import numpy.typing as npt
 import pytest
 from scipy.interpolate import RegularGridInterpolator
 
+from synth.kernels.aim_speeds import aim_exit_speeds
 from tests.tuning_tables.aim.made_tables import (
     BOUNDS_M_S,
     DISTANCES_M,
@@ -18,7 +19,7 @@ from tests.tuning_tables.aim.made_tables import (
     random_table,
     reported_of,
 )
-from tuning_tables.aim import AimAxes, AimTable, aim_exit_speed, aim_exit_speeds
+from tuning_tables.aim import AimAxes, AimTable, aim_exit_speed
 
 TABLES = [random_table(seed, measured) for seed in range(40) for measured in (False, True)]
 Questions = tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]
@@ -28,12 +29,17 @@ def questions_within(table: AimTable, count: int, seed: int) -> Questions:
     """Listed numbers of cars or some more, places on both axes, a few at nodes."""
     random = np.random.default_rng(seed)
     cars = np.minimum(random.choice(table.axes.cars, count) + random.integers(0, 3, count), table.axes.cars[-1])
-    axes = (table.distance_nodes, table.resistance_nodes)
+    axes = (table.held.distance_m, table.held.resistance_n_per_kn)
     distance, resistance = (
         np.where(random.random(count) < 0.1, random.choice(axis, count), random.uniform(axis[0], axis[-1], count))
         for axis in axes
     )
     return cars, distance, resistance
+
+
+def speeds_of(table: AimTable) -> npt.NDArray[np.float32]:
+    """The speeds at the nodes, NaN for none."""
+    return np.where(table.held.speed_m_s < 0.0, np.float32(np.nan), table.held.speed_m_s)
 
 
 def rows_of(table: AimTable, cars: int) -> list[int]:
@@ -44,8 +50,8 @@ def rows_of(table: AimTable, cars: int) -> list[int]:
 
 def by_scipy(table: AimTable, row: int, point: tuple[float, float]) -> float:
     """Linear interpolation in double precision, on the nodes as float32 for a listed number of cars."""
-    values = table.speed_nodes[row].astype(np.float64)
-    axes = [table.distance_nodes, table.resistance_nodes]
+    values = speeds_of(table)[row].astype(np.float64)
+    axes = [table.held.distance_m, table.held.resistance_n_per_kn]
     # scipy takes no axis with a single node.
     kept = [axis for axis in (0, 1) if len(axes[axis]) > 1]
     if not kept:
@@ -58,7 +64,7 @@ def by_scipy(table: AimTable, row: int, point: tuple[float, float]) -> float:
 @pytest.mark.parametrize("table", TABLES, ids=lambda table: table.id)
 def test_between_nodes_it_is_scipys_interpolation(table: AimTable) -> None:
     cars, distance, resistance = questions_within(table, 60, 7)
-    found = aim_exit_speeds(table, cars, distance, resistance)
+    found = aim_exit_speeds(table.held, cars, distance, resistance)
     compared = 0
     for place in np.flatnonzero(~np.isnan(found)):
         point = float(distance[place]), float(resistance[place])
@@ -73,8 +79,8 @@ def test_between_nodes_it_is_scipys_interpolation(table: AimTable) -> None:
 @pytest.mark.parametrize("table", TABLES, ids=lambda table: table.id)
 def test_no_answer_exactly_where_a_node_that_counts_has_none(table: AimTable) -> None:
     cars, distance, resistance = questions_within(table, 300, 8)
-    found = aim_exit_speeds(table, cars, distance, resistance)
-    missing = np.isnan(table.speed_nodes)
+    found = aim_exit_speeds(table.held, cars, distance, resistance)
+    missing = table.held.speed_m_s < 0.0
     for place in range(len(cars)):
         rows = np.array(rows_of(table, int(cars[place])))
         far, high = (np.flatnonzero(counted(*each)) for each in sides_of(table, distance[place], resistance[place]))
@@ -82,7 +88,7 @@ def test_no_answer_exactly_where_a_node_that_counts_has_none(table: AimTable) ->
 
 
 def sides_of(table: AimTable, distance: float, resistance: float) -> list[tuple[npt.NDArray[np.float32], float]]:
-    return [(table.distance_nodes, distance), (table.resistance_nodes, resistance)]
+    return [(table.held.distance_m, distance), (table.held.resistance_n_per_kn, resistance)]
 
 
 def counted(nodes: npt.NDArray[np.float32], value: float) -> npt.NDArray[np.bool_]:
@@ -96,20 +102,20 @@ def counted(nodes: npt.NDArray[np.float32], value: float) -> npt.NDArray[np.bool
 def test_at_nodes_it_is_the_speed_of_the_table_to_the_last_bit() -> None:
     for table in TABLES:
         cars, distance, resistance = np.meshgrid(
-            table.axes.cars, table.distance_nodes, table.resistance_nodes, indexing="ij"
+            table.axes.cars, table.held.distance_m, table.held.resistance_n_per_kn, indexing="ij"
         )
-        assert np.array_equal(aim_exit_speeds(table, cars, distance, resistance), table.speed_nodes, equal_nan=True)
+        assert np.array_equal(aim_exit_speeds(table.held, cars, distance, resistance), speeds_of(table), equal_nan=True)
 
 
 def test_it_stays_within_the_nodes_around_it() -> None:
     for table in TABLES:
-        nodes, first = table.distance_nodes, table.resistance_nodes[0]
+        nodes, first = table.held.distance_m, table.held.resistance_n_per_kn[0]
         dense = np.linspace(nodes[0], nodes[-1], 801, dtype=np.float32)
         below = np.searchsorted(nodes, dense, side="right") - 1
         above = np.minimum(np.searchsorted(nodes, dense), len(nodes) - 1)
         for row, cars in enumerate(table.axes.cars.tolist()):
-            speeds = aim_exit_speeds(table, cars, dense, first)
-            ends = table.speed_nodes[row, :, 0]
+            speeds = aim_exit_speeds(table.held, cars, dense, first)
+            ends = speeds_of(table)[row, :, 0]
             low, high = np.fmin(ends[below], ends[above]), np.fmax(ends[below], ends[above])
             gone = np.isnan(speeds)
             assert ((speeds >= low) & (speeds <= high))[~gone].all()
@@ -120,10 +126,12 @@ def test_it_stays_within_the_nodes_around_it() -> None:
 def test_it_does_not_fall_with_the_resistance() -> None:
     """But by what rounding to float32 may take."""
     for table in TABLES:
-        dense = np.linspace(table.resistance_nodes[0] - 1.0, table.resistance_nodes[-1] + 1.0, 400, dtype=np.float32)
+        dense = np.linspace(
+            table.held.resistance_n_per_kn[0] - 1.0, table.held.resistance_n_per_kn[-1] + 1.0, 400, dtype=np.float32
+        )
         for cars in table.axes.cars.tolist():
-            for distance in np.linspace(table.distance_nodes[0], table.distance_nodes[-1] + 10.0, 9):
-                speeds = aim_exit_speeds(table, cars, distance, dense)
+            for distance in np.linspace(table.held.distance_m[0], table.held.distance_m[-1] + 10.0, 9):
+                speeds = aim_exit_speeds(table.held, cars, distance, dense)
                 assert np.diff(speeds[~np.isnan(speeds)]).min(initial=0.0) > -2e-6
 
 
@@ -136,7 +144,7 @@ def test_cars_between_two_listed_numbers_take_the_lesser_answer() -> None:
     falling = replace(
         table, exit_speed_m_s=table.exit_speed_m_s[::-1], reported=reported_of(table.exit_speed_m_s[::-1])
     )
-    assert aim_exit_speed(falling, 4, 20.0) == aim_exit_speed(falling, 5, 20.0) == falling.speed_nodes[3, 0, 0]
+    assert aim_exit_speed(falling, 4, 20.0) == aim_exit_speed(falling, 5, 20.0) == falling.held.speed_m_s[3, 0, 0]
     assert aim_exit_speed(falling, 7, 350.0) is None is aim_exit_speed(falling, 8, 350.0)
     assert aim_exit_speed(falling, 5, 350.0) is not None
     for cars in (0, -1, 9, 1000, 2**40):
@@ -145,12 +153,12 @@ def test_cars_between_two_listed_numbers_take_the_lesser_answer() -> None:
 
 def test_beyond_the_last_distance_only_a_speed_that_does_not_fall_there_counts() -> None:
     table = category_table(1.0)
-    assert np.isnan(table.speed_nodes[0, -1, 0])
-    assert table.speed_nodes[1, -1, 0] < table.speed_nodes[1, -2, 0]
+    assert table.held.speed_m_s[0, -1, 0] == -1.0
+    assert table.held.speed_m_s[1, -1, 0] < table.held.speed_m_s[1, -2, 0]
     for distance in (np.nextafter(np.float32(400.0), np.float32(500.0)), 401.0, 3.4e38):
         assert aim_exit_speed(table, 1, float(distance)) is None is aim_exit_speed(table, 2, float(distance))
-        assert aim_exit_speed(table, 3, float(distance)) == table.speed_nodes[2, -1, 0]
-    assert aim_exit_speed(table, 2, 400.0) == table.speed_nodes[1, -1, 0]
+        assert aim_exit_speed(table, 3, float(distance)) == table.held.speed_m_s[2, -1, 0]
+    assert aim_exit_speed(table, 2, 400.0) == table.held.speed_m_s[1, -1, 0]
     speeds = table.exit_speed_m_s.copy()
     speeds[:, -1] = speeds[:, -2] = 1.5
     speeds[4, -2] = np.nan
@@ -166,24 +174,24 @@ def test_beyond_the_last_distance_only_a_speed_that_does_not_fall_there_counts()
 
 def test_beyond_the_last_distance_both_resistances_count() -> None:
     table = measured_table()
-    falls = table.speed_nodes[4, -1] < table.speed_nodes[4, -2]
-    missing = np.isnan(table.speed_nodes[4, -1])
+    falls = table.held.speed_m_s[4, -1] < table.held.speed_m_s[4, -2]
+    missing = table.held.speed_m_s[4, -1] < 0.0
     assert (falls | missing).tolist() == [True, True, False, False, False]
-    assert aim_exit_speed(table, 8, 500.0, 1.5) == table.speed_nodes[4, -1, 2]
+    assert aim_exit_speed(table, 8, 500.0, 1.5) == table.held.speed_m_s[4, -1, 2]
     assert aim_exit_speed(table, 8, 500.0, 1.4999) is None
     assert aim_exit_speed(table, 8, 399.9, 1.4999) is not None
 
 
 def test_outside_the_axes() -> None:
     table = measured_table()
-    last = table.speed_nodes[4, -1]
+    last = speeds_of(table)[4, -1]
     assert aim_exit_speed(table, 8, 3.4e38, 2.2) == last[3]
     assert aim_exit_speed(table, 8, 400.0, 99.0) == aim_exit_speed(table, 8, 400.0, 3.4e38) == last[4]
-    assert aim_exit_speed(table, 8, 20.0, -5.0) == table.speed_nodes[4, 0, 0]
+    assert aim_exit_speed(table, 8, 20.0, -5.0) == table.held.speed_m_s[4, 0, 0]
     before = float(np.nextafter(np.float32(20.0), np.float32(0.0)))
     assert aim_exit_speed(table, 8, before, 2.2) is None
     # Rounded to float32 first, as a controller receives it.
-    assert aim_exit_speed(table, 8, np.nextafter(20.0, 0.0), 2.2) == table.speed_nodes[4, 0, 3]
+    assert aim_exit_speed(table, 8, np.nextafter(20.0, 0.0), 2.2) == table.held.speed_m_s[4, 0, 3]
 
 
 @pytest.mark.parametrize(
@@ -213,11 +221,11 @@ def test_cars_are_whole_numbers() -> None:
 def test_one_question_is_answered_as_many() -> None:
     table = measured_table()
     cars, distance, resistance = questions_within(table, 500, 9)
-    together = aim_exit_speeds(table, cars, distance, resistance)
+    together = aim_exit_speeds(table.held, cars, distance, resistance)
     for place in range(500):
         alone = aim_exit_speed(table, int(cars[place]), distance[place], resistance[place])
         assert np.array_equal(np.float32(np.nan if alone is None else alone), together[place], equal_nan=True)
-    assert aim_exit_speeds(table, [[1], [2]], [20.0, 30.0, 40.0], 2.0).shape == (2, 3)
+    assert aim_exit_speeds(table.held, [[1], [2]], [20.0, 30.0, 40.0], 2.0).shape == (2, 3)
 
 
 def test_between_nodes_the_chord_is_below_the_exact_speed() -> None:
@@ -226,7 +234,7 @@ def test_between_nodes_the_chord_is_below_the_exact_speed() -> None:
     distance = np.linspace(DISTANCES_M[0], DISTANCES_M[-1], 999)
     for row, cars in enumerate(table.axes.cars.tolist()):
         exact = exact_speed(distance, 1.6 - 0.9 / np.sqrt(cars), 1.0)
-        shortfall = exact - aim_exit_speeds(table, cars, distance)
+        shortfall = exact - aim_exit_speeds(table.held, cars, distance)
         told = shortfall[~np.isnan(shortfall)]
         assert told.min() > -1e-6
         assert 1e-5 < told.max() < (0.05 if cars == 1 else 0.02)

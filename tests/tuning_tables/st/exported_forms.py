@@ -170,7 +170,7 @@ def _one_node(measured: bool) -> AimTable:
 
 def _correction_forms() -> tuple[Form, ...]:
     made = {limit: Correction(limit, 0.06) for limit in (0.05, 0.11, 0.12, 0.13, 0.15)}
-    name = "RETARDER_CORRECTION_TEST"
+    name = "RETARDER_CORRECTION_SELF_TEST"
     return (
         *(Form(f"correction, limit {limit}", partial(correction_st_files, each), name) for limit, each in made.items()),
         Form("split correction", lambda: correction_st_unit_files(made[0.12]), name),

@@ -16,7 +16,7 @@ from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.syntax import faults, parse, walk
 from tests.tuning_tables.st.test_syntax import KEYWORDS
 from tuning_tables.export_prefix import ExportPrefix
-from tuning_tables.st_correction import CORRECTION_FILE, correction_st_files, correction_st_unit_files
+from tuning_tables.st_correction import correction_st_files, correction_st_unit_files
 from tuning_tables.st_source import st_files
 
 FILES = correction_st_files(CORRECTION)
@@ -25,36 +25,41 @@ MEMBERS = ("MEAN_M_S", "CORRECTION_M_S", "LEARNT")
 
 def answers_of(program: Program, questions: npt.NDArray[np.void]) -> npt.NDArray[np.float32]:
     """What the blocks make of every question, a lane each: float32 (n, 5)."""
-    state = program.new("RETARDER_CORRECTION")
+    state, setting, load = (
+        program.new(f"RETARDER_{name}") for name in ("CORRECTION", "CORRECTION_SETTING", "LOAD_CORRECTION")
+    )
+    program.call("RETARDER_LOAD_CORRECTION", load, TableNo=0, Table=setting)
     for name, words in zip(MEMBERS, questions["state"].T, strict=True):
         state[name].store(np.ascontiguousarray(words).view(np.float32), None)
     error, speed = (np.ascontiguousarray(questions[name]).view(np.float32) for name in ("error", "speed"))
     learner, corrector, judge = (
         program.new(f"RETARDER_{name}") for name in ("LEARN_EXIT", "CORRECTED_SPEED", "USABLE_EXIT")
     )
-    program.call("RETARDER_LEARN_EXIT", learner, Error_m_s=error, Credible=questions["credible"] != 0, State=state)
-    program.call("RETARDER_CORRECTED_SPEED", corrector, Observed_m_s=speed, State=state)
+    records = {"Setting": setting, "Correction": state}
+    program.call("RETARDER_LEARN_EXIT", learner, Error_m_s=error, Credible=questions["credible"] != 0, **records)
+    program.call("RETARDER_CORRECTED_SPEED", corrector, Speed_m_s=speed, **records)
     samples, missing, at_top, *flags = questions["pass"].T.astype(np.int64)
     told: dict[str, Any] = dict(zip(("EndsAtTop", "ByHand", "Stalled"), (flag != 0 for flag in flags), strict=True))
     program.call("RETARDER_USABLE_EXIT", judge, Samples=samples, Missing=missing, AtTop=at_top, Error_m_s=error, **told)
-    found = [*(state[name].value for name in MEMBERS), corrector["CORRECTED_M_S"].value, judge["USABLE"].value]
+    found = [*(state[name].value for name in MEMBERS), corrector["CORRECTED"].value, judge["USABLE"].value]
     return np.stack([np.broadcast_to(each, error.shape).astype(np.float32) for each in found], axis=1)
 
 
 @pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
 def test_every_question_is_answered_as_by_python(compiler: Compiler) -> None:
     with np.errstate(invalid="ignore"):  # a signalling NaN is widened
-        found = answers_of(Program(FILES[CORRECTION_FILE], compiler), asked())
+        found = answers_of(Program(FILES["retarder_correction.st"], compiler), asked())
     # 0 has no sign in Structured Text.
     assert np.array_equal(found, right(), equal_nan=True)
 
 
 @pytest.mark.parametrize(
     ("before", "after"),
-    [("Square > ThresholdSquared", "Mean > 0.0"), ("Wanted < Least", "Wanted < -9.0"), ("NOT Sound", "FALSE"),
-     ("Surprise > Clip_m_s", "Surprise > 9.0"), ("Corrected_m_s < 0.0", "Corrected_m_s < -9.0"),
+    [("Held_1 > Setting.ThresholdSquared", "Mean > 0.0"), ("Held_1 < Slowest", "Held_1 < -9.0"), ("NOT Sound", "FALSE"),
+     ("Surprise > Setting.Clip_m_s", "Surprise > 9.0"), ("Corrected < 0.0", "Corrected < -9.0"),
      ("AtTop <= Others", "AtTop < Others"), ("(NOT EndsAtTop) OR ", ""),
-     ("Surprise := Surprise - State.Mean_m_s;", "")],
+     ("LargestExcess_m_s : REAL := 1.0", "LargestExcess_m_s : REAL := 1.1"), ("[1.500000060E-01]", "[1.500000209E-01]"),
+     ("Surprise := Surprise - Correction.Mean_m_s;", "")],
 )  # fmt: skip
 def test_a_wrong_block_is_found_by_the_self_test(before: str, after: str) -> None:
     text = b"".join(FILES.values()).decode("ascii")
@@ -65,10 +70,13 @@ def test_a_wrong_block_is_found_by_the_self_test(before: str, after: str) -> Non
 
 @cache
 def self_tested(text: str) -> int:
-    """How many rows the self-test finds wrong."""
+    """In how many blocks the self-test finds something wrong."""
     program = Program(text.encode("ascii"))
-    block = program.new("RETARDER_CORRECTION_TEST")
-    program.call("RETARDER_CORRECTION_TEST", block)
+    block = program.new("RETARDER_CORRECTION_SELF_TEST")
+    for _ in range(3):
+        assert not block["DONE"].value
+        program.call("RETARDER_CORRECTION_SELF_TEST", block, Restart=False)
+    assert block["DONE"].value
     assert (int(block["FIRSTFAILED"].value) >= 0) == (int(block["FAILED"].value) > 0)
     return int(block["FAILED"].value)
 
@@ -88,5 +96,5 @@ def test_the_text_is_plain_and_fits_beside_the_tables() -> None:
 
 def test_a_file_each_unit_holds_the_same() -> None:
     units = correction_st_unit_files(CORRECTION)
-    assert len(units) == 6
+    assert len(units) == 11
     assert self_tested(b"\n".join(units.values()).decode("ascii")) == 0

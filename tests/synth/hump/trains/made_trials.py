@@ -17,7 +17,7 @@ from plant_models.rolling.weather import Weather
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.trains.forecast import SpeedRange
 from synth.hump.trains.free_tracks import DrawnFree, FreeTracks
-from synth.hump.trains.hump_aim import AimGrid, CategoryAim, HumpAim
+from synth.hump.trains.hump_aim import CategoryAim, HumpAim
 from synth.hump.trains.hump_position import Arrivals
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTrain
@@ -28,6 +28,7 @@ from synth.hump.trains.train_plan import Planner
 from synth.hump.trains.trial import Control, HumpTrial, Program, SimulatedPairs
 from tests.plant_models.rolling.populations import MIX, population
 from tuning_tables.aim import AimAxes
+from tuning_tables.aim.held_aim import aim_grid
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -77,7 +78,7 @@ class DrawnTrains:
 def even_aim(routes: HumpRoutes, near_m_s: float, far_m_s: float) -> HumpAim:
     """Commands all cuts exit speeds that rise evenly with 1000 m of free distance."""
     axes = AimAxes(np.array([1, 2]), np.linspace(0.0, 1000.0, 101))
-    grid = AimGrid(axes, np.tile(np.linspace(near_m_s, far_m_s, 101), (2, 1)))
+    grid = aim_grid(axes, np.tile(np.linspace(near_m_s, far_m_s, 101), (2, 1)))
     tables = (tuple(CategoryAim(grid) for _ in CATEGORIES.members),)
     return HumpAim(np.zeros(len(routes.routes), dtype=np.int64), tables, 0.5)
 

@@ -22,7 +22,7 @@ from synth.hump.trains.aim_control import AimControl, ReadAhead
 from synth.hump.trains.aim_design import AimDesign, MeasuredAhead, hump_aim, scene_of
 from synth.hump.trains.expected_way import ExpectedWay
 from synth.hump.trains.free_stretch import ResistanceOnStretch
-from synth.hump.trains.hump_aim import AimGrid, CategoryAim, HumpAim
+from synth.hump.trains.hump_aim import CategoryAim, HumpAim
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.train_memory import TrainMemory
 from tests.synth.hump.trains.asked_cuts import (
@@ -36,6 +36,7 @@ from tests.synth.hump.trains.asked_cuts import (
     large,
 )
 from tuning_tables.aim import AimAxes
+from tuning_tables.aim.held_aim import aim_grid
 
 Floats = NDArray[np.float64]
 
@@ -114,7 +115,7 @@ def test_routes_share_speeds_where_their_tracks_are_alike() -> None:
     design = replace(DESIGN, knowledge=ByCategory(), cars=(1,), design_cuts=200)
     found = hump_aim(changed, design)
     assert found.group.tolist() == [0] + [1] * len(others)
-    steep_m_s, plain_m_s = (table[0].by_category.speed_nodes[0, 2:6, 0] for table in found.tables)
+    steep_m_s, plain_m_s = (table[0].by_category.speed_m_s[0, 2:6, 0] for table in found.tables)
     assert (steep_m_s < plain_m_s - 0.02).all()
 
 
@@ -124,15 +125,15 @@ def test_threads_change_nothing() -> None:
     for alone, beside in zip(one.tables[0], two.tables[0], strict=True):
         assert alone.measured is not None
         assert beside.measured is not None
-        assert np.array_equal(alone.measured.speed_nodes, beside.measured.speed_nodes, equal_nan=True)
+        assert np.array_equal(alone.measured.speed_m_s, beside.measured.speed_m_s)
 
 
 def linear_aim() -> HumpAim:
     """One group and category: exit speed = 1 + distance/100 + resistance/10; by category alone 0.7 + distance/100."""
-    cars, distance, resistance = np.array([1]), np.array([0.0, 500.0]), np.array([-50.0, 50.0])
-    plain = AimGrid(AimAxes(cars, distance), 0.7 + distance[None, :] / 100.0)
+    cars, distance, resistance = np.array([1]), np.array([0.0, 500.0]), np.array([-10.0, 50.0])
+    plain = aim_grid(AimAxes(cars, distance), 0.7 + distance[None, :] / 100.0)
     speeds = 1.0 + distance[None, :, None] / 100.0 + resistance[None, None, :] / 10.0
-    measured = AimGrid(AimAxes(cars, distance, resistance), speeds)
+    measured = aim_grid(AimAxes(cars, distance, resistance), speeds)
     return HumpAim(np.zeros(32, dtype=np.int64), ((CategoryAim(plain, measured),),), 0.4)
 
 

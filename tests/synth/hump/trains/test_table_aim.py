@@ -34,6 +34,7 @@ from tests.synth.hump.trains.mixed_cuts import without_padding
 from tests.system.conftest import changed
 from tuning_tables import DamagedTable
 from tuning_tables.aim import ParkPosition, aim_exit_speed
+from tuning_tables.programs.aim_speed import exit_speed
 
 SMALL = """\
 hump = "medium"
@@ -168,7 +169,7 @@ def test_measured_cuts_are_commanded_by_their_reading(tmp_path: Path) -> None:
     expected = trial.aim.expected_m_s(one, one, one + 1, np.full(1, 150.0), measured=True)
     table = trial.aim.tables[0][0].measured
     assert table is not None
-    assert expected[0] == aim_exit_speed(table, 1, 150.0, means[0])
+    assert expected[0] == exit_speed(table, 1, np.float32(150.0), np.float32(means[0]))
     trains, _, memory = trial.humped(0, 200)
     last = memory.command_m_s[:, :, -1]
     ahead, held = trains.drawn.resistance_n_per_kn.reshape(last.shape), np.isfinite(last)
