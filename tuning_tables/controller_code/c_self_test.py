@@ -159,11 +159,8 @@ def is_right(code: ControllerCode, place: int, questions: Questions) -> str:
         state = each.record.name
         lines += [f"    {state}->{name} = float_of(golden->{BEFORE}{name});" for name in questions.members_before]
         if "begins" in kinds:
-            lines += [
-                "    if (golden->begins == 1) {",
-                f"        retarder_{code.beginning(state).name}({state});",
-                "    }",
-            ]
+            begin = f"retarder_{code.beginning(state).name}({state});"
+            lines += ["    if (golden->begins == 1) {", f"        {begin}", "    }"]
     for program in programs:
         call = call_of(code, program, kinds)
         if not program.answers:
