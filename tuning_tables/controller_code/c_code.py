@@ -67,7 +67,7 @@ STATUSES: Final = """\
 #define RETARDER_NO_TARGET (-2) /* no number, or below the lowest target: every table would let the cut out too fast */
 """
 
-CATEGORIES_NOTE = "/* Weight categories: their numbers are the same in every export, and so they may be kept elsewhere. */"
+CATEGORIES_NOTE = "/* Weight categories: their numbers are the same in every export, so they may be kept elsewhere. */"
 SELECT_NOTE: Final = """\
 Fill `chosen` with the table for a cut of this category and number of axles that shall leave with commanded_m_s.
 Candidates are the tables of the category and number of axles; of several masses the largest. {between}
