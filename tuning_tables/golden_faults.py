@@ -71,6 +71,15 @@ def leaping_after_three(estimator: Estimator) -> Iterator[Reading]:
         yield first + sample * step, speed, 0.0
 
 
+def frozen_alone(estimator: Estimator) -> Iterator[Reading]:
+    """A radar that repeats itself, and nothing else is wrong."""
+    first, last = float(estimator.work[0, 0]), float(estimator.work[0, -1])
+    speeds = [4.0, 4.05, *[3.95] * (min(estimator.frozen_readings, 40) + 2)]
+    step = min((last - first) / len(speeds), 0.1)
+    for sample, speed in enumerate(speeds):
+        yield first + sample * step, speed, 0.0
+
+
 def rising_while_braked(estimator: Estimator) -> Iterator[Reading]:
     """Single readings that are the higher the later, while the brake works hard: what leaps depends on its work."""
     base, unit = hardest(estimator)

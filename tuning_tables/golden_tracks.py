@@ -19,6 +19,7 @@ from tuning_tables.golden_faults import (
     MISSING_M_S,
     Reading,
     faulty_radar,
+    frozen_alone,
     hardest,
     leaping_after_three,
     rising_while_braked,
@@ -117,6 +118,7 @@ def _tracks(estimator: Estimator) -> Iterator[list[Reading]]:
     yield list(faulty_radar(estimator))
     yield list(wrong_at_first(estimator))
     yield list(leaping_after_three(estimator))
+    yield list(frozen_alone(estimator))
     yield list(rising_while_braked(estimator))
     yield list(_cut(estimator, 3, 2.6, 6.0, 0.0))
     yield list(_cut(estimator, 4, 0.2, 6.0, 0.0))
