@@ -1,18 +1,6 @@
-"""The C text of the exports: templates in `c99/*.in`, the parts that they share, and their blanks."""
+"""The parts of the exports in C that no rule of Python gives: the files `c99/*.in`."""
 
-from __future__ import annotations
-
-import re
-from collections.abc import Mapping
 from importlib.resources import files
-
-
-def filled(name: str, blanks: Mapping[str, str]) -> str:
-    """The template of the file `name` with every @include PART@ and every @BLANK@ filled."""
-    text = re.sub(r"^@include (\S+)@\n", lambda found: part(found[1]), part(name), flags=re.MULTILINE)
-    for blank, content in blanks.items():
-        text = text.replace(f"@{blank}@", content)
-    return text
 
 
 def part(name: str) -> str:

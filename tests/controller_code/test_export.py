@@ -20,9 +20,9 @@ from scripts.studies.in_the_loop.controller_process import (
 from scripts.studies.in_the_loop.held_words import held_record, held_words, places
 from tests.controller_code.conftest import Built, Tool
 from tuning_tables import InvalidTable, decide_for, from_json, read_book, to_json, write_book
-from tuning_tables.c_literals import hex_float
 from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.line_code import line_code
+from tuning_tables.language.c99_data import hex_float
 from tuning_tables.self_test_size import FULL, SMALL
 from tuning_tables.table_book import TableBook
 

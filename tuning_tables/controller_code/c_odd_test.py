@@ -32,11 +32,6 @@ def odd_is_right(code: ControllerCode) -> str:
     return "\n".join([*lines, "}", ""])
 
 
-def states_of(code: ControllerCode) -> set[str]:
-    """The names of the states."""
-    return {each.record.name for each in code.states}
-
-
 def changed(code: ControllerCode, member: str, place: tuple[int, ...], number: float) -> str:
     """The statement that changes a member."""
     value = hex_float(number) if code.table.members[member].kind is Kind.REAL else str(int(number))

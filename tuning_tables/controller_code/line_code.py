@@ -166,13 +166,3 @@ def origin_lines(book: TableBook) -> Iterator[str]:
     for generator, created in made:
         yield f"made by    {comment_text(generator.name)} {comment_text(generator.version)}, {created}"
         yield f"           configuration {generator.config_sha256}"
-
-
-def line_tables(book: TableBook) -> Tables:
-    """What the choice looks at of every table of a book."""
-    held = [
-        (book.number_of(table.cut.category), len(table.cut.axle_offsets_m), table.cut.mass_t, table.target_speed_m_s)
-        for table in book.tables
-    ]
-    category, axles, mass_t, target = zip(*held, strict=True)
-    return Tables(np.array(category), np.array(axles), np.array(mass_t, np.float32), np.array(target, np.float32))

@@ -50,8 +50,13 @@ def _with_note(code: str, note: str) -> list[str]:
 
 
 def c_constants(constants: Mapping[str, float]) -> str:
-    """Named constants."""
-    return "\n".join(f"#define {name} {hex_float(value)} /* {value:.9g} */" for name, value in constants.items())
+    """Named constants, a negative one in parentheses."""
+    return "\n".join(_c_constant(name, value) for name, value in constants.items())
+
+
+def _c_constant(name: str, value: float) -> str:
+    number = hex_float(value)
+    return f"#define {name} {f'({number})' if value < 0.0 else number} /* {value:.9g} */"
 
 
 def c_content(record: SizedRecord, values: Mapping[str, Any]) -> list[str]:
