@@ -37,6 +37,7 @@ _KERNEL_SOURCES = (
     "plant_models/valve_drive.py",
     "scripts/studies/**/kernels/**/*.py",
     "synth/**/kernels/**/*.py",
+    "tuning_tables/programs/aim_speed.py",
     "tuning_tables/programs/at_pulse.py",
     "tuning_tables/programs/decide.py",
     "tuning_tables/programs/estimate.py",
