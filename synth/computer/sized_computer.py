@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from synth.computer.resolved_computer import ResolvedComputer
 
 CUTS_OF_A_TRAIN = 40
-TABLES_A_BOOK, CODE_BYTES, TABLE_BYTES, AIM_TABLE_BYTES = 15, 2652, 448, 1024
-"""Of the default book; bytes as study `controller-cost` counts them; an aim table of 19 distances by 13 numbers."""
 
 
 @dataclass(frozen=True)
@@ -111,13 +109,9 @@ def counts_of(config: ResolvedComputer) -> ControllerCounts:
     tracks = {track for lead in config.hump.leads for track in config.hump.routes(lead)}
     return ControllerCounts(
         positions=config.positions,
-        tables_a_book=TABLES_A_BOOK,
         books=config.positions,
         aim_tables=len(tracks),
         switches=switches,
         tracks=len(tracks),
         cuts=CUTS_OF_A_TRAIN,
-        code_bytes=CODE_BYTES,
-        table_bytes=TABLE_BYTES,
-        aim_table_bytes=AIM_TABLE_BYTES,
     )

@@ -25,9 +25,6 @@ from synth.computer.sizing.word_length import SOURCE_WORD_BITS, common_word_bits
 CUTS = 60
 """Of the longest train, assumed."""
 
-TABLES_A_BOOK, CODE_BYTES, TABLE_BYTES, AIM_TABLE_BYTES = 15, 2652, 448, 1024
-"""Our export with estimators: see `ControllerCounts`; an aim table of 16 × 16 speeds in binary32, assumed."""
-
 
 @dataclass(frozen=True)
 class QuantityBits:
@@ -129,9 +126,8 @@ def our_memory(name: str) -> MemoryTable:
     graph = load_hump(name).graph
     return controller_memory(
         ControllerCounts(
-            positions=len(graph.retarders), tables_a_book=TABLES_A_BOOK, books=2, aim_tables=6,
-            switches=len(graph.switches), tracks=len(graph.tracks), cuts=CUTS, code_bytes=CODE_BYTES,
-            table_bytes=TABLE_BYTES, aim_table_bytes=AIM_TABLE_BYTES,
+            positions=len(graph.retarders), books=2, aim_tables=6,
+            switches=len(graph.switches), tracks=len(graph.tracks), cuts=CUTS,
         )
     )  # fmt: skip
 

@@ -55,7 +55,7 @@ def c_costs() -> CallCosts:
         observe=703,
         decide=475,
         select=30_748,
-        aim=447,
+        aim=451,
         intact=29_398,
         source="instructions on x86-64, gcc 12 -Os, callgrind: study controller-cost; aim counted apart",
     )
@@ -64,15 +64,15 @@ def c_costs() -> CallCosts:
 def st_costs() -> CallCosts:
     """Operations of the exported Structured Text, counted in its parse tree (docs/structured-text.md).
 
-    `select`: 882 between two tables in a book of 6, 6 for each of 9 tables more, and 141 to copy an estimator of 16
-    breaks, the difference of the two loads: put together, not counted in one. `aim` with its choice of the table, 382
-    and 117, was counted like the others, for the same questions as in C. There is no checksum.
+    `select`: between two tables in a book of 6, then each of 9 tables more, and the copy of an estimator of 16 breaks,
+    the difference of the two loads: put together, not counted in one. `aim`: the choice of the aim table, its load, and
+    one question. There is no checksum.
     """
     return CallCosts(
-        observe=449,
-        decide=326,
-        select=882 + 9 * 6 + 141,
-        aim=382 + 117,
+        observe=550,
+        decide=529,
+        select=2109 + 9 * 9 + 522 - 336,
+        aim=178 + 2178 + 399,
         intact=None,
-        source="operations of Structured Text as executed: docs/structured-text.md; aim counted apart",
+        source="operations of Structured Text as executed: docs/structured-text.md",
     )

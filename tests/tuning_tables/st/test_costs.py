@@ -11,10 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from tests.controller_code.sample_book import estimator_of, with_slopes
+from tests.tuning_tables.aim.hard_questions import hard_questions, sample_set
 from tests.tuning_tables.st.conftest import texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Array, Kind, Record, Scalar, Value
 from tuning_tables import ControllerTable
+from tuning_tables.aim.golden_aims import golden_selections
+from tuning_tables.aim.st_source import aim_st_files
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.st_source import TABLE_FILE
@@ -124,6 +127,32 @@ def loading(book: TableBook) -> tuple[int, int]:
     return executed(program, "RETARDER_LOAD", TableNo=0, Table=program.new("RETARDER_TABLE"))
 
 
+def aims() -> Mapping[str, tuple[int, ...]]:
+    """Operations of the dearest choice, load and question of 19 aim tables of up to 7 × 7 × 8 nodes."""
+    made = sample_set()
+    program = Program(aim_st_files(made)["aim_table.st"])
+    chosen = [
+        executed(program, "AIM_SELECT", Category=category, Measured=np.bool_(measured))
+        for category, measured, _ in golden_selections(made)
+    ]
+    held = [program.new("AIM_TABLE") for _ in made.tables]
+    loaded = [executed(program, "AIM_LOAD", TableNo=number, Table=table) for number, table in enumerate(held)]
+    asked = hard_questions(made, 3000, 20261123)
+    asked["cars"] = np.clip(asked["cars"], -32768, 32767)  # an INT has 16 bits
+    found = [
+        executed(
+            program, "AIM_EXIT_SPEED", Table=held[table], Cars=int(cars), FreeDistance_m=distance,
+            Resistance_n_per_kn=resistance,
+        )
+        for table, cars, distance, resistance in asked
+    ]  # fmt: skip
+    return {
+        "`AIM_SELECT`, 19 tables": max(chosen),
+        "`AIM_LOAD`, 7 × 7 × 8 nodes": max(loaded),
+        "`AIM_EXIT_SPEED`, 7 × 7 × 8 nodes": max(found),
+    }
+
+
 def other_class(table: ControllerTable) -> ControllerTable:
     """The table as one of another category."""
     return replace(table, id=f"other {table.id}", cut=replace(table.cut, category="X", category_number=16))
@@ -159,6 +188,7 @@ def measured(book: TableBook) -> Mapping[str, tuple[int, ...]]:
             (more[0] - between[0]) // len(others),
             (more[1] - between[1]) // len(others),
         ),
+        **aims(),
         "`RETARDER_SELF_TEST`, full": dearest_test(book, FULL),
         "`RETARDER_SELF_TEST`, small": dearest_test(book, SMALL),
     }
