@@ -52,11 +52,11 @@ def c_costs() -> CallCosts:
     the same way, gcc 12 -Os: the dearest of 3 000 hard questions to 19 tables with up to 7 × 7 × 8 nodes an axis.
     """
     return CallCosts(
-        observe=703,
-        decide=475,
-        select=30_748,
+        observe=791,
+        decide=440,
+        select=34_842,
         aim=451,
-        intact=29_398,
+        intact=32_778,
         source="instructions on x86-64, gcc 12 -Os, callgrind: study controller-cost; aim counted apart",
     )
 

@@ -95,8 +95,8 @@ class ControllerCounts:
     tracks: int
     cuts: int
     tables_a_book: int = 15
-    code_bytes: int = 2652
-    table_bytes: int = 448
+    code_bytes: int = 4500
+    table_bytes: int = 500
     aim_table_bytes: int = 1024
     estimate_bytes: int = 64
     record_bits: int = 53
