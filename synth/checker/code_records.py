@@ -107,7 +107,10 @@ def word_of(real: str | None, whole: str | None) -> int:
         if not is_float32(value):
             raise DamagedError(f"{real} is no float32 number")
         return bits(value)
-    number = int(str(whole).rstrip("u"), 0)
+    try:
+        number = int(str(whole).rstrip("u"), 0)
+    except ValueError:  # a 0 before other digits
+        raise DamagedError(f"{whole} is no whole number") from None
     if not -(2**31) <= number < 2**32:
         raise DamagedError(f"{whole} does not fit into 32 bits")
     return number % 2**32

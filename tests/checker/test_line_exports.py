@@ -93,6 +93,7 @@ def test_a_column_that_differs_in_another_block_is_found(name: str) -> None:
     [
         ("retarder_table.c", r"retarder_table_count = 3", "retarder_table_count = 2", "retarder_table_count is 2"),
         ("retarder_table.c", r"\S+, /\* mass_t", "0x1.zp, /* mass_t", "is no number of a table"),
+        ("retarder_table.c", r"\d+, /\* axles", "091, /* axles", "091 is no whole number"),
         ("retarder_table.c", r"(0x1\.\w+p\+\d+f), (0x)", r"\1, 0x1p+0f, \2", "words, but its struct has"),
         ("retarder_table.h", r"    int32_t axles;.*\n", "", "words, but its struct has"),
         ("retarder_table.h", r"    uint32_t crc32;.*\n", "", "does not end with its checksum"),

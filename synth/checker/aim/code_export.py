@@ -48,7 +48,7 @@ def st_differences(text: str, aims: Sequence[Aim]) -> Differences:
 def in_order(tables: Sequence[Numbers], aims: Sequence[Aim]) -> list[Aim | None]:
     """For each table of an export the one that it is of: by category and kind."""
     by_place = {(aim.category, aim.is_measured): aim for aim in aims}
-    return [by_place.get((int(first(table, "category")), first(table, "ismeasured") == 1.0)) for table in tables]
+    return [by_place.get((first(table, "category"), first(table, "ismeasured") == 1.0)) for table in tables]
 
 
 def first(table: Numbers, member: str) -> float:
