@@ -119,8 +119,10 @@ def rises_at(
 
     0 where no pressure is known.
     """
-    known = np.isfinite(pressure_kpa)
-    p = np.where(known, pressure_kpa, 0).astype(np.float32)
+    with np.errstate(over="ignore", invalid="ignore"):  # infinite where float32 cannot hold it: not known
+        kpa = np.asarray(pressure_kpa).astype(np.float32)
+    known = np.isfinite(kpa)
+    p = np.where(known, kpa, np.float32(0.0))
     p = np.where(p < table.pressures[0], table.pressures[0], p)
     p = np.where(p > table.pressures[table.highest_raised], table.pressures[table.highest_raised], p)
     above: npt.NDArray[np.float32] = np.where(known, p - table.pressures[stage], np.float32(0.0))

@@ -47,7 +47,7 @@ def st_differences(text: str, aims: Sequence[Aim]) -> Differences:
 
 def in_order(tables: Sequence[Numbers], aims: Sequence[Aim]) -> list[Aim | None]:
     """For each table of an export the one that it is of: by category and kind."""
-    by_place = {(aim.category, aim.is_measured): aim for aim in aims}
+    by_place = {(float(aim.category), aim.is_measured): aim for aim in aims}
     return [by_place.get((first(table, "category"), first(table, "ismeasured") == 1.0)) for table in tables]
 
 
