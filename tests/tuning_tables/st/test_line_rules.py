@@ -109,7 +109,7 @@ def test_the_choice_is_that_of_python(asked: Questions, program: Program) -> Non
 
 
 def test_every_status_occurs() -> None:
-    found = {int(each) for make in BOOKS.values() for each in ask(make(), 1_000, COMMANDS, 1).statuses}
+    found = {int(each) for make in BOOKS.values() for each in ask(make(), READINGS, COMMANDS, 1).statuses}
     assert found == {int(status) for status in Status}
 
 
