@@ -93,7 +93,7 @@ def test_every_artefact_bears_the_users_names_and_none_of_the_library(example: P
         assert "knp-5" not in text, file
         assert "us-group-1" in text or file.suffix in (".csv", ".c", ".h"), file
     header = (out / "c" / "retarder_table.h").read_text(encoding="utf-8")
-    for line in ("RETARDER_CATEGORY_US_L 16u", "RETARDER_CATEGORY_US_M 17u", "RETARDER_CATEGORY_US_H 18u"):
+    for line in ("RETARDER_CATEGORY_US_L 16 ", "RETARDER_CATEGORY_US_M 17 ", "RETARDER_CATEGORY_US_H 18 "):
         assert line in header
     report = (out / "report.html").read_text(encoding="utf-8")
     assert "(types/retarders/us-group.toml)" in report
