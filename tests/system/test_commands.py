@@ -325,7 +325,7 @@ def test_export_takes_a_prefix_a_small_self_test_and_splits(
         assert content != (tuned / name).read_text("ascii")
     ran = command("verify", tuned)
     assert ran.code == 3
-    assert "st/0004_PARK_LOAD.st: disagrees: " in ran.out
+    assert "disagrees: st/0004_PARK_LOAD.st: " in ran.out
     assert "st/bunch_table.c: disagrees: its header defines the categories" in ran.out
 
 
