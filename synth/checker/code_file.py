@@ -43,7 +43,7 @@ class CodeFile:
         """The text of all units of the tables in Structured Text: one file, or several in the order of their names."""
         if not UNIT_FILE.fullmatch(self.path.name):
             return self.text()
-        names = "TABLE|CATEGORIES|LOAD|SELECT"
+        names = "TABLE|CATEGORIES|LOAD|CHOOSE"
         parts = re.compile(rf"\d{{4}}_{self.prefix}_({names})\.st")
         return "\n".join(self.text(file) for file in sorted(self.path.parent.iterdir()) if parts.fullmatch(file.name))
 

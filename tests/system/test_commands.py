@@ -318,6 +318,7 @@ def test_export_takes_a_prefix_a_small_self_test_and_splits(
     assert json.loads(ran.out)["findings"] == []
     for name, old, new in (
         ("st/0004_PARK_LOAD.st", "MassOf : ARRAY[0..1] OF REAL := [2", "MassOf : ARRAY[0..1] OF REAL := [3"),
+        ("st/0005_PARK_CHOOSE.st", "CategoryOf : ARRAY[0..1] OF INT := [1", "CategoryOf : ARRAY[0..1] OF INT := [2"),
         ("st/bunch_table.h", "CATEGORY_LS 2 ", "CATEGORY_LS 1 "),
     ):
         content = (tuned / name).read_text("ascii")
@@ -325,7 +326,8 @@ def test_export_takes_a_prefix_a_small_self_test_and_splits(
         assert content != (tuned / name).read_text("ascii")
     ran = command("verify", tuned)
     assert ran.code == 3
-    assert "disagrees: st/0004_PARK_LOAD.st: " in ran.out
+    assert "disagrees: st/0004_PARK_LOAD.st: masst of table 0 is " in ran.out
+    assert "st/0004_PARK_LOAD.st: disagrees: CategoryOf stands there more than once, and differs" in ran.out
     assert "st/bunch_table.c: disagrees: its header defines the categories" in ran.out
 
 
