@@ -31,7 +31,7 @@ def test_every_form_of_export_holds_it(command: Command, tmp_path: Path) -> None
     for form, name, words in (
         ("csv", "one.csv", "number,approach.entrance_stage,1"),
         ("csv", "one.csv", "text,approach.interlock,position_clear"),
-        ("c", "retarder_table.h", "#define RETARDER_APPROACH 1u"),
+        ("c", "retarder_table.c", "1, /* entrance_stage */"),
         ("st", "retarder_table.st", "EntranceStageOf"),
         ("json", "one.json", '"version": 3'),
     ):
