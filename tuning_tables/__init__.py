@@ -5,7 +5,6 @@ A controller with a radar needs `read_json` and `decide_for`; one with point sen
 """
 
 from tuning_tables.active_table import ActiveTable
-from tuning_tables.any_table import AnyTable, from_table_json, read_table, to_table_json, write_table
 from tuning_tables.approach import Approach
 from tuning_tables.atomic_file import replacing, write_atomically
 from tuning_tables.csv_file import to_csv, write_csv
@@ -14,22 +13,19 @@ from tuning_tables.errors import (
     DamagedTable,
     InvalidTable,
     NewerVersion,
-    OlderVersion,
-    OtherDecisions,
+    OtherKind,
     TableError,
     UnknownFormat,
 )
 from tuning_tables.estimator import Estimator, begin, unseen_samples
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_any_book, read_book, write_book
-from tuning_tables.json_file import from_json, read_json, to_json, write_json
-from tuning_tables.passages.csv_file import to_passage_csv, write_passage_csv
+from tuning_tables.json_file import from_json, read_json, read_stage_table, read_table, to_json, write_json
 from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_book import PassageBook, PassageChoice
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.plausible_motion import PlausibleMotion
-from tuning_tables.passages.schema import passage_schema
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
 from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM, table_after
 from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
@@ -42,6 +38,7 @@ from tuning_tables.schema import table_schema
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import Choice, Status, TableBook
+from tuning_tables.table_kinds import AnyTable, StageTable
 
 __all__ = [
     "HEAVIER_ALARM",
@@ -61,8 +58,7 @@ __all__ = [
     "Generator",
     "InvalidTable",
     "NewerVersion",
-    "OlderVersion",
-    "OtherDecisions",
+    "OtherKind",
     "PassageBook",
     "PassageChoice",
     "PassageRow",
@@ -72,6 +68,7 @@ __all__ = [
     "RetarderId",
     "SensorLayout",
     "Stage",
+    "StageTable",
     "Status",
     "TableBook",
     "TableError",
@@ -87,13 +84,12 @@ __all__ = [
     "decide_for",
     "decide_many",
     "from_json",
-    "from_table_json",
     "held_by",
     "observe",
-    "passage_schema",
     "read_any_book",
     "read_book",
     "read_json",
+    "read_stage_table",
     "read_table",
     "replacing",
     "round_coefficients",
@@ -102,14 +98,10 @@ __all__ = [
     "table_schema",
     "to_csv",
     "to_json",
-    "to_passage_csv",
-    "to_table_json",
     "unseen_samples",
     "wanted_stage",
     "write_atomically",
     "write_book",
     "write_csv",
     "write_json",
-    "write_passage_csv",
-    "write_table",
 ]

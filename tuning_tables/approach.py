@@ -3,35 +3,43 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from enum import Enum
+from typing import Annotated, Final
 
 import numpy as np
 
-from tuning_tables.requirement import require_between, require_count
+from tuning_tables.declared.members import require_declared
+from tuning_tables.declared.numbers import Count, Number
+from tuning_tables.declared.texts import Word
+from tuning_tables.stage import MOST_STAGES
 
 LENGTH_RANGE_M: Final = (0.001, 100.0)
 
-INTERLOCK: Final = "position_clear"
-"""The regulator takes over a cut only when the cut ahead has left the position, its last axle out of it."""
+
+class Interlock(Enum):
+    """When the regulator may take over a cut; the value is the word in files.
+
+    `POSITION_CLEAR`: only when the cut ahead has left the position, its last axle out of it, and then only when the
+    stage commanded is at most the entrance stage.
+    """
+
+    POSITION_CLEAR = "position_clear"
 
 
 @dataclass(frozen=True)
 class Approach:
-    """The regulator acts from `length_m` (1 mm to 100 m) before the entrance, where the first axle is at s = -length_m.
+    """The regulator acts from before the entrance, where the first axle is at s = -length_m.
 
     Before the entrance, s < 0, no stage above `entrance_stage` (0..K of its table) may be commanded; at the entrance
-    and behind it, any. The interlock is the same for all (see `INTERLOCK`): the regulator may take over a cut only when
-    the cut ahead has left the position, and then only when the stage commanded is at most `entrance_stage`.
-
-    Raises `InvalidTable`.
+    and behind it, any. Raises `InvalidTable`.
     """
 
-    length_m: float
-    entrance_stage: int
+    length_m: Annotated[float, Number("it acts from so far before the entrance", *LENGTH_RANGE_M)]
+    entrance_stage: Annotated[int, Count("highest stage that may be commanded there", 0, MOST_STAGES - 1)]
+    interlock: Annotated[Interlock, Word("when it may take over a cut", Interlock)] = Interlock.POSITION_CLEAR
 
     def __post_init__(self) -> None:
-        require_between(self.length_m, "approach.length_m", *LENGTH_RANGE_M)
-        require_count(self.entrance_stage, "approach.entrance_stage", 0)
+        require_declared(self, "approach")
 
 
 def same_approach(one: Approach | None, other: Approach | None) -> bool:

@@ -1,123 +1,98 @@
-"""What a book consists of: arrays with one entry a table along the first axis, each with axes, type, unit and meaning.
-
-Tables of one book may differ in the lengths of what they hold: shorter ones are filled up with NaN (float columns) or
-0 (the rest).
-"""
+"""What a book of tables consists of: its kind, its columns, and the meaning of their axes."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, Final
 
-import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.book_categories import OfClass, category_numbers
+from tuning_tables.book_categories import category_numbers
+from tuning_tables.declared.columns import (
+    Column,
+    Columns,
+    columns_of,
+    row_value,
+    stacked,
+    stored_sections,
+    told_sections,
+)
 from tuning_tables.errors import InvalidTable
+from tuning_tables.table_kinds import KINDS, StageTable, kind_of
 
-Columns = Mapping[str, npt.NDArray[Any]]
-
-
-@dataclass(frozen=True)
-class Column:
-    """One array of a book.
-
-    `dtype`: a numpy type, "S" for UTF-8 text of the length needed. `unit`: "1" for plain numbers and text. `content`:
-    the value of one table, at most as long as the axes after the first.
-    """
-
-    name: str
-    axes: tuple[str, ...]
-    dtype: str
-    unit: str
-    meaning: str
-    content: Callable[[Any], Any]
+AXES: Final[Mapping[str, str]] = MappingProxyType({
+    "table": "index of the table in the book",
+    "stage": "pressure stage k, in a row of switching speeds the one in force",
+    "power": "power of the path in m",
+    "threshold": "j of the switching speed that parts stage j from stage j + 1",
+    "passage": "index of the passage in the order of the path",
+    "sensor": "index of the point sensor along the path",
+    "zone": "index of the retarder along the path",
+    "axle": "index of the axle from the front",
+    "break": "index of the path break of the estimator's work",
+    "end": "0: beginning or smallest, 1: end or largest",
+})  # fmt: skip
+"""What the axes count."""
 
 
 @dataclass(frozen=True)
 class Layout:
-    """What a book consists of: its schema version, its columns, and the meaning of their axes."""
+    """What a book consists of: the kind of its tables, and its columns."""
 
-    version: int
+    kind: str
     columns: tuple[Column, ...]
-    axes: Mapping[str, str]
 
-    def numbered(self) -> Layout:
-        """This layout with the numbers of the categories."""
-        return self.extended(self.version, (NUMBER,))
-
-    def extended(self, version: int, columns: tuple[Column, ...]) -> Layout:
-        """This layout under another schema version, with more columns of the same axes."""
-        return replace(self, version=version, columns=(*self.columns, *columns))
+    @property
+    def axes(self) -> Mapping[str, str]:
+        """The axes of the columns, and what they count."""
+        used = {axis for column in self.columns for axis in column.axes}
+        return {axis: meaning for axis, meaning in AXES.items() if axis in used}
 
     def length(self, axis: str, arrays: Columns) -> int:
         """The length of `axis` in the arrays of a book of this layout."""
         column = next(column for column in self.columns if axis in column.axes)
         return int(arrays[column.name].shape[column.axes.index(axis)])
 
-    def arrays_of(self, tables: Sequence[OfClass]) -> dict[str, npt.NDArray[Any]]:
+    def arrays_of(self, tables: Sequence[StageTable]) -> dict[str, npt.NDArray[Any]]:
         """The arrays of a book of `tables`, by name.
 
-        Raises `InvalidTable` for no tables at all, for an id given twice, where numbers and names of categories do not
-        belong together one by one, and where a number is -0.0, which the JSON form of the same table cannot hold.
+        Raises `InvalidTable` for an id given twice, and where numbers and names of categories do not belong together
+        one by one.
         """
-        if not tables:
-            raise InvalidTable("the book has no tables, but it must have at least one.")
         (name, times), *_ = Counter(table.id for table in tables).most_common(1)
         if times > 1:
             raise InvalidTable(f"{times} tables of the book have the id {name!r}, but ids must differ within a book.")
         category_numbers(tables)
-        return {column.name: _stacked(column, tables) for column in self.columns}
+        return {column.name: stacked(column, tables) for column in self.columns}
 
 
-NUMBER: Final = Column("category_number", ("table",), "<i4", "1", "number of the class in controllers, 0: not stated",
-                       lambda t: t.cut.category_number or 0)  # fmt: skip
-"""Only in books of which a table states the number of its category, of either version."""
-
-ORIGIN: Final[tuple[Column, ...]] = (
-    Column("id", ("table",), "S", "1", "name of the table", lambda t: t.id),
-    Column("created", ("table",), "S", "1", "instant of creation, UTC", lambda t: t.created),
-    Column("generator_name", ("table",), "S", "1", "program that made the table", lambda t: t.generator.name),
-    Column("generator_version", ("table",), "S", "1", "its version", lambda t: t.generator.version),
-    Column("config_sha256", ("table",), "S", "1", "its configuration", lambda t: t.generator.config_sha256),
-    Column("retarder", ("table",), "S", "1", "retarder position", lambda t: t.retarder.name),
-    Column("zones_m", ("table", "zone", "end"), "<f8", "m", "retarder zones", lambda t: t.retarder.zones_m),
-    Column("exit_m", ("table",), "<f8", "m", "path at the end of the pass", lambda t: t.retarder.exit_m),
-    Column("dead_band_kpa", ("table",), "<f8", "kPa", "of the pressure", lambda t: t.retarder.dead_band_kpa),
-    Column("category", ("table",), "S", "1", "class of cuts", lambda t: t.cut.category),
-    Column("mass_t", ("table",), "<f8", "t", "mass of the cut", lambda t: t.cut.mass_t),
-    Column("axle_offsets_m", ("table", "axle"), "<f8", "m", "from the first axle", lambda t: t.cut.axle_offsets_m),
-    Column("target_speed_m_s", ("table",), "<f8", "m/s", "exit speed aimed at", lambda t: t.target_speed_m_s),
-)  # fmt: skip
-"""Where a table comes from and what it is for: the first columns of every book."""
-
-FIGURES: Final[tuple[Column, ...]] = (
-    Column("predicted_rms_m_s", ("table",), "<f8", "m/s", "exit speed error", lambda t: t.predicted.rms_m_s),
-    Column("predicted_bias_m_s", ("table",), "<f8", "m/s", "mean of the error", lambda t: t.predicted.bias_m_s),
-    Column("predicted_p_overspeed", ("table",), "<f8", "1", "probability", lambda t: t.predicted.p_overspeed),
-    Column("predicted_switchings", ("table",), "<f8", "1", "per pass", lambda t: t.predicted.switchings),
-    Column("predicted_p_stall", ("table",), "<f8", "1", "probability, NaN: not computed",
-           lambda t: np.nan if t.predicted.p_stall is None else t.predicted.p_stall),
-    Column("validated_passes", ("table",), "<i8", "1", "simulated passes, 0: not validated",
-           lambda t: 0 if t.validated is None else t.validated.passes),
-    Column("validated_rms_m_s", ("table",), "<f8", "m/s", "exit speed error, simulated",
-           lambda t: np.nan if t.validated is None else t.validated.rms_m_s),
-    Column("validated_rms_ci95_m_s", ("table", "end"), "<f8", "m/s", "95 % interval of it",
-           lambda t: (np.nan, np.nan) if t.validated is None else t.validated.rms_ci95_m_s),
-)  # fmt: skip
-"""What was predicted and confirmed of a table."""
+def book_layout(tables: Sequence[StageTable]) -> Layout:
+    """The layout of a book of `tables`; `InvalidTable` for none at all, and where they are of two kinds."""
+    if not tables:
+        raise InvalidTable("the book has no tables, but it must have at least one.")
+    first = tables[0]
+    for table in tables:
+        if type(table) is not type(first):
+            raise InvalidTable(
+                f"{first.id} is of the kind {kind_of(type(first))} and {table.id} of the kind {kind_of(type(table))}, "
+                "but the tables of a book are of one kind: write two books."
+            )
+    return Layout(kind_of(type(first)), tuple(columns_of(type(first), told_sections(type(first), tables))))
 
 
-def _stacked(column: Column, tables: Sequence[OfClass]) -> npt.NDArray[Any]:
-    if column.dtype == "S":
-        return np.array([column.content(table).encode("utf-8") for table in tables])
-    contents = [np.asarray(column.content(table), dtype=column.dtype) for table in tables]
-    longest = tuple(max(sizes) for sizes in zip(*(content.shape for content in contents), strict=True))
-    filler = np.nan if column.dtype in ("<f4", "<f8") else 0
-    stacked = np.full((len(tables), *longest), filler, dtype=column.dtype)
-    for index, content in enumerate(contents):
-        region: tuple[slice, ...] = tuple(map(slice, content.shape))
-        stacked[index, ...][region] = content  # the dots keep a view even of a single number
-    return stacked
+def stored_layout(kind: str, names: Set[str]) -> Layout:
+    """The layout of a book of tables of this kind that has datasets of these names."""
+    return Layout(kind, tuple(columns_of(KINDS[kind], stored_sections(KINDS[kind], names))))
+
+
+def stored_tables(layout: Layout, arrays: Columns) -> tuple[StageTable, ...]:
+    """The tables in the arrays of a book, which must have the names, types and numbers of axes of its layout.
+
+    Raises `InvalidTable` for values that make no table, `UnicodeDecodeError` for text that is no UTF-8.
+    """
+    declared = KINDS[layout.kind]
+    rows = range(len(arrays["id"]))
+    return tuple(row_value(declared, {name: column[row] for name, column in arrays.items()}) for row in rows)

@@ -1,43 +1,62 @@
-"""A controller table as CSV (RFC 4180), for spreadsheets and for controllers that read nothing else. Export only.
+"""A table as CSV (RFC 4180), for spreadsheets and for controllers that read nothing else. Export only.
 
     record,key,value0,value1,value2,value3
     text,format,retarder-table,,,
     number,valid.s_m,0.0,37.45,,
-    number,stages.0.pressure_kpa,0.0,,,
-    lower,1,0.5,0.25,0.0,0.0
+    number,stages.1.lower,0.5,0.25,0.0,0.0
+    number,passages.0.switching_m_s.1,4.5,6.25,inf,inf
 
 A rectangle under one header line. `record` tells what a row holds: `text` or `number`, with the dotted key of the JSON
-table and its value or values; `lower` or `upper`, with the stage k and the coefficients of its line in ascending
-powers of the path. A line that a stage does not have, and any other null, has no row. Numbers have the shortest form
-that reads back exactly. The checksum is that of the JSON table.
+table and its value or values. What is null has no row; a switching speed that is null is -inf (never lower so far) or
+inf (never raise so far). The nodes of an aim table have a row each, numbered from 0, under a row of `names`:
+
+    names,node,cars,free_distance_m,resistance_n_per_kn,exit_speed_m_s,p_overspeed,...
+    node,0,1,20.0,,1.4,0.099,...
+
+A cell of a node is empty where there is no number. Numbers have the shortest form that reads back exactly. The checksum
+is that of the JSON table.
 """
 
 from __future__ import annotations
 
+import csv
+import io
 import os
-from collections.abc import Iterator
+from collections.abc import Sequence
 
+from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.aim.node_rows import node_rows
 from tuning_tables.atomic_file import write_atomically
-from tuning_tables.csv_rows import property_rows, rectangle
-from tuning_tables.document import to_document
-from tuning_tables.table import ControllerTable
+from tuning_tables.canonical import CHECKSUM_KEY
+from tuning_tables.declared.key_rows import key_rows, text_row
+from tuning_tables.document import HEAD, to_document
+from tuning_tables.table_kinds import AnyTable
 
 
-def to_csv(table: ControllerTable) -> bytes:
+def to_csv(table: AnyTable) -> bytes:
     """The CSV text of `table`, UTF-8, CR LF line ends; equal tables give equal bytes.
 
     Raises `InvalidTable` for a text that a spreadsheet would take for a formula and compute.
     """
-    return rectangle([*property_rows(to_document(table), "", ("lower", "upper")), *_line_rows(table)])
+    document = to_document(table)
+    format_word, version, kind = (document[key] for key in HEAD)
+    rows = [text_row("format", str(format_word)), ["number", "version", str(version)], text_row("kind", str(kind))]
+    rows += key_rows(table, "")
+    if isinstance(table, AimTable):
+        rows += node_rows(table)
+    return _rectangle([*rows, text_row(CHECKSUM_KEY, str(document[CHECKSUM_KEY]))])
 
 
-def write_csv(table: ControllerTable, path: str | os.PathLike[str]) -> None:
+def write_csv(table: AnyTable, path: str | os.PathLike[str]) -> None:
     """Write `to_csv(table)` to the file at `path`, complete or not at all; raises `OSError`, and as `to_csv`."""
     write_atomically(path, to_csv(table))
 
 
-def _line_rows(table: ControllerTable) -> Iterator[list[str]]:
-    for stage in table.stages:
-        for name, line in (("lower", stage.lower), ("upper", stage.upper)):
-            if line is not None:
-                yield [name, str(stage.k), *(repr(float(coefficient)) for coefficient in line)]
+def _rectangle(rows: Sequence[Sequence[str]]) -> bytes:
+    """The text of `rows`, each of a record, a key and values, under one header; UTF-8, CR LF line ends."""
+    width = max(len(row) for row in rows)
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(["record", "key", *(f"value{index}" for index in range(width - 2))])
+    writer.writerows([*row, *[""] * (width - len(row))] for row in rows)
+    return text.getvalue().encode("utf-8")

@@ -21,16 +21,12 @@ class UnknownFormat(TableError):
     """The file is sound in its own right, but it is not a table or book of this project."""
 
 
-class OtherDecisions(TableError):
-    """The file is sound, but its table decides otherwise than is needed here: give another, or ask `read_table`."""
+class OtherKind(TableError):
+    """The file is sound, but its table is of another kind than is needed here: give another."""
 
 
 class NewerVersion(TableError):
     """The file was written to a later version of the format than this reader knows: update the reader."""
-
-
-class OlderVersion(TableError):
-    """The file was written to a version of the format that this reader no longer knows: export it again."""
 
 
 class InvalidLog(ValueError):

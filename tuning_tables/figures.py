@@ -3,85 +3,67 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
+from tuning_tables.declared.members import require_declared
+from tuning_tables.declared.numbers import Count, Number, Row
 from tuning_tables.errors import InvalidTable
-from tuning_tables.requirement import (
-    require_between,
-    require_count,
-    require_finite,
-    require_rising,
-    require_tuple,
-)
+from tuning_tables.requirement import require_rising
 
 SHORTEST_RANGE: Final = 1e-3
+"""Of path in m, of speed in m/s."""
+FARTHEST: Final = 1e6
 """Of path in m, of speed in m/s."""
 
 
 @dataclass(frozen=True)
 class ValidRange:
-    """The rectangle of path (m) and speed (m/s) on which the lines were fitted; (smallest, largest) each, speed >= 0.
+    """The path and the speeds on which the lines were fitted.
 
-    The rule clamps the path into this range and does not look at the speed range (see `rule.decide`).
+    The rule clamps the path into this range and does not look at the speed range (see `rule.decide`). Both rise.
     """
 
-    s_m: tuple[float, float]
-    v_m_s: tuple[float, float]
+    s_m: Annotated[tuple[float, float], Row(Number("least and greatest path", -FARTHEST, FARTHEST), "end", 2, 2)]
+    v_m_s: Annotated[tuple[float, float], Row(Number("least and greatest speed", 0.0, FARTHEST), "end", 2, 2)]
 
     def __post_init__(self) -> None:
+        require_declared(self, "valid")
         for key, ends in (("valid.s_m", self.s_m), ("valid.v_m_s", self.v_m_s)):
-            require_tuple(ends, key, 2)
             require_rising(ends, key)
-            require_between(ends[0], key, -1e6, 1e6)
-            require_between(ends[1], key, -1e6, 1e6)
             # Shorter ranges mean nothing on a track, and ratios of lengths stay finite.
             if not np.float32(ends[1]) - np.float32(ends[0]) >= SHORTEST_RANGE:
                 raise InvalidTable(f"{key} is {ends!r}, but its ends must be at least {SHORTEST_RANGE:g} apart.")
-        require_between(self.v_m_s[0], "valid.v_m_s[0]", 0.0)
 
 
 @dataclass(frozen=True)
 class Predicted:
-    """Quality that the solver expects of this table; speeds in m/s, probabilities in [0, 1], switchings per pass.
+    """What the solver expects of this table."""
 
-    `p_stall`: probability that the cut comes to a stand in the retarder; None where it was not computed. `passes`:
-    simulated passes that the figures come from, None where they were computed exactly.
-    """
-
-    rms_m_s: float
-    bias_m_s: float
-    p_overspeed: float
-    switchings: float
-    p_stall: float | None = None
-    passes: int | None = None
+    rms_m_s: Annotated[float, Number("error of the exit speed, root of its mean square", 0.0)]
+    bias_m_s: Annotated[float, Number("mean error of the exit speed")]
+    p_overspeed: Annotated[float, Number("probability of more than the target + 0.3 m/s", 0.0, 1.0)]
+    switchings: Annotated[float, Number("changes of stage in a pass", 0.0)]
+    p_stall: Annotated[
+        float | None, Number("probability that the cut comes to a stand in the retarder; null: not computed", 0.0, 1.0)
+    ] = None
+    passes: Annotated[int | None, Count("simulated passes that the figures come from; null: exact", 1)] = None
 
     def __post_init__(self) -> None:
-        require_between(self.rms_m_s, "predicted.rms_m_s", 0.0)
-        require_finite(self.bias_m_s, "predicted.bias_m_s")
-        require_between(self.p_overspeed, "predicted.p_overspeed", 0.0, 1.0)
-        require_between(self.switchings, "predicted.switchings", 0.0)
-        if self.p_stall is not None:
-            require_between(self.p_stall, "predicted.p_stall", 0.0, 1.0)
-        if self.passes is not None:
-            require_count(self.passes, "predicted.passes", 1)
+        require_declared(self, "predicted")
 
 
 @dataclass(frozen=True)
 class Validated:
-    """Quality seen in a closed loop of `passes` (>= 1) simulated passes: rms and its 95 % interval, in m/s."""
+    """What a closed loop confirmed; null before it was run."""
 
-    passes: int
-    rms_m_s: float
-    rms_ci95_m_s: tuple[float, float]
+    passes: Annotated[int, Count("simulated passes", 1)]
+    rms_m_s: Annotated[float, Number("error of the exit speed, root of its mean square", 0.0)]
+    rms_ci95_m_s: Annotated[tuple[float, float], Row(Number("95 % interval of it", 0.0), "end", 2, 2)]
 
     def __post_init__(self) -> None:
-        require_count(self.passes, "validated.passes", 1)
-        require_between(self.rms_m_s, "validated.rms_m_s", 0.0)
-        require_tuple(self.rms_ci95_m_s, "validated.rms_ci95_m_s", 2)
-        for index, end in enumerate(self.rms_ci95_m_s):
-            require_between(end, f"validated.rms_ci95_m_s[{index}]", 0.0)
+        require_declared(self, "validated")
         if self.rms_ci95_m_s[0] > self.rms_ci95_m_s[1]:
             raise InvalidTable(
                 f"validated.rms_ci95_m_s is {self.rms_ci95_m_s!r}, but its first end must not exceed its second."

@@ -1,11 +1,10 @@
 """A book of tables as an HDF5 file, readable by h5py and xarray without this project. Needs h5py, and only when called.
 
-Root attributes: format "retarder-book", schema_version, tool_version, config_sha256, payload_sha256 (see `payload`),
-complete = 1. The schema version is 4 of tables for point sensors; of tables with lines it is 5 where one decides at any
-time, else 3 where one has an approach, else 2 where one has an estimator, else 1.
+Root attributes: format "retarder-book", version, kind, tool_version, config_sha256, payload_sha256 (see `payload`),
+complete = 1.
 
-Datasets: the columns of that version (`book_kinds`), each with attributes `units` and `meaning`,
-chunked in one piece with a fletcher32 checksum.
+Datasets: the columns of tables of that kind (`declared.columns`), each with attributes `units` and `meaning`, chunked
+in one piece with a fletcher32 checksum.
 Each axis is a dimension scale of its own name, numbered from 0.
 
 Two attributes are for xarray: `_Encoding` has it decode text (fixed-length UTF-8), `coordinates` names what tells the
@@ -29,17 +28,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.any_table import AnyTable
 from tuning_tables.atomic_file import replacing
-from tuning_tables.book_columns import VERSIONS as LINE_VERSIONS
-from tuning_tables.book_kinds import VERSIONS, book_layout, stored_layout, stored_tables
-from tuning_tables.book_layout import Column, Columns, Layout
+from tuning_tables.book_layout import Layout, book_layout, stored_layout, stored_tables
+from tuning_tables.declared.columns import Column, Columns
 from tuning_tables.errors import (
     DamagedTable,
     InvalidTable,
     NewerVersion,
-    OlderVersion,
-    OtherDecisions,
+    OtherKind,
     TableError,
     UnknownFormat,
 )
@@ -50,24 +46,25 @@ from tuning_tables.regular_file import read_regular_file
 from tuning_tables.requirement import SHA256_HEX, require_match, require_text
 from tuning_tables.seal import seal_of, unsealed
 from tuning_tables.table import ControllerTable
+from tuning_tables.table_kinds import BOOK_KINDS, MEANINGS, StageTable, kind_of
 
 if TYPE_CHECKING:
     import h5py
 
 FORMAT: Final = "retarder-book"
-KNOWN: Final = f"{VERSIONS[0]} to {VERSIONS[-1]}"
+VERSION: Final = 1
 SIGNATURE: Final = b"\x89HDF\r\n\x1a\n"
 # The oldest file version whose metadata carry checksums, for readers that know nothing of the seal.
 FILE_VERSION: Final = ("v108", "v108")
 # Twice what 10 000 tables of the largest shape take (32 stages, degree 9: 33 MB).
 LARGEST_FILE_BYTES: Final = 64 * 2**20
 LONGEST_REASON: Final = 400
-COORDINATES: Final = ("id", "category", "mass_t", "target_speed_m_s")
+COORDINATES: Final = ("id", "cut_category", "cut_mass_t", "target_speed_m_s")
 
-_ATTRIBUTES: Final = ("complete", "config_sha256", "format", "payload_sha256", "schema_version", "tool_version")
+_ATTRIBUTES: Final = ("complete", "config_sha256", "format", "kind", "payload_sha256", "tool_version", "version")
 
 
-def write_book(tables: Sequence[AnyTable], path: str | os.PathLike[str], generator: Generator | None = None) -> None:
+def write_book(tables: Sequence[StageTable], path: str | os.PathLike[str], generator: Generator | None = None) -> None:
     """Write `tables`, all of one kind, to the file at `path`, complete or not at all.
 
     `generator`: the run that bound the book, by default the generator of the tables, which must then be one for all.
@@ -80,7 +77,7 @@ def write_book(tables: Sequence[AnyTable], path: str | os.PathLike[str], generat
         _require_read_back(part, book_layout(tables).arrays_of(tables))
 
 
-def book_bytes(tables: Sequence[AnyTable], generator: Generator | None = None) -> bytes:
+def book_bytes(tables: Sequence[StageTable], generator: Generator | None = None) -> bytes:
     """The file that `write_book` writes, for a caller that writes files himself; raises as it does."""
     layout = book_layout(tables)
     arrays = layout.arrays_of(tables)
@@ -89,8 +86,9 @@ def book_bytes(tables: Sequence[AnyTable], generator: Generator | None = None) -
         "complete": 1,
         "config_sha256": origin.config_sha256,
         "format": FORMAT,
-        "schema_version": layout.version,
+        "kind": layout.kind,
         "tool_version": origin.version,
+        "version": VERSION,
     }
     attributes["payload_sha256"] = payload_sha256(attributes, arrays, layout)
     body = _body(attributes, arrays, layout)
@@ -98,28 +96,29 @@ def book_bytes(tables: Sequence[AnyTable], generator: Generator | None = None) -
 
 
 def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
-    """The tables in the file at `path`, which must have lines, else `OtherDecisions`; raises as `read_any_book`."""
+    """The tables in the file at `path`, which must have lines, else `OtherKind`; raises as `read_any_book`."""
     tables = read_any_book(path)
     lines = tuple(table for table in tables if isinstance(table, ControllerTable))
     if len(lines) < len(tables):
-        raise OtherDecisions(
-            f"{os.fspath(path)}: the tables of this book decide at sensor passages and have no lines over the path, "
-            f"which are needed here; give a book of schema version {', '.join(map(str, LINE_VERSIONS))}."
+        found, wanted = kind_of(type(tables[0])), kind_of(ControllerTable)
+        raise OtherKind(
+            f"{os.fspath(path)}: the kind of this book is {found} ({MEANINGS[found]}), but here one is needed whose "
+            f"kind is {wanted}."
         )
     return lines
 
 
-def read_any_book(path: str | os.PathLike[str]) -> tuple[AnyTable, ...]:
+def read_any_book(path: str | os.PathLike[str]) -> tuple[StageTable, ...]:
     """The tables in the file at `path`, all of one kind, in the order in which they were written.
 
-    Raises `UnknownFormat` for a file that is no HDF5 or holds another sealed format, `NewerVersion`, `OlderVersion` for
-    a book of another version, `DamagedTable` for everything that is no complete, unchanged book, unsealed HDF5 files
-    among them; `OSError` where the file cannot be opened; `ImportError` without h5py.
+    Raises `UnknownFormat` for a file that is no HDF5 or holds another sealed format, `NewerVersion` for a later
+    version, `DamagedTable` for everything that is no complete, unchanged book, unsealed HDF5 files among them;
+    `OSError` where the file cannot be opened; `ImportError` without h5py.
     """
     source = os.fspath(path)
-    arrays = _stored_arrays(path)
+    layout, arrays = _stored_arrays(path)
     try:
-        tables = stored_tables(arrays)
+        tables = stored_tables(layout, arrays)
         _require_as_written(arrays, book_layout(tables).arrays_of(tables), source)
     except InvalidTable as invalid:
         raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
@@ -145,8 +144,8 @@ def _body(attributes: Mapping[str, str | int], arrays: Columns, layout: Layout) 
     return image
 
 
-def _stored_arrays(path: str | os.PathLike[str]) -> dict[str, npt.NDArray[Any]]:
-    """The arrays of the book at `path`, whose seal, layout and checksums are right; raises as `read_book`."""
+def _stored_arrays(path: str | os.PathLike[str]) -> tuple[Layout, dict[str, npt.NDArray[Any]]]:
+    """The layout and arrays of the book at `path`, whose seal and checksums are right; raises as `read_book`."""
     import h5py
 
     source = os.fspath(path)
@@ -171,7 +170,7 @@ def _stored_arrays(path: str | os.PathLike[str]) -> dict[str, npt.NDArray[Any]]:
 
 def _require_read_back(part: Path, arrays: Columns) -> None:
     try:
-        found = _stored_arrays(part)
+        _, found = _stored_arrays(part)
         reason = (
             "" if all(found[name].tobytes() == array.tobytes() for name, array in arrays.items()) else "other values"
         )
@@ -181,7 +180,7 @@ def _require_read_back(part: Path, arrays: Columns) -> None:
         raise OSError(errno.EIO, f"what was written does not read back ({reason})")
 
 
-def _common_generator(tables: Sequence[AnyTable]) -> Generator:
+def _common_generator(tables: Sequence[StageTable]) -> Generator:
     generators = {table.generator for table in tables}
     if len(generators) > 1:
         raise InvalidTable("the tables have different generators; name the one that binds the book.")
@@ -212,12 +211,12 @@ def _write_column(file: h5py.File, column: Column, values: npt.NDArray[Any]) -> 
         dataset.dims[position].attach_scale(file[axis])
 
 
-def _checked_arrays(file: h5py.File, most_bytes: int, source: str) -> dict[str, npt.NDArray[Any]]:
-    """The arrays of the book, `most_bytes` in all, after everything about the file was found to be as written."""
+def _checked_arrays(file: h5py.File, most_bytes: int, source: str) -> tuple[Layout, dict[str, npt.NDArray[Any]]]:
+    """The layout and arrays of the book, `most_bytes` in all, after all about the file was found to be as written."""
     from tuning_tables.stored_array import require_axis, scalar_attribute, stored_array
 
     attributes = {name: scalar_attribute(file, name) for name in _ATTRIBUTES}
-    layout = _layout(file, attributes["format"], attributes["schema_version"], source)
+    layout = _layout(file, attributes, source)
     if tuple(sorted(file.attrs)) != _ATTRIBUTES:
         found = excerpt(str(sorted(file.attrs)), LONGEST_REASON)
         raise DamagedTable(f"{source}: root attributes are {found}, but must be {list(_ATTRIBUTES)}.")
@@ -242,7 +241,7 @@ def _checked_arrays(file: h5py.File, most_bytes: int, source: str) -> dict[str, 
         _require_lengths(column, arrays, layout, source)
     for axis in layout.axes:
         require_axis(file, axis, layout.length(axis, arrays), source)
-    return arrays
+    return layout, arrays
 
 
 def _require_lengths(column: Column, arrays: Columns, layout: Layout, source: str) -> None:
@@ -269,13 +268,14 @@ def _require_as_written(found: Columns, written: Columns, source: str) -> None:
             )
 
 
-def _layout(file: h5py.File, found: str | int | None, version: str | int | None, source: str) -> Layout:
+def _layout(file: h5py.File, attributes: Mapping[str, str | int | None], source: str) -> Layout:
+    found, version, kind = attributes["format"], attributes["version"], attributes["kind"]
     if found != FORMAT:
         raise UnknownFormat(f'{source}: format is {found!r:.60}, but it must be "{FORMAT}"; give a table book.')
-    if not isinstance(version, int):
-        raise DamagedTable(f"{source}: schema_version is {version!r:.60}, but it must be a number from {KNOWN}.")
-    if version > VERSIONS[-1]:
-        raise NewerVersion(f"{source}: schema_version is {version}, this reader knows {KNOWN}; update it.")
-    if version < VERSIONS[0]:
-        raise OlderVersion(f"{source}: schema_version is {version}, not {KNOWN}; export the book again.")
-    return stored_layout(version, set(file))
+    if isinstance(version, int) and version > VERSION:
+        raise NewerVersion(f"{source}: version is {version}, this reader knows only {VERSION}; update retarder-synth.")
+    if version != VERSION:
+        raise DamagedTable(f"{source}: version is {version!r:.60}, but it must be {VERSION}; export the book again.")
+    if kind not in BOOK_KINDS:
+        raise DamagedTable(f"{source}: kind is {kind!r:.60}, but it must be {' or '.join(BOOK_KINDS)}.")
+    return stored_layout(str(kind), set(file))

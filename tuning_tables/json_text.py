@@ -11,20 +11,20 @@ from tuning_tables.errors import DamagedTable
 from tuning_tables.excerpt import excerpt
 
 LARGEST_FILE_BYTES: Final = 4 * 2**20
+WIDTH: Final = 120
+"""Of a line in an exported table; a row of numbers may be wider."""
 
 _T = TypeVar("_T")
 
 
-def read_json_text(
-    content: bytes, source: str, noun: str, read: Callable[[object, str], _T]
-) -> tuple[dict[str, object], _T]:
-    """The document in `content`, and what `read(document, source)` makes of it; `noun` says what that is.
+def read_json_text(content: bytes, source: str, read: Callable[[object, str], _T]) -> tuple[dict[str, object], _T]:
+    """The document in `content`, and what `read(document, source)` makes of it.
 
     Raises `DamagedTable` for text that is too long (over 4 MiB), no UTF-8, no JSON, nested too deep, with a key given
     twice or a number that is not finite; then as `read`, which refuses what is no object.
     """
     if len(content) > LARGEST_FILE_BYTES:
-        raise DamagedTable(f"{source}: longer than {LARGEST_FILE_BYTES} bytes, which no {noun} is.")
+        raise DamagedTable(f"{source}: longer than {LARGEST_FILE_BYTES} bytes, which no table is.")
     try:
         document = json.loads(
             content.decode("utf-8"),
@@ -34,7 +34,7 @@ def read_json_text(
         )
         return document, read(document, source)
     except RecursionError as fault:
-        raise DamagedTable(f"{source}: nested too deep, which no {noun} is; export it again.") from fault
+        raise DamagedTable(f"{source}: nested too deep, which no table is; export it again.") from fault
     except (UnicodeDecodeError, json.JSONDecodeError, _Unacceptable) as fault:
         raise DamagedTable(f"{source}: not a complete JSON text ({fault}); export the table again.") from fault
 
@@ -54,15 +54,31 @@ def compact(value: object) -> str:
 
 
 def laid_out(document: dict[str, object]) -> bytes:
-    """`document` as tables are exported, UTF-8: a key a line, an object of an array of objects a line."""
-    members = [f" {compact(key)}: {_member(value)}" for key, value in document.items()]
-    return ("{\n" + ",\n".join(members) + "\n}\n").encode("utf-8")
+    """`document` as tables are exported, UTF-8: a key a line, and what is wider than `WIDTH` an entry a line."""
+    return (_members(document, "") + "\n").encode("utf-8")
 
 
-def _member(value: object) -> str:
-    if isinstance(value, list) and value and isinstance(value[0], dict):
-        return "[\n" + ",\n".join(f"  {compact(item)}" for item in value) + "\n ]"
-    return compact(value)
+def _laid_out(value: object, indent: str, before: int) -> str:
+    """`value`, which begins `before` letters behind the indent: on one line, or an entry a line."""
+    line = compact(value)
+    if len(indent) + before + len(line) <= WIDTH:
+        return line
+    if isinstance(value, dict):
+        return _members(value, indent)
+    if isinstance(value, list) and any(isinstance(item, dict | list) for item in value):
+        deeper = indent + " "
+        return "[\n" + ",\n".join(deeper + _laid_out(item, deeper, 0) for item in value) + f"\n{indent}]"
+    return line
+
+
+def _members(members: dict[str, object], indent: str) -> str:
+    deeper = indent + " "
+    keys = {f"{compact(key)}: ": value for key, value in members.items()}
+    return (
+        "{\n"
+        + ",\n".join(f"{deeper}{key}{_laid_out(value, deeper, len(key))}" for key, value in keys.items())
+        + f"\n{indent}}}"
+    )
 
 
 class _Unacceptable(Exception):

@@ -15,8 +15,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tuning_tables.book_layout import Columns, Layout
+from tuning_tables.book_layout import Layout
 from tuning_tables.canonical import canonical_json
+from tuning_tables.declared.columns import Columns
 
 
 def payload_sha256(attributes: Mapping[str, str | int], arrays: Columns, layout: Layout) -> str:

@@ -10,6 +10,8 @@ import re
 from itertools import pairwise
 from typing import Final
 
+import numpy as np
+
 from tuning_tables.errors import InvalidTable
 
 UTC_INSTANT: Final = r"^[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}(\.[0-9]{1,9})?Z$"
@@ -59,6 +61,16 @@ def require_count(value: object, key: str, smallest: int, largest: int = LARGEST
     """`value` is a Python int (no bool) and smallest <= value <= largest."""
     if not isinstance(value, int) or isinstance(value, bool) or not smallest <= value <= largest:
         raise InvalidTable(f"{key} is {value!r}, but it must be a whole number in [{smallest}, {largest}].")
+
+
+def require_float32(value: float, key: str) -> None:
+    """`value`, which is finite, is a float32 number."""
+    with np.errstate(over="ignore"):
+        nearest = float(np.float32(value))
+    if nearest != value:
+        raise InvalidTable(
+            f"{key} is {value!r}, which float32 cannot hold (nearest: {nearest!r}); round it with round_coefficients."
+        )
 
 
 def require_tuple(value: object, key: str, length: int | None = None) -> None:

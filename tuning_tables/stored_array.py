@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.book_layout import Column
+from tuning_tables.declared.columns import Column
 from tuning_tables.errors import DamagedTable
 
 AXIS_DTYPE: Final = np.dtype("<i4")

@@ -4,52 +4,35 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Final
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.approach import Approach, entrance_stage
 from tuning_tables.decisions import Decisions, farthest
+from tuning_tables.declared.members import Several, require_declared
+from tuning_tables.declared.numbers import Count, Number
+from tuning_tables.declared.texts import Word
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.held_table import held_table
 from tuning_tables.line_order import LARGEST_FLOAT32
 from tuning_tables.programs.line_table import LineTable
-from tuning_tables.provenance import CutId, Generator, RetarderId
-from tuning_tables.requirement import (
-    UTC_INSTANT,
-    require_count,
-    require_kind,
-    require_match,
-    require_positive,
-    require_text,
-    require_tuple,
-)
-from tuning_tables.stage import SIDES, Stage
+from tuning_tables.provenance import CREATED, TABLE_NAME, CutId, Generator, RetarderId
+from tuning_tables.requirement import require_count
+from tuning_tables.stage import HIGHEST_DEGREE, MOST_STAGES, SIDES, Stage
 from tuning_tables.surface_order import NO_PRESSURE, range_above, require_stage
-
-MOST_STAGES: Final = 32
-HIGHEST_DEGREE: Final = 9
 
 
 @dataclass(frozen=True)
 class ControllerTable:
     """A complete, checked table; it cannot be built otherwise, and nothing in it can be changed.
 
-    id, created       name of the table; UTC instant "2026-11-20T22:46:00Z", given by the caller
-    generator, retarder, cut   what made it and what it is for
-    target_speed_m_s  exit speed the table aims at, > 0
-    degree            of all lines, 0..9
-    stages            k = 0..K in order, 1 <= K <= 31, pressures rising, degree+1 coefficients a line; no `lower` at
-                      stage 0, no `upper` at stage K; no `upper` at stage k says that stage k+1 must not be entered
-    valid             path and speed range of the lines
-    predicted         figures of the solver; `validated` those of a closed loop, None before it was run
-    estimator         with it the lines are for the estimated speed: see `rule.speed_for`; None: for the measured one
-    approach          the regulator acts from before the entrance, at s = -approach.length_m, where the path range
-                      begins; it ends behind the entrance, and an estimator's breaks begin no later. None: from s = 0
-    decisions         at rest or at any time; at any time all lines of the table have a slope, or none has
+    Stages are numbered in order, pressures rise, and every line has degree + 1 coefficients; there is no `lower` at
+    stage 0 and no `upper` at stage K. With an approach the path range begins at s = -approach.length_m and ends behind
+    the entrance, and the breaks of an estimator begin no later. At any time all lines have a slope, or none has.
 
     Derived from these, as arrays for `rule.decide` (read-only; line 0 is `lower`, line 1 is `upper`):
 
@@ -67,20 +50,22 @@ class ControllerTable:
     Raises `InvalidTable`.
     """
 
-    id: str
-    created: str
+    id: Annotated[str, TABLE_NAME]
+    created: Annotated[str, CREATED]
     generator: Generator
     retarder: RetarderId
     cut: CutId
-    target_speed_m_s: float
-    degree: int
-    stages: tuple[Stage, ...]
+    target_speed_m_s: Annotated[float, Number("exit speed that the table aims at", is_positive=True)]
+    decisions: Annotated[
+        Decisions, Word("at rest: only when no change of stage is under way; at any time: at every sample", Decisions)
+    ] = field(default=Decisions.AT_REST, kw_only=True)
+    approach: Approach | None = field(default=None, kw_only=True)
+    estimator: Estimator | None = field(default=None, kw_only=True)
+    degree: Annotated[int, Count("of all lines", 0, HIGHEST_DEGREE)]
+    stages: Annotated[tuple[Stage, ...], Several("stages", "stage", 2, MOST_STAGES)]
     valid: ValidRange
     predicted: Predicted
     validated: Validated | None = None
-    estimator: Estimator | None = None
-    approach: Approach | None = None
-    decisions: Decisions = Decisions.AT_REST
     coefficients: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
     has_line: npt.NDArray[np.bool_] = field(init=False, repr=False, compare=False)
     valid_range: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
@@ -131,29 +116,12 @@ class ControllerTable:
         return replace(self, validated=validated)
 
     def _require_fields(self) -> None:
-        require_text(self.id, "id")
-        require_match(self.created, "created", UTC_INSTANT, "2026-11-20T22:46:00Z")
-        require_kind(self.generator, "generator", Generator)
-        require_kind(self.retarder, "retarder", RetarderId)
-        require_kind(self.cut, "cut", CutId)
-        require_positive(self.target_speed_m_s, "target_speed_m_s")
-        require_kind(self.decisions, "decisions", Decisions)
-        require_count(self.degree, "polynomial.degree", 0, HIGHEST_DEGREE)
-        require_kind(self.valid, "valid", ValidRange)
-        require_kind(self.predicted, "predicted", Predicted)
-        if self.validated is not None:
-            require_kind(self.validated, "validated", Validated)
-        if self.estimator is not None:
-            require_kind(self.estimator, "estimator", Estimator)
-        elif self.predicted.passes is not None:
+        require_declared(self)
+        if self.estimator is None and self.predicted.passes is not None:
             raise InvalidTable("predicted.passes is given, but without an estimator the prediction is exact.")
 
     def _require_stages(self) -> None:
-        require_tuple(self.stages, "stages")
-        if not 2 <= len(self.stages) <= MOST_STAGES:
-            raise InvalidTable(f"stages has {len(self.stages)} entries, but 2 to {MOST_STAGES} are allowed.")
         for index, stage in enumerate(self.stages):
-            require_kind(stage, f"stages[{index}]", Stage)
             if stage.k != index:
                 raise InvalidTable(f"stages[{index}].k is {stage.k}, but stages must be numbered 0, 1, 2, ...")
         for below, above in pairwise(self.stages):
@@ -170,7 +138,6 @@ class ControllerTable:
     def _require_approach(self) -> None:
         if self.approach is None:
             return
-        require_kind(self.approach, "approach", Approach)
         require_count(self.approach.entrance_stage, "approach.entrance_stage", 0, len(self.stages) - 1)
         begin_m, end_m = -self.approach.length_m, self.valid.s_m[1]
         if not (self.valid.s_m[0] == begin_m and end_m > 0.0):

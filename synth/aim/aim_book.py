@@ -23,8 +23,6 @@ from tuning_tables.aim import (
     AimAxes,
     AimCategory,
     AimTable,
-    CategoryAlone,
-    Knowledge,
     MeasuredResistance,
     ParkPosition,
     Reported,
@@ -103,9 +101,9 @@ def order_of(config: ResolvedAim, member: WeightCategory, position: PositionMode
 def table_of(config: ResolvedAim, speeds: AimedSpeeds, name: str, generator: Generator, created: str) -> AimTable:
     """The speeds as a controller loads them. Gaps are told of a whole cut."""
     order, stretch = speeds.order, config.scene.stretch
-    knowledge: Knowledge = CategoryAlone()
+    measured = None
     if name == "measured":
-        knowledge = MeasuredResistance(stretch.from_m, stretch.to_m, config.aim.speed_std_m_s)
+        measured = MeasuredResistance(stretch.from_m, stretch.to_m, config.aim.speed_std_m_s)
     cars = np.array(order.cars)
     per_cut = cars.reshape(-1, *(1,) * (speeds.speed_m_s.ndim - 1))
     return AimTable(
@@ -115,7 +113,7 @@ def table_of(config: ResolvedAim, speeds: AimedSpeeds, name: str, generator: Gen
         position=ParkPosition(config.position_name, config.scene.exit_m),
         category=AimCategory(order.category.number, order.category.name),
         required=Required(order.requirement.p_overspeed, config.scene.coupling_speed_m_s),
-        knowledge=knowledge,
+        measured=measured,
         axes=AimAxes(cars, np.array(order.free_distances_m), speeds.readings),
         exit_speed_m_s=np.round(speeds.speed_m_s, 3),
         bounds_m_s=order.requirement.bounds_m_s,

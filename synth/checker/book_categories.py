@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from synth.checker.passages.reading import PassageTable
 from synth.checker.table_reading import Table
 
 
@@ -14,10 +15,10 @@ def without_number(tables: Sequence[Table]) -> Iterator[tuple[str, str]]:
             yield table.id, f"its category {table.category} has no number, so it makes no controller code"
 
 
-def contradictions(tables: Sequence[Table]) -> Iterator[tuple[str, str]]:
+def contradictions(tables: Sequence[Table | PassageTable]) -> Iterator[tuple[str, str]]:
     """(id, sentence) where a name has two numbers, or a number two names."""
-    names: dict[str, Table] = {}
-    numbers: dict[int, Table] = {}
+    names: dict[str, Table | PassageTable] = {}
+    numbers: dict[int, Table | PassageTable] = {}
     for table in tables:
         first = names.setdefault(table.category, table)
         if first.category_number != table.category_number:

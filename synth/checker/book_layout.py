@@ -3,91 +3,95 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Any, Final
 
-from synth.checker.document_shape import ESTIMATOR_COUNTS, ESTIMATOR_NUMBERS, ESTIMATOR_ROWS, SLOPES
+from synth.checker.document_shape import COUNT, NUMBER, OneOf, OrNull, Pair, Row, Single
 from synth.checker.finding import DamagedError, shown
 
 CHECKSUM_BYTES: Final = 4
 """That fletcher32 adds to a chunk."""
+HEAD: Final = frozenset({"format", "version", "kind", "crc32"})
+"""Of a document, in no dataset: attributes of the book tell it."""
+UNITS: Final = (
+    ("_m2_s2_per_kpa", "m2/s2 per kPa"), ("_m_s_per_kpa", "m/s per kPa"), ("_m2_s2", "m2/s2"), ("_m_s2", "m/s2"),
+    ("_m_s", "m/s"), ("_kpa", "kPa"), ("_m", "m"), ("_s", "s"), ("_t", "t"),
+)  # fmt: skip
+"""What a name ends with, and its unit: the first that fits."""
+SWITCHING: Final = "switching_m_s"
+"""Whose null is an infinity in books and CSV."""
+LINE_UNIT: Final = "m/s per m^power"
 
 
 @dataclass(frozen=True)
 class Stored:
-    """A dataset: its type in numpy's letters ("|S" for text of any length), its axes, its unit."""
+    """A dataset: its type in numpy's letters ("|S" for text of any length), its axes, its unit, where it comes from.
+
+    `keys`: the keys of the document on the way to it; "*" for every entry of an array, "#" for how many there are.
+    """
 
     dtype: str
     axes: tuple[str, ...]
     unit: str
+    keys: tuple[str, ...]
+
+    @property
+    def filler(self) -> float:
+        """What fills gaps."""
+        return math.nan if self.dtype in ("<f4", "<f8") else 0
 
 
-TABLE: Final = ("table",)
-TEXT: Final = Stored("|S", TABLE, "1")
-DATASETS: Final[Mapping[str, Stored]] = {
-    **dict.fromkeys(("id", "created", "generator_name", "generator_version", "config_sha256"), TEXT),
-    **dict.fromkeys(("retarder", "category"), TEXT),
-    **dict.fromkeys(("degree", "n_stages"), Stored("<i4", TABLE, "1")),
-    **dict.fromkeys(("target_speed_m_s", "predicted_rms_m_s", "predicted_bias_m_s"), Stored("<f8", TABLE, "m/s")),
-    **dict.fromkeys(("predicted_p_overspeed", "predicted_switchings", "predicted_p_stall"), Stored("<f8", TABLE, "1")),
-    "mass_t": Stored("<f8", TABLE, "t"),
-    "exit_m": Stored("<f8", TABLE, "m"),
-    "dead_band_kpa": Stored("<f8", TABLE, "kPa"),
-    "zones_m": Stored("<f8", ("table", "zone", "end"), "m"),
-    "axle_offsets_m": Stored("<f8", ("table", "axle"), "m"),
-    "pressure_kpa": Stored("<f8", ("table", "stage"), "kPa"),
-    "coefficients": Stored("<f4", ("table", "stage", "line", "power"), "m/s per m^power"),
-    "has_line": Stored("|u1", ("table", "stage", "line"), "1"),
-    "valid_s_m": Stored("<f8", ("table", "end"), "m"),
-    "valid_v_m_s": Stored("<f8", ("table", "end"), "m/s"),
-    "validated_passes": Stored("<i8", TABLE, "1"),
-    "validated_rms_m_s": Stored("<f8", TABLE, "m/s"),
-    "validated_rms_ci95_m_s": Stored("<f8", ("table", "end"), "m/s"),
-}
-WITH_ESTIMATORS: Final[Mapping[str, Stored]] = {
-    **DATASETS,
-    "predicted_passes": Stored("<i8", TABLE, "1"),
-    "estimator_breaks": Stored("<i4", TABLE, "1"),
-    **dict.fromkeys(("estimator_speed_noise_m_s", "estimator_lost_speed_std_m_s"), Stored("<f8", TABLE, "m/s")),
-    **dict.fromkeys(("estimator_friction_cv", "estimator_path_std"), Stored("<f8", TABLE, "1")),
-    "estimator_unlikely_deviation": Stored("<f8", TABLE, "1"),
-    "estimator_resistance_std_m_s2": Stored("<f8", TABLE, "m/s2"),
-    **dict.fromkeys(("estimator_frozen_readings", "estimator_doubted_readings"), Stored("<i4", TABLE, "1")),
-    "estimator_correlation_length_m": Stored("<f8", TABLE, "m"),
-    "estimator_touch_pressure_kpa": Stored("<f8", TABLE, "kPa"),
-    "estimator_s_m": Stored("<f8", ("table", "break"), "m"),
-    "estimator_drive_m2_s2": Stored("<f8", ("table", "break"), "m2/s2"),
-    "estimator_brake_m2_s2_per_kpa": Stored("<f8", ("table", "break"), "m2/s2 per kPa"),
-}
-APPROACH: Final[Mapping[str, Stored]] = {
-    "approach_length_m": Stored("<f8", TABLE, "m"),
-    "approach_entrance_stage": Stored("<i4", TABLE, "1"),
-}
-AT_ANY_TIME: Final[Mapping[str, Stored]] = {
-    **dict.fromkeys(("at_any_time", "has_gauge"), Stored("|u1", TABLE, "1")),
-    "slopes": Stored("<f4", ("table", "stage", "line"), "m/s per kPa"),
-}
-BEYOND_FIRST: Final[Mapping[int, Mapping[str, Stored]]] = {
-    1: {},
-    2: {},
-    3: APPROACH,
-    5: {**APPROACH, **AT_ANY_TIME},
-}
-"""By schema version, what a book holds beside `DATASETS`: 2 has estimators, and from 3 on they may be there or not."""
-FILLED_UP_WITH_0: Final = frozenset({"has_line", *(f"estimator_{name}" for name in ESTIMATOR_COUNTS)})
-"""Of the arrays that can be shorter than those of the book; the others are filled up with NaN."""
-NUMBER: Final = "category_number"
-"""In books whose tables state it, of any version; 0: not stated."""
+def datasets_of(shape: Mapping[str, Any], names: Set[str]) -> dict[str, Stored]:
+    """The datasets of a book of tables of a shape that has datasets of these `names`.
+
+    Of a section that may be null there are some only if any table has it.
+    """
+    members = {key: form for key, form in shape.items() if key not in HEAD}
+    return dict(_datasets(members, "", ("table",), (), names))
 
 
-def datasets_of(version: int, names: Set[str]) -> Mapping[str, Stored]:
-    """The datasets of a book of a schema version with datasets of these `names`; `DamagedError` for another version."""
-    if version not in BEYOND_FIRST:
-        raise DamagedError(f"its schema_version is {shown(version)}; this checker knows only the versions 1, 2, 3, 5")
-    estimating = version == 2 or (version > 2 and "estimator_breaks" in names)
-    datasets = {**(WITH_ESTIMATORS if estimating else DATASETS), **BEYOND_FIRST[version]}
-    return {**datasets, NUMBER: Stored("<i4", TABLE, "1")} if NUMBER in names else datasets
+def _datasets(
+    members: Mapping[str, Any], prefix: str, axes: tuple[str, ...], keys: tuple[str, ...], names: Set[str]
+) -> list[tuple[str, Stored]]:
+    found: list[tuple[str, Stored]] = []
+    for key, form in members.items():
+        name, way = prefix + key, (*keys, key)
+        inner = form.form if isinstance(form, OrNull | Row) else form
+        if not isinstance(inner, Mapping):
+            dtype, further = type_of(form)
+            found.append((name, Stored(dtype, (*axes, *further), unit_of(key, dtype), way)))
+        elif isinstance(form, Row):
+            found.append((name, Stored("<i4", axes, "1", (*way, "#"))))
+            found += _datasets(inner, f"{form.axis}_", (*axes, form.axis), (*way, "*"), names)
+        else:
+            if isinstance(form, OrNull):
+                found.append((name, Stored("<i4", axes, "1", (*way, "#"))))
+            if not isinstance(form, OrNull) or any(each.startswith(f"{name}_") for each in names):
+                found += _datasets(inner, f"{name}_", axes, way, names)
+    return found
+
+
+def type_of(form: Any) -> tuple[str, tuple[str, ...]]:
+    """The type in a book of a text, a number or a row of them, and its own axes."""
+    match form:
+        case OrNull():
+            return type_of(form.form)
+        case Pair():
+            return "<f8", ("end",)
+        case Single():
+            return "<f4", ()
+        case Row():
+            dtype, axes = type_of(form.form)
+            return "<f4" if form.single else dtype, (form.axis, *axes)
+    return {NUMBER: "<f8", COUNT: "<i8"}.get("" if isinstance(form, OneOf) else form, "|S"), ()
+
+
+def unit_of(key: str, dtype: str) -> str:
+    """The unit of the dataset of the member `key`."""
+    if key in ("lower", "upper"):
+        return LINE_UNIT
+    return "1" if dtype == "|S" else next((unit for end, unit in UNITS if key.endswith(end)), "1")
 
 
 def axes_of(datasets: Mapping[str, Stored]) -> frozenset[str]:
@@ -114,7 +118,7 @@ def require_axes(book: Any, values: Mapping[str, Any], datasets: Mapping[str, St
     """Raise `DamagedError` unless every axis has one length, numbered from 0, in all arrays `values`."""
     lengths: dict[str, int] = {}
     for name, stored in datasets.items():
-        if stored == TEXT and values[name].dtype.itemsize > max(map(len, values[name].tolist()), default=0):
+        if stored.dtype == "|S" and values[name].dtype.itemsize > max(1, *map(len, values[name].tolist())):
             raise DamagedError(f"{name} has room for longer texts than any of its own")
         for axis, length in zip(stored.axes, values[name].shape, strict=True):
             if lengths.setdefault(axis, length) != length or length == 0:
@@ -126,47 +130,46 @@ def require_axes(book: Any, values: Mapping[str, Any], datasets: Mapping[str, St
             raise DamagedError(f"{axis} does not number {length} entries from 0")
 
 
-def require_filled_up(columns: Mapping[str, list[Any]], documents: list[dict[str, Any]]) -> None:
+def require_filled_up(
+    columns: Mapping[str, list[Any]], datasets: Mapping[str, Stored], documents: Sequence[Mapping[str, Any]]
+) -> None:
     """Raise `DamagedError` unless NaN or 0 alone stands wherever a table is shorter than the arrays of the book.
 
-    Also where the arrays are longer than the longest table, or texts wider than the widest.
+    Also where the arrays are longer than the longest table, or there is nothing but what fills gaps.
     """
-    rows = [short_arrays(document) for document in documents]
-    for name in rows[0].keys() & columns.keys():
-        filler: float = 0 if name in FILLED_UP_WITH_0 else math.nan
-        found = columns[name]
+    for name, stored in datasets.items():
+        if stored.dtype == "|S":
+            continue
+        rows = [cells_at(document, stored.keys) for document in documents]
+        if stored.keys[-1] == SWITCHING:
+            rows = [[with_infinities(speeds) for speeds in passages] for passages in rows]
+        lengths = depth(rows)[: len(stored.axes) - 1]
         # As text, in which two NaN are alike and the zeros are not.
-        if any(repr(padded(row[name], cell, filler)) != repr(cell) for row, cell in zip(rows, found, strict=True)):
-            raise DamagedError(f"{name} holds values beside those of the tables")
-        if depth([row[name] for row in rows]) != depth(found):
-            raise DamagedError(f"{name} is longer than its longest table")
+        if repr(padded(rows, [len(rows), *lengths], stored.filler)) != repr(columns[name]):
+            raise DamagedError(f"{name} holds values beside those of the tables, or is longer than the longest table")
+    for name, stored in datasets.items():
+        if stored.keys[-1] == "#" and not any(columns[name]) and any(each.startswith(f"{name}_") for each in datasets):
+            raise DamagedError(f"it holds columns of {name}, but none of its tables has one")
 
 
-def short_arrays(document: Mapping[str, Any]) -> dict[str, Any]:
-    """The arrays of one table that can be shorter than those of the book, by dataset."""
-    stages, validated, estimator = document["stages"], document["validated"], document.get("estimator", {})
-    lines = [(stage["lower"], stage["upper"]) for stage in stages]
-    return {
-        "zones_m": document["retarder"]["zones_m"],
-        "axle_offsets_m": document["cut"]["axle_offsets_m"],
-        "pressure_kpa": [stage["pressure_kpa"] for stage in stages],
-        "has_line": [[int(line is not None) for line in both] for both in lines],
-        "coefficients": [[line or [] for line in both] for both in lines],
-        "slopes": [[0.0 if stage.get(key) is None else stage[key] for key in SLOPES] for stage in stages],
-        "approach_length_m": document.get("approach", {}).get("length_m"),
-        "validated_rms_m_s": validated["rms_m_s"] if validated else None,
-        "validated_rms_ci95_m_s": validated["rms_ci95_m_s"] if validated else [None, None],
-        **{f"estimator_{name}": estimator.get(name) for name in (*ESTIMATOR_NUMBERS, *ESTIMATOR_COUNTS)},
-        **{f"estimator_{name}": estimator.get(name, []) for name in ESTIMATOR_ROWS},
-    }
+def cells_at(value: Any, keys: Sequence[str]) -> Any:
+    """What stands in a document behind `keys`; None where a section on the way is null."""
+    if not keys:
+        return value
+    first, rest = keys[0], keys[1:]
+    if first == "#":
+        return len(value) if isinstance(value, list) else int(value is not None)
+    if first == "*":
+        return [cells_at(each, rest) for each in value]
+    return None if value is None else cells_at(value[first], rest)
 
 
-def padded(values: Any, cell: Any, filler: float) -> Any:
-    """`values` filled up with `filler` to the lengths of `cell`."""
-    if not isinstance(cell, list):
+def padded(values: Any, lengths: Sequence[int], filler: float) -> Any:
+    """`values` filled up with `filler` to these lengths."""
+    if not lengths:
         return filler if values is None else values
-    below = [*(values or []), *[None] * (len(cell) - len(values or []))]
-    return [padded(value, each, filler) for value, each in zip(below, cell, strict=False)]
+    below = [*(values or []), *[None] * (lengths[0] - len(values or []))]
+    return [padded(value, lengths[1:], filler) for value in below]
 
 
 def depth(values: Any) -> list[int]:
@@ -175,4 +178,18 @@ def depth(values: Any) -> list[int]:
         return []
     below = [value for value in values if isinstance(value, list)]
     longest = [depth(value) for value in below]
-    return [max((len(value) for value in below), default=0), *map(max, zip(*longest, strict=False))]
+    ends = [max(each) for each in zip_longest(*longest)]
+    return [max((len(value) for value in below), default=0), *ends]
+
+
+def with_infinities(rows: Sequence[Sequence[float | None]]) -> list[list[float]]:
+    """The switching speeds of a passage: null is -inf below the stage in force, inf from it on."""
+    return [
+        [(-math.inf if j < k else math.inf) if speed is None else speed for j, speed in enumerate(row)]
+        for k, row in enumerate(rows)
+    ]
+
+
+def zip_longest(*rows: Sequence[int]) -> list[list[int]]:
+    """The entries of all rows that have one, place by place."""
+    return [[row[place] for row in rows if len(row) > place] for place in range(max(map(len, rows), default=0))]

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from synth.checker.book_layout import (
-    NUMBER,
+    HEAD,
     axes_of,
     datasets_of,
     require_axes,
@@ -18,30 +18,25 @@ from synth.checker.book_layout import (
     require_stored,
 )
 from synth.checker.canonical import canonical_form
-from synth.checker.document_shape import (
-    ESTIMATOR_COUNTS,
-    ESTIMATOR_NUMBERS,
-    ESTIMATOR_ROWS,
-    GAUGE,
-    NO_GAUGE,
-    SLOPES,
-    TEXT,
-    is_a,
-)
+from synth.checker.document_shape import TEXT, OneOf, OrNull, Pair, Row, Single, is_a
 from synth.checker.finding import DamagedError, shown
 from synth.checker.source_file import LARGEST_BYTES
 
 SIGNATURE: Final = b"\x89HDF\r\n\x1a\n"
 SEAL: Final = b"\n# sealed, sha256 of all before this line: "
-NUMBERED: Final = frozenset({"schema_version", "complete"})
-ATTRIBUTES: Final = NUMBERED | {"format", "tool_version", "config_sha256", "payload_sha256"}
+NUMBERED: Final = frozenset({"version", "complete"})
+ATTRIBUTES: Final = NUMBERED | {"format", "kind", "tool_version", "config_sha256", "payload_sha256"}
 SHA256: Final = re.compile("[0-9a-f]{64}")
 
-Row = Mapping[str, Any]
+Shape = Mapping[str, Any]
+Cells = Mapping[str, Any]
 
 
-def read_documents(content: bytes) -> list[dict[str, Any]]:
-    """The documents of the tables in a book, less their checksums, in their order; `DamagedError` otherwise."""
+def read_documents(content: bytes, shapes: Mapping[str, Shape]) -> list[dict[str, Any]]:
+    """The documents of the tables in a book, less their checksums, in their order; `DamagedError` otherwise.
+
+    `shapes`: what documents must look like, by the kind of tables that the book may hold.
+    """
     body = unsealed(content)
     try:
         import h5py
@@ -49,11 +44,7 @@ def read_documents(content: bytes) -> list[dict[str, Any]]:
         raise DamagedError("it is an HDF5 book, which cannot be checked without h5py; install h5py") from None
     try:
         with h5py.File(io.BytesIO(body), "r") as book:
-            columns = checked_columns(book)
-            rows = range(len(columns["id"]))
-            documents = [document_of({name: column[row] for name, column in columns.items()}) for row in rows]
-            require_filled_up(columns, documents)
-            return documents
+            return checked_documents(book, shapes)
     except DamagedError:
         raise
     except Exception as fault:  # h5py tells what it finds wrong in a dozen types
@@ -70,20 +61,23 @@ def unsealed(content: bytes) -> bytes:
     return body
 
 
-def checked_columns(book: Any) -> dict[str, list[Any]]:
-    """All columns as lists, once attributes, names and `payload_sha256` are right."""
+def checked_documents(book: Any, shapes: Mapping[str, Shape]) -> list[dict[str, Any]]:
+    """All documents, once attributes, names, `payload_sha256` and what fills gaps are right."""
     attributes = root_attributes(book)
-    version = attributes["schema_version"]
-    names = datasets_of(version, set(book))
-    unlike = set(book) ^ (names.keys() | axes_of(names))
+    kind = attributes["kind"]
+    if attributes["version"] != 1 or kind not in shapes:
+        found = f"version {shown(attributes['version'])} of the kind {shown(kind)}"
+        raise DamagedError(f"it is {found}, but this checker knows only version 1 of {', '.join(shapes)}")
+    datasets = datasets_of(shapes[kind], set(book))
+    unlike = set(book) ^ (datasets.keys() | axes_of(datasets))
     if unlike:
         raise DamagedError(f"the datasets {shown(sorted(unlike))} are missing or unknown")
     stored = attributes.pop("payload_sha256")
     for name in book:
         require_own(book, name)
-    for name in names:
-        require_stored(name, book[name], names[name])
-    values = {name: book[name][()] for name in names}
+    for name in datasets:
+        require_stored(name, book[name], datasets[name])
+    values = {name: book[name][()] for name in datasets}
     described = {
         name: {
             "dtype": array.dtype.str,
@@ -97,16 +91,14 @@ def checked_columns(book: Any) -> dict[str, list[Any]]:
     payload = canonical_form({"attributes": attributes, "datasets": described})
     if stored != hashlib.sha256(payload.encode("utf-8")).hexdigest():
         raise DamagedError("its payload_sha256 does not fit its content")
-    if NUMBER in values and not values[NUMBER].any():
-        raise DamagedError(f"it holds {NUMBER}, but none of its tables states one")
-    require_axes(book, values, names)
-    if "estimator_breaks" in values and not values["estimator_breaks"].any():
-        raise DamagedError("it holds estimators, but none of its tables has one")
-    if version == 3 and not (values["approach_entrance_stage"] >= 0).any():
-        raise DamagedError("its schema_version is 3, but none of its tables has an approach")
-    if version == 5 and not values["at_any_time"].any():
-        raise DamagedError("its schema_version is 5, but none of its tables decides at any time")
-    return {name: array.tolist() for name, array in values.items()}
+    require_axes(book, values, datasets)
+    columns = {name: array.tolist() for name, array in values.items()}
+    members = {key: form for key, form in shapes[kind].items() if key not in HEAD}
+    head = {"format": "retarder-table", "version": 1, "kind": kind}
+    rows = ({name: column[row] for name, column in columns.items()} for row in range(len(columns["id"])))
+    documents = [head | section_of(members, cells, "") for cells in rows]
+    require_filled_up(columns, datasets, documents)
+    return documents
 
 
 def require_own(book: Any, name: str) -> None:
@@ -131,91 +123,53 @@ def root_attributes(book: Any) -> dict[str, Any]:
     return found
 
 
-def document_of(row: Row) -> dict[str, Any]:
-    """The document of one table."""
-    predicted = {name: row[f"predicted_{name}"] for name in ("rms_m_s", "bias_m_s", "p_overspeed", "switchings")}
-    if not math.isnan(row["predicted_p_stall"]):
-        predicted["p_stall"] = row["predicted_p_stall"]
-    if row.get("predicted_passes", 0):
-        predicted["passes"] = row["predicted_passes"]
-    estimator, approach, any_time = estimator_section(row), approach_section(row), any_time_members(row)
-    interval = {"rms_m_s": row["validated_rms_m_s"], "rms_ci95_m_s": row["validated_rms_ci95_m_s"]}
-    return {
-        "format": "retarder-table",
-        "version": 5 if any_time else 3 if approach else 2 if estimator else 1,
-        "id": text(row["id"]),
-        "created": text(row["created"]),
-        "generator": {
-            "name": text(row["generator_name"]),
-            "version": text(row["generator_version"]),
-            "config_sha256": text(row["config_sha256"]),
-        },
-        "retarder": {
-            "name": text(row["retarder"]),
-            "zones_m": [zone for zone in row["zones_m"] if not math.isnan(zone[0])],
-            "exit_m": row["exit_m"],
-            "dead_band_kpa": row["dead_band_kpa"],
-        },
-        "cut": {
-            "category": text(row["category"]),
-            **({NUMBER: row[NUMBER]} if row.get(NUMBER) else {}),
-            "mass_t": row["mass_t"],
-            "axle_offsets_m": [x for x in row["axle_offsets_m"] if not math.isnan(x)],
-        },
-        "target_speed_m_s": row["target_speed_m_s"],
-        "polynomial": {"variable": "s_m", "degree": row["degree"]},
-        "stages": [stage_of(row, k) for k in range(row["n_stages"])],
-        "valid": {"s_m": row["valid_s_m"], "v_m_s": row["valid_v_m_s"]},
-        "predicted": predicted,
-        "validated": {"passes": row["validated_passes"], **interval} if row["validated_passes"] else None,
-        **({"estimator": estimator} if estimator else {}),
-        **({"approach": approach} if approach else {}),
-        **any_time,
-    }
+def section_of(members: Shape, cells: Cells, prefix: str) -> dict[str, Any]:
+    """The object whose members stand in the cells of one table that begin with `prefix`."""
+    return {key: member_of(form, cells, prefix + key) for key, form in members.items()}
 
 
-def any_time_members(row: Row) -> dict[str, Any]:
-    """What the document of a table says of when it decides, nothing for one at rest; `DamagedError` for odd cells."""
-    any_time, gauge = row.get("at_any_time", 0), row.get("has_gauge", 0)
-    if any_time not in (0, 1) or gauge not in (0, any_time):
-        cells = f"at_any_time {any_time} and has_gauge {gauge}"
-        raise DamagedError(f"{text(row['id'])!r} has {cells}, but each is 0 or 1, and a gauge is for any time only")
-    return {"decisions": "at_any_time", "pressure": GAUGE if gauge else NO_GAUGE} if any_time else {}
+def member_of(form: Any, cells: Cells, name: str) -> Any:
+    """The member in the cells called `name`; `DamagedError` for cells that make none."""
+    inner = form.form if isinstance(form, OrNull | Row) else form
+    if not isinstance(inner, Mapping):
+        return leaf_of(form, cells[name])
+    if isinstance(form, Row):
+        below = {key: cell for key, cell in cells.items() if key.startswith(f"{form.axis}_")}
+        room, count = min(map(len, below.values())), cells[name]
+        if not 0 <= count <= room:
+            raise DamagedError(f"it says that there are {count} {name}, but it has room for {room}")
+        return [
+            section_of(inner, {key: cell[index] for key, cell in below.items()}, f"{form.axis}_")
+            for index in range(count)
+        ]
+    if isinstance(form, OrNull):
+        if cells[name] not in (0, 1):
+            raise DamagedError(f"{name} is {shown(cells[name])}, but it must be 0 or 1")
+        if cells[name] == 0:
+            return None
+    return section_of(inner, cells, f"{name}_")
 
 
-def approach_section(row: Row) -> dict[str, Any] | None:
-    """The approach of one table, None where it has none; `DamagedError` where its two cells do not say the same."""
-    length_m, stage = row.get("approach_length_m", math.nan), row.get("approach_entrance_stage", -1)
-    if math.isnan(length_m) != (stage == -1):
-        raise DamagedError(f"{text(row['id'])!r} has an approach of {length_m} m and the entrance stage {stage}")
-    return None if stage == -1 else {"length_m": length_m, "entrance_stage": stage, "interlock": "position_clear"}
+def leaf_of(form: Any, cell: Any) -> Any:
+    """A text, a number or a row of numbers, as JSON has it."""
+    match form:
+        case OrNull():
+            return None if is_gap(cell) else leaf_of(form.form, cell)
+        case Row() if isinstance(form.form, OrNull):  # an infinity in a book is null in JSON
+            return [None if math.isinf(each) else each for each in cell if not is_gap(each)]
+        case Row():
+            return [leaf_of(form.form, each) for each in cell if not is_gap(each)]
+        case Pair():
+            return cell
+        case OneOf():
+            return cell.decode("utf-8")
+        case Single():
+            return cell
+    return cell.decode("utf-8") if form == TEXT else cell
 
 
-def estimator_section(row: Row) -> dict[str, Any] | None:
-    """The estimator of one table, None where it has none; `DamagedError` where its rows are not that long."""
-    breaks = row.get("estimator_breaks", 0)
-    numbers = {name: row.get(f"estimator_{name}", math.nan) for name in ESTIMATOR_NUMBERS}
-    counts = {name: row.get(f"estimator_{name}", 0) for name in ESTIMATOR_COUNTS}
-    rows = {name: row.get(f"estimator_{name}", []) for name in ESTIMATOR_ROWS}
-    filled = {breaks if not math.isnan(value) else 0 for value in numbers.values()}
-    filled |= {breaks if value else 0 for value in counts.values()}
-    filled |= {sum(not math.isnan(x) for x in values) for values in rows.values()}
-    if filled != {breaks} or any(math.isnan(x) for values in rows.values() for x in values[:breaks]):
-        raise DamagedError(f"the estimator of {text(row['id'])!r} has {breaks} breaks, but not as many values")
-    return numbers | counts | {name: values[:breaks] for name, values in rows.items()} if breaks else None
-
-
-def stage_of(row: Row, k: int) -> dict[str, Any]:
-    """Stage `k` of one table."""
-    powers = row["degree"] + 1
-    lower, upper = (row["coefficients"][k][line][:powers] if row["has_line"][k][line] == 1 else None for line in (0, 1))
-    stage = {"k": k, "pressure_kpa": row["pressure_kpa"][k], "lower": lower, "upper": upper}
-    if row.get("has_gauge", 0):
-        slopes = zip(SLOPES, (lower, upper), row["slopes"][k], strict=True)
-        stage |= {key: None if line is None else slope for key, line, slope in slopes}
-    return stage
-
-
-def text(value: bytes) -> str:
-    """A cell of text."""
-    return value.decode("utf-8")
+def is_gap(cell: Any) -> bool:
+    """Whether a cell, or all of its numbers, is what fills gaps."""
+    if isinstance(cell, list):
+        return all(map(is_gap, cell))
+    return math.isnan(cell) if isinstance(cell, float) else cell in (0, b"")

@@ -7,8 +7,8 @@ which several are tried. The mean of capped squares is at most the mean square, 
 often, and being bounded it is normal. That a table is *better* than it says may only be luck, and then the spread of
 the sample is too small as well: its relative standard error is applied to the mean square that is claimed.
 
-A prediction that was itself simulated (tables of version 2) is a mean over so many passes, and has the sampling error
-of that: wherever it is compared, with the validated figures or with the coarse ones, both errors count.
+A prediction that was itself simulated (tables with an estimator) is a mean over so many passes, and has the sampling
+error of that: wherever it is compared, with the validated figures or with the coarse ones, both errors count.
 """
 
 from __future__ import annotations

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from synth.checker.book_layout import SWITCHING, with_infinities
 from synth.checker.canonical import canonical_form, crc32
 from synth.checker.finding import DamagedError, shown
 
@@ -58,24 +58,13 @@ def rows_of(value: Any, key: str) -> Iterator[tuple[tuple[str, str], list[Any]]]
         yield ("text", key), [value]
     elif isinstance(value, dict):
         for name, member in value.items():
-            if name in ("lower", "upper") and member is not None:
-                yield (name, str(value["k"])), member
-            elif name == "switching_m_s":
-                yield from switching_rows(member, key.rpartition(".")[2])
-            elif name not in ("lower", "upper"):
-                yield from rows_of(member, f"{key}.{name}".lstrip("."))
+            known = with_infinities(member) if name == SWITCHING else member
+            yield from rows_of(known, f"{key}.{name}".lstrip("."))
     elif isinstance(value, list) and isinstance(value[0], dict | list):
         for index, item in enumerate(value):
             yield from rows_of(item, f"{key}.{index}")
     elif value is not None:
         yield ("number", key), value if isinstance(value, list) else [value]
-
-
-def switching_rows(rows: list[list[float | None]], passage: str) -> Iterator[tuple[tuple[str, str], list[Any]]]:
-    """The rows of one passage: null is −inf below the stage in force, inf from it on."""
-    for k, row in enumerate(rows):
-        speeds = [(-math.inf if j < k else math.inf) if speed is None else speed for j, speed in enumerate(row)]
-        yield ("switching", f"{passage}.{k}"), speeds
 
 
 def same(record: str, cells: tuple[str, ...], values: list[Any]) -> bool:

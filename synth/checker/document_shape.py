@@ -1,4 +1,4 @@
-"""What JSON documents of controller tables must look like, of any version, and the comparison with it."""
+"""What JSON documents of tables must look like, and the comparison with it."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from synth.checker.canonical import canonical_form, crc32, parse_json, without_checksum
 from synth.checker.finding import DamagedError, shown
 
 TEXT, NUMBER, COUNT = "a string", "a number", "a whole number"
@@ -17,6 +18,15 @@ class OrNull:
     """`form`, or null."""
 
     form: Any
+
+
+@dataclass(frozen=True)
+class Row:
+    """An array that is not empty of what `form` is, along an axis of books; `single`: of float32 numbers."""
+
+    axis: str
+    form: Any
+    single: bool = False
 
 
 @dataclass(frozen=True)
@@ -32,98 +42,111 @@ class OneOf:
 
 
 @dataclass(frozen=True)
-class Optional:
-    """A member that may be missing."""
-
-    form: Any
+class Nodes:
+    """An array of numbers or null at the nodes of a table, as many as its axes say: looked at by who knows them."""
 
 
-NUMBERS: Final = [NUMBER]
-STAGE: Final[Mapping[str, Any]] = {
-    "k": COUNT,
-    "pressure_kpa": NUMBER,
-    "lower": OrNull(NUMBERS),
-    "upper": OrNull(NUMBERS),
-}
-PREDICTED: Final[Mapping[str, Any]] = {
-    "rms_m_s": NUMBER,
-    "bias_m_s": NUMBER,
-    "p_overspeed": NUMBER,
-    "switchings": NUMBER,
-    "p_stall": Optional(NUMBER),
-}
-SHAPE: Final[Mapping[str, Any]] = {
-    "format": TEXT,
+@dataclass(frozen=True)
+class Single:
+    """A number that books hold as float32."""
+
+
+ORIGIN: Final[Mapping[str, Any]] = {
+    "format": OneOf(("retarder-table",)),
     "version": COUNT,
+    "kind": TEXT,
     "id": TEXT,
     "created": TEXT,
     "generator": {"name": TEXT, "version": TEXT, "config_sha256": TEXT},
-    "retarder": {"name": TEXT, "zones_m": [Pair()], "exit_m": NUMBER, "dead_band_kpa": NUMBER},
-    "cut": {"category": TEXT, "category_number": Optional(COUNT), "mass_t": NUMBER, "axle_offsets_m": NUMBERS},
-    "target_speed_m_s": NUMBER,
-    "polynomial": {"variable": TEXT, "degree": COUNT},
-    "stages": [STAGE],
-    "valid": {"s_m": Pair(), "v_m_s": Pair()},
-    "predicted": PREDICTED,
-    "validated": OrNull({"passes": COUNT, "rms_m_s": NUMBER, "rms_ci95_m_s": Pair()}),
-    "crc32": TEXT,
 }
-"""Version 1. A dict: exactly these members; a list: an array of what it holds."""
+"""Of tables of all kinds. A mapping: exactly these members."""
+PURPOSE: Final[Mapping[str, Any]] = {
+    "retarder": {
+        "name": TEXT,
+        "zones_m": Row("zone", Pair()),
+        "exit_m": NUMBER,
+        "dead_band_kpa": NUMBER,
+    },
+    "cut": {
+        "category": TEXT,
+        "mass_t": NUMBER,
+        "axle_offsets_m": Row("axle", NUMBER),
+        "category_number": OrNull(COUNT),
+    },
+    "target_speed_m_s": NUMBER,
+}
+FIGURES: Final[Mapping[str, Any]] = {
+    "predicted": {
+        "rms_m_s": NUMBER,
+        "bias_m_s": NUMBER,
+        "p_overspeed": NUMBER,
+        "switchings": NUMBER,
+        "p_stall": OrNull(NUMBER),
+        "passes": OrNull(COUNT),
+    },
+    "validated": OrNull({"passes": COUNT, "rms_m_s": NUMBER, "rms_ci95_m_s": Pair()}),
+}
+APPROACH: Final[Mapping[str, Any]] = {
+    "length_m": NUMBER,
+    "entrance_stage": COUNT,
+    "interlock": OneOf(("position_clear",)),
+}
+CHECKSUM: Final[Mapping[str, Any]] = {"crc32": TEXT}
 
+SLOPES: Final = ("lower_slope_m_s_per_kpa", "upper_slope_m_s_per_kpa")
+"""Of the lower and of the upper line over the pressure."""
 ESTIMATOR_NUMBERS: Final = (
     "speed_noise_m_s", "friction_cv", "resistance_std_m_s2", "path_std", "correlation_length_m", "lost_speed_std_m_s",
     "unlikely_deviation", "touch_pressure_kpa",
 )  # fmt: skip
 ESTIMATOR_COUNTS: Final = ("frozen_readings", "doubted_readings")
 ESTIMATOR_ROWS: Final = ("s_m", "drive_m2_s2", "brake_m2_s2_per_kpa")
-SHAPE_WITH_ESTIMATOR: Final[Mapping[str, Any]] = {
-    **SHAPE,
-    "predicted": {**PREDICTED, "passes": Optional(COUNT)},
-    "estimator": {
-        **dict.fromkeys(ESTIMATOR_NUMBERS, NUMBER),
-        **dict.fromkeys(ESTIMATOR_COUNTS, COUNT),
-        **dict.fromkeys(ESTIMATOR_ROWS, NUMBERS),
-    },
+AT_REST, AT_ANY_TIME = "at_rest", "at_any_time"
+LINES: Final = "lines"
+LINES_SHAPE: Final[Mapping[str, Any]] = {
+    **ORIGIN,
+    **PURPOSE,
+    "degree": COUNT,
+    "stages": Row(
+        "stage",
+        {
+            "k": COUNT,
+            "pressure_kpa": NUMBER,
+            **dict.fromkeys(("lower", "upper"), OrNull(Row("power", NUMBER, single=True))),
+            **dict.fromkeys(SLOPES, OrNull(Single())),
+        },
+    ),
+    "valid": {"s_m": Pair(), "v_m_s": Pair()},
+    **FIGURES,
+    "estimator": OrNull(
+        {
+            **dict.fromkeys(ESTIMATOR_NUMBERS, NUMBER),
+            **dict.fromkeys(ESTIMATOR_COUNTS, COUNT),
+            **dict.fromkeys(ESTIMATOR_ROWS, Row("break", NUMBER)),
+        }
+    ),
+    "approach": OrNull(APPROACH),
+    "decisions": OneOf((AT_REST, AT_ANY_TIME)),
+    **CHECKSUM,
 }
-"""Version 2: its lines are for the speed that the estimator gives."""
-
-APPROACH: Final[Mapping[str, Any]] = {"length_m": NUMBER, "entrance_stage": COUNT, "interlock": TEXT}
-"""Version 3: the regulator acts from before the entrance; with or without an estimator."""
-
-SLOPES: Final = ("lower_slope_m_s_per_kpa", "upper_slope_m_s_per_kpa")
-"""Of the lower and of the upper line over the pressure."""
-GAUGE, NO_GAUGE = "gauge", "none"
-AT_ANY_TIME: Final[Mapping[str, Any]] = {
-    "decisions": OneOf(("at_any_time",)),
-    "pressure": OneOf((GAUGE, NO_GAUGE)),
-    "approach": Optional(APPROACH),
-}
-"""Version 5: it decides at every sample; with or without a gauge, an estimator and an approach."""
-
-KNOWN_VERSIONS: Final = (1, 2, 3, 5)
+"""Of tables with lines."""
 
 
-def shape_of(document: Mapping[str, Any], version: int) -> Mapping[str, Any]:
-    """What a document of a known version must look like: from version 3 on it may have an estimator or none."""
-    estimating = version == 2 or (version > 2 and "estimator" in document)
-    shape = SHAPE_WITH_ESTIMATOR if estimating else SHAPE
-    if version == 3:
-        return {**shape, "approach": APPROACH}
-    if version == 5:
-        sloped = document.get("pressure") == GAUGE
-        stage = {**STAGE, **dict.fromkeys(SLOPES, OrNull(NUMBER))} if sloped else STAGE
-        return {**shape, **AT_ANY_TIME, "stages": [stage]}
-    return shape
-
-
-def require_document(document: Mapping[str, Any]) -> None:
-    """Raise `DamagedError` unless `document`, of a table with lines, is of a known version and looks as that must."""
-    version = document.get("version")
-    if isinstance(version, bool) or not isinstance(version, int) or version not in KNOWN_VERSIONS:
-        raise DamagedError(
-            f"its version is {shown(version)}, but tables with lines are of the versions 1, 2, 3 and 5 only"
-        )
-    require_shape(document, shape_of(document, version), "")
+def checked_document(content: bytes, kind: str, shape: Mapping[str, Any]) -> dict[str, Any]:
+    """The document in a JSON text, of this kind and shape, less its checksum, which was right; else `DamagedError`."""
+    document = parse_json(content)
+    if not isinstance(document, dict) or document.get("format") != "retarder-table":
+        raise DamagedError('it is no controller table: its format is not "retarder-table"')
+    version, found = document.get("version"), document.get("kind")
+    if isinstance(version, bool) or not isinstance(version, int) or version != 1:
+        raise DamagedError(f"its version is {shown(version)}, but this checker knows only version 1")
+    if found != kind:
+        raise DamagedError(f"its kind is {shown(found)}, but it must be {kind}")
+    require_shape(document, shape, "")
+    sum_found = f"{crc32(canonical_form(without_checksum(document)).encode('utf-8')):08x}"
+    if document["crc32"] != sum_found:
+        raise DamagedError(f"its crc32 is {shown(document['crc32'])}, but its content gives {sum_found}")
+    return without_checksum(document)
 
 
 def require_shape(value: Any, form: Any, path: str) -> None:
@@ -138,21 +161,22 @@ def require_shape(value: Any, form: Any, path: str) -> None:
             known = " or ".join(f'"{word}"' for word in form.words)
             refuse_unless(isinstance(value, str) and value in form.words, value, path, known)
         case Pair():
-            require_shape(value, NUMBERS, path)
+            require_shape(value, Row("end", NUMBER), path)
             refuse_unless(len(value) == 2 and value[0] <= value[1], value, path, "two numbers, the smaller one first")
         case Mapping():
             refuse_unless(isinstance(value, dict), value, path, "an object")
-            needed = {key for key, member in form.items() if not isinstance(member, Optional)}
-            wrong = sorted((value.keys() - form.keys()) | (needed - value.keys()))
+            wrong = sorted(value.keys() ^ form.keys())
             refuse_unless(not wrong, wrong, path, "an object without missing or unknown keys such as these")
-            # Words first: they tell what the rest must look like.
-            for key, member in sorted(value.items(), key=lambda each: not isinstance(form[each[0]], OneOf)):
-                of = form[key]
-                require_shape(member, of.form if isinstance(of, Optional) else of, f"{path}.{key}".lstrip("."))
-        case [inner]:
+            for key, member in value.items():
+                require_shape(member, form[key], f"{path}.{key}".lstrip("."))
+        case Row():
             refuse_unless(isinstance(value, list) and len(value) > 0, value, path, "an array that is not empty")
             for index, item in enumerate(value):
-                require_shape(item, inner, f"{path}[{index}]")
+                require_shape(item, form.form, f"{path}[{index}]")
+        case Nodes():
+            refuse_unless(isinstance(value, list), value, path, "an array")
+        case Single():
+            refuse_unless(is_a(NUMBER, value), value, path, NUMBER)
         case _:
             refuse_unless(is_a(form, value), value, path, form)
 

@@ -1,4 +1,4 @@
-"""The estimator of a table of version 2: its data, and what a controller computes with them, in float32.
+"""The estimator of a table: its data, and what a controller computes with them, in float32.
 
 Every sum, product and quotient is rounded to binary32 by storing and loading it. The order of the operations is that of
 docs/table-format.md, "The recursion"; the arithmetic, the search for the break and the handling of readings are this

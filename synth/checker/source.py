@@ -2,23 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Final, TypeAlias, TypeVar
 
-from synth.checker.aim.reading import MARK, Aim, read_aim
+from synth.checker.aim.reading import AIM, Aim, read_aim
 from synth.checker.book_categories import contradictions
 from synth.checker.book_reading import SIGNATURE, read_documents
 from synth.checker.canonical import canonical_form
-from synth.checker.document_shape import require_document
+from synth.checker.document_shape import LINES, LINES_SHAPE, require_shape
 from synth.checker.finding import DamagedError, Finding, Kind, NothingToVerifyError, shown
-from synth.checker.passages.reading import MARK as PASSAGES_MARK
-from synth.checker.passages.reading import PassageTable, read_passage_table
+from synth.checker.passages.reading import (
+    PASSAGES,
+    PASSAGES_SHAPE,
+    PassageTable,
+    passage_table_of,
+    read_passage_table,
+)
 from synth.checker.source_file import content_of
 from synth.checker.table_reading import Table, read_table, table_of
 
 Kept = TypeVar("Kept", Table, Aim, PassageTable)
+Bound: TypeAlias = Table | PassageTable
+SHAPES: Final = {LINES: LINES_SHAPE, PASSAGES: PASSAGES_SHAPE}
+"""Of the tables that books hold."""
+KIND: Final = re.compile(rb'"kind"\s*:\s*"(\w+)"')
+"""No text in a JSON document can hold this: its quotes would be escaped."""
 
 
 @dataclass(frozen=True)
@@ -48,17 +59,17 @@ def read_source(path: Path) -> Source:
         raise NothingToVerifyError(f"{path}: {what}; give a table (.json), a book (.h5) or a directory")
     try:
         content = content_of(path)
-        if MARK.search(content):
-            return Source(path, None, (), False, (str(path),), (), (read_aim(content),))
-        if PASSAGES_MARK.search(content):
-            return Source(path, None, (), False, (str(path),), (), (), (read_passage_table(content),))
         if content.startswith(SIGNATURE) or path.suffix in (".h5", ".hdf5"):
-            tables, is_book = tables_of_book(content), True
-        else:
-            tables, is_book = (read_table(content),), False
+            bound = tables_of_book(content)
+            return Source(path, None, lines_of(bound), True, (str(path),), (), (), points_of(bound))
+        kind = kind_in(content)
+        if kind == AIM:
+            return Source(path, None, (), False, (str(path),), (), (read_aim(content),))
+        if kind == PASSAGES:
+            return Source(path, None, (), False, (str(path),), (), (), (read_passage_table(content),))
+        return Source(path, None, (read_table(content),), False, (str(path),), ())
     except DamagedError as fault:
         return Source(path, None, (), False, (str(path),), (Finding(Kind.DAMAGED, str(path), str(fault)),))
-    return Source(path, None, tables, is_book, (str(path),), ())
 
 
 def read_directory(path: Path) -> Source:
@@ -77,28 +88,41 @@ def read_directory(path: Path) -> Source:
     for file in files:
         try:
             content = content_of(file)
-            if MARK.search(content):
+            kind = kind_in(content)
+            if kind == AIM:
                 findings += added(read_aim(content), aims, named(file, path))
-            elif PASSAGES_MARK.search(content):
+            elif kind == PASSAGES:
                 findings += added(read_passage_table(content), passages, named(file, path))
             else:
                 findings += added(read_table(content), single, named(file, path))
         except DamagedError as fault:
             findings.append(Finding(Kind.DAMAGED, named(file, path), str(fault)))
-    bound: tuple[Table, ...] = ()
+    bound: tuple[Bound, ...] = ()
     if book_file.exists():
         try:
             bound = tables_of_book(content_of(book_file))
         except DamagedError as fault:
             findings.append(Finding(Kind.DAMAGED, "book.h5", str(fault)))
         else:
-            findings += differences(single, bound) if files else []
-    order = [single.get(table.id, table) for table in bound]
-    order += [table for table in single.values() if table.id not in {each.id for each in bound}]
-    findings += [Finding(Kind.DISAGREES, name, sentence) for name, sentence in contradictions(order)]
+            findings += differences({**single, **passages}, bound) if files else []
+    lines, points = in_order(single, lines_of(bound)), in_order(passages, points_of(bound))
+    told = (*contradictions(lines), *contradictions(points))
+    findings += [Finding(Kind.DISAGREES, name, sentence) for name, sentence in told]
     names = [named(file, path) for file in files] + (["book.h5"] if book_file.exists() else [])
-    others = tuple(aims.values()), tuple(passages.values())
-    return Source(path, path, tuple(order), bool(bound), tuple(names), tuple(findings), *others)
+    return Source(path, path, lines, bool(bound), tuple(names), tuple(findings), tuple(aims.values()), points)
+
+
+def in_order(single: Mapping[str, Kept], bound: Sequence[Kept]) -> tuple[Kept, ...]:
+    """The tables in the order of the book, then those that are not in it; as their JSON files say where there are."""
+    known = {table.id for table in bound}
+    ordered = [single.get(table.id, table) for table in bound]
+    return tuple(ordered + [table for name, table in single.items() if name not in known])
+
+
+def kind_in(content: bytes) -> str | None:
+    """The kind of table that a JSON text says it is; None where it says none, or several."""
+    kinds = KIND.findall(content)
+    return kinds[0].decode() if len(kinds) == 1 else None
 
 
 def added(table: Kept, known: dict[str, Kept], file: str) -> list[Finding]:
@@ -113,12 +137,13 @@ def named(file: Path, path: Path) -> str:
     return str(file.relative_to(path))
 
 
-def tables_of_book(content: bytes) -> tuple[Table, ...]:
+def tables_of_book(content: bytes) -> tuple[Bound, ...]:
     """The tables in a book; `DamagedError` for a book without any, with an id twice, or with what is no table."""
-    tables = []
-    for document in read_documents(content):
-        require_document({**document, "crc32": "none"})
-        tables.append(table_of(document))
+    tables: list[Bound] = []
+    for document in read_documents(content, SHAPES):
+        kind = document["kind"]
+        require_shape({**document, "crc32": "none"}, SHAPES[kind], "")
+        tables.append(table_of(document) if kind == LINES else passage_table_of(document))
     ids = [table.id for table in tables]
     if not ids or len(set(ids)) < len(ids):
         raise DamagedError(f"it holds the tables {shown(ids)}, but must hold at least one, and each id once")
@@ -127,7 +152,17 @@ def tables_of_book(content: bytes) -> tuple[Table, ...]:
     return tuple(tables)
 
 
-def differences(single: Mapping[str, Table], bound: tuple[Table, ...]) -> Iterator[Finding]:
+def lines_of(bound: Sequence[Bound]) -> tuple[Table, ...]:
+    """Those of the tables of a book that have lines."""
+    return tuple(table for table in bound if isinstance(table, Table))
+
+
+def points_of(bound: Sequence[Bound]) -> tuple[PassageTable, ...]:
+    """Those of the tables of a book that are for point sensors."""
+    return tuple(table for table in bound if isinstance(table, PassageTable))
+
+
+def differences(single: Mapping[str, Bound], bound: Sequence[Bound]) -> Iterator[Finding]:
     """Where JSON tables and book do not say the same."""
     in_book = {table.id: table for table in bound}
     for name in sorted(single.keys() | in_book.keys()):

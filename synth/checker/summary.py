@@ -10,7 +10,6 @@ from typing import Any, Final
 
 from synth.checker.canonical import canonical_form, parse_json
 from synth.checker.claims import Honesty
-from synth.checker.document_shape import GAUGE, NO_GAUGE
 from synth.checker.finding import DamagedError, shown
 from synth.checker.passages.reading import PassageTable
 from synth.checker.plant import Plant, Reader, UnusableConfigError, config_sha256, plant_of
@@ -76,8 +75,8 @@ class Summary:
         """
         section = self.config.get("regulator")
         regulator = section if isinstance(section, dict) else {}
-        wanted = regulator.get("commands", "at_rest"), regulator.get("pressure", GAUGE)
-        own = "any_time" if table.at_any_time else "at_rest", GAUGE if table.has_gauge else NO_GAUGE
+        wanted = regulator.get("commands", "at_rest"), regulator.get("pressure", "gauge")
+        own = "any_time" if table.at_any_time else "at_rest", "gauge" if table.has_gauge else "none"
         if wanted[0] != own[0]:
             yield f"its configuration asks for commands {shown(wanted[0])}, but it is for commands {shown(own[0])}"
         elif table.at_any_time and wanted[1] != own[1]:

@@ -1,4 +1,4 @@
-"""A controller table read from its JSON document, of any version of the format."""
+"""A table with lines, read from its JSON document."""
 
 from __future__ import annotations
 
@@ -6,11 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from synth.checker.canonical import canonical_form, crc32, parse_json, without_checksum
 from synth.checker.category_number import number_of
-from synth.checker.document_shape import SLOPES, refuse_unless, require_document
+from synth.checker.document_shape import AT_ANY_TIME, LINES, LINES_SHAPE, SLOPES, checked_document, refuse_unless
 from synth.checker.estimator import Estimator, estimator_of
-from synth.checker.finding import DamagedError, shown
 
 Line = tuple[float, ...]
 
@@ -79,24 +77,17 @@ class Table:
 
 def read_table(content: bytes) -> Table:
     """The table in the JSON text `content`; `DamagedError` for whatever is not one, a wrong checksum among it."""
-    document = parse_json(content)
-    if not isinstance(document, dict) or document.get("format") != "retarder-table":
-        raise DamagedError('it is no controller table: its format is not "retarder-table"')
-    require_document(document)
-    sum_found = f"{crc32(canonical_form(without_checksum(document)).encode('utf-8')):08x}"
-    if document["crc32"] != sum_found:
-        raise DamagedError(f"its crc32 is {shown(document['crc32'])}, but its content gives {sum_found}")
-    return table_of(without_checksum(document))
+    return table_of(checked_document(content, LINES, LINES_SHAPE))
 
 
 def table_of(document: Mapping[str, Any]) -> Table:
     """The table in a document of the right shape; `DamagedError` if its parts make no table."""
     retarder, cut, predicted = document["retarder"], document["cut"], document["predicted"]
-    stages, degree = document["stages"], document["polynomial"]["degree"]
-    refuse_unless(document["polynomial"]["variable"] == "s_m", document["polynomial"], "polynomial", "in s_m")
-    refuse_unless(0 <= degree <= 9, degree, "polynomial.degree", "from 0 to 9")
+    stages, degree = document["stages"], document["degree"]
+    refuse_unless(0 <= degree <= 9, degree, "degree", "from 0 to 9")
     refuse_unless(2 <= len(stages) <= 32, len(stages), "the number of stages", "from 2 to 32")
-    refuse_unless(predicted.get("passes", 1) >= 1, predicted, "predicted.passes", "1 or more")
+    passes = predicted["passes"]
+    refuse_unless(passes is None or passes >= 1, passes, "predicted.passes", "1 or more")
     for k, stage in enumerate(stages):
         refuse_unless(stage["k"] == k, stage["k"], f"stages[{k}].k", str(k))
         for line in (stage["lower"], stage["upper"]):
@@ -122,10 +113,10 @@ def table_of(document: Mapping[str, Any]) -> Table:
         path_m=pair(document["valid"]["s_m"]),
         speed_m_s=pair(document["valid"]["v_m_s"]),
         **stated_figures(document),
-        estimator=estimator_of(document["estimator"]) if "estimator" in document else None,
+        estimator=estimator_of(document["estimator"]) if document["estimator"] else None,
         approach_m=approach_m,
         entrance_stage=entrance_stage,
-        at_any_time="decisions" in document,
+        at_any_time=document["decisions"] == AT_ANY_TIME,
         slopes=tuple(slopes_of(stage) for stage in stages),
         document=document,
     )
@@ -139,8 +130,8 @@ def stated_figures(document: Mapping[str, Any]) -> dict[str, Any]:
         "bias_m_s": float(predicted["bias_m_s"]),
         "p_overspeed": float(predicted["p_overspeed"]),
         "switchings": float(predicted["switchings"]),
-        "p_stall": float(predicted["p_stall"]) if "p_stall" in predicted else None,
-        "predicted_passes": predicted.get("passes"),
+        "p_stall": None if predicted["p_stall"] is None else float(predicted["p_stall"]),
+        "predicted_passes": predicted["passes"],
         "passes": validated["passes"] if validated else None,
         "validated_rms_m_s": float(validated["rms_m_s"]) if validated else None,
         "validated_ci95_m_s": pair(validated["rms_ci95_m_s"]) if validated else None,
@@ -150,15 +141,14 @@ def stated_figures(document: Mapping[str, Any]) -> dict[str, Any]:
 def approach_of(document: Mapping[str, Any]) -> tuple[float, int]:
     """Length of the approach and entrance stage; without approach 0 and the highest stage."""
     top = len(document["stages"]) - 1
-    if "approach" not in document:
-        return 0.0, top
     approach, path = document["approach"], document["valid"]["s_m"]
-    length_m, stage, interlock = approach["length_m"], approach["entrance_stage"], approach["interlock"]
+    if approach is None:
+        return 0.0, top
+    length_m, stage = approach["length_m"], approach["entrance_stage"]
     refuse_unless(0.001 <= length_m <= 100.0, length_m, "approach.length_m", "from 0.001 to 100")
     refuse_unless(0 <= stage <= top, stage, "approach.entrance_stage", f"from 0 to {top}")
-    refuse_unless(interlock == "position_clear", interlock, "approach.interlock", '"position_clear"')
     refuse_unless(path[0] == -length_m and path[1] > 0.0, path, "valid.s_m", "from -approach.length_m beyond 0")
-    if "estimator" in document:
+    if document["estimator"]:
         first_m = document["estimator"]["s_m"][0]
         refuse_unless(first_m <= -length_m, first_m, "estimator.s_m[0]", "-approach.length_m at most")
     return float(length_m), stage
@@ -176,7 +166,7 @@ def line_of(values: list[float] | None) -> Line | None:
 
 def slopes_of(stage: Mapping[str, Any]) -> tuple[float | None, float | None]:
     """The slopes of the lower and of the upper line of a stage, None where there is none."""
-    lower, upper = (None if stage.get(key) is None else float(stage[key]) for key in SLOPES)
+    lower, upper = (None if stage[key] is None else float(stage[key]) for key in SLOPES)
     return lower, upper
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
-from synth.checker.document_shape import GAUGE
 from synth.checker.finding import Finding, Kind
 from synth.checker.float32 import LARGEST, is_float32, rounded
 from synth.checker.line_order import LEVEL, Tilt, compare, range_of
@@ -104,11 +103,11 @@ def line_faults(table: Table) -> Iterator[str]:
 
 
 def slope_faults(table: Table) -> Iterator[str]:
-    """Faults of the slopes: every line has one, or none has."""
-    if table.document.get("pressure") == GAUGE and not table.has_gauge:
-        yield "it says that its lines depend on the pressure, but none has a slope"
+    """Faults of the slopes: every line has one, or none has, and none at rest."""
     if not table.has_gauge:
         return
+    if not table.at_any_time:
+        yield "its lines have slopes, but it decides at rest, where each stage has its own pressure"
     for k, (both, slopes) in enumerate(zip(table.lines, table.slopes, strict=True)):
         for name, line, slope in zip(("lower", "upper"), both, slopes, strict=True):
             if line is None and slope is not None:

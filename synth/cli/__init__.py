@@ -96,13 +96,13 @@ def told(call: Callable[[], int]) -> int:
 def told_of_value(fault: ValueError) -> int:
     """Tell of a value that plant or tables refuse; the exit code."""
     from plant_models import PlantError
-    from tuning_tables import OtherDecisions, TableError
+    from tuning_tables import OtherKind, TableError
     from tuning_tables.errors import InvalidLog
 
     if not isinstance(fault, PlantError | TableError | InvalidLog):
         return told_of_unforeseen(fault)
     say(str(fault))
-    damaged = isinstance(fault, TableError) and not isinstance(fault, OtherDecisions)
+    damaged = isinstance(fault, TableError) and not isinstance(fault, OtherKind)
     return DAMAGED if damaged else INPUT_FAULT
 
 

@@ -12,15 +12,14 @@ from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.retarder.forms.aim_file import AimFile
 from tuning_tables.aim.aim_table import AimTable
-from tuning_tables.aim.document import to_aim_document
-from tuning_tables.aim.purpose import CategoryAlone
+from tuning_tables.document import to_document
 
 SHOWN_DISTANCES = 6
 
 
 def aim_document(file: AimFile) -> dict[str, Any]:
     """An aim table for programs."""
-    document = to_aim_document(file.table)
+    document = to_document(file.table)
     return {"path": str(file.path), "kind": "aim table", "checksum": "right", "tables": [document]}
 
 
@@ -49,12 +48,11 @@ def aim_page(file: AimFile) -> list[Exhibit]:
 
 def known_words(table: AimTable) -> str:
     """What is known of a cut."""
-    if isinstance(table.knowledge, CategoryAlone):
+    if table.measured is None:
         return "known by category and number of cars"
-    knowledge = table.knowledge
     return (
-        f"resistance measured from {knowledge.from_m:g} to {knowledge.to_m:g} m by two speeds "
-        f"+-{knowledge.speed_std_m_s:g} m/s"
+        f"resistance measured from {table.measured.from_m:g} to {table.measured.to_m:g} m by two speeds "
+        f"+-{table.measured.speed_std_m_s:g} m/s"
     )
 
 

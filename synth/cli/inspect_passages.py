@@ -9,7 +9,7 @@ from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.retarder.highest_stage import highest_stage
-from tuning_tables.passages.document import to_passage_document
+from tuning_tables.document import to_document
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
@@ -19,7 +19,7 @@ AXLES = {DecidesOn.FIRST_AXLE: "the first axle", DecidesOn.EVERY_AXLE: "every ax
 
 def passage_document(table: PassageTable) -> dict[str, Any]:
     """A table for programs."""
-    return {**to_passage_document(table), "category_number": table.cut.number}
+    return {**to_document(table), "category_number": table.cut.number}
 
 
 def passage_page(table: PassageTable) -> list[Exhibit]:

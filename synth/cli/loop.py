@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from synth.retarder.configuration.resolved_config import ResolvedConfig
     from synth.retarder.control_loop import ControlLoop
     from synth.retarder.passage_control_loop import PassageControlLoop
-    from tuning_tables.any_table import AnyTable
+    from tuning_tables.table_kinds import StageTable
 
     AnyLoop: TypeAlias = ControlLoop | PassageControlLoop
 
@@ -58,7 +58,7 @@ def loop_command(source: Path, output: Path, config_path: Path | None, as_json: 
     return OK if all(loop.agrees for loop in loops) else LIMITS_MISSED
 
 
-def any_tables(source: Path) -> list[AnyTable]:
+def any_tables(source: Path) -> list[StageTable]:
     """The tables at `source`, of both kinds of decision; faults as `read_tables` has them."""
     from synth.retarder.forms.passage_file import read_passages
     from synth.retarder.forms.table_file import holds_tables, read_tables
@@ -69,7 +69,7 @@ def any_tables(source: Path) -> list[AnyTable]:
     return [*passages, *(table for file in read_tables(source, directory_allowed=True) for table in file.tables)]
 
 
-def closing(table: AnyTable, config: ResolvedConfig, source: str) -> Callable[[], AnyLoop]:
+def closing(table: StageTable, config: ResolvedConfig, source: str) -> Callable[[], AnyLoop]:
     """What closes the loop of `table` with the plant of `config` that it is for; `InputError` if there is none."""
     from synth.retarder.control_loop import control_loop
     from synth.retarder.passage_class import passage_class

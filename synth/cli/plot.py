@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from synth.retarder.configuration.resolved_config import ResolvedConfig
     from tuning_tables import ControllerTable
-    from tuning_tables.any_table import AnyTable
     from tuning_tables.passages.passage_table import PassageTable
+    from tuning_tables.table_kinds import StageTable
 
 Drawn = TypeVar("Drawn")
 
@@ -67,7 +67,7 @@ class Surroundings:
             return None
 
 
-def figures_of(table: AnyTable, around: Surroundings) -> Mapping[str, Figure]:
+def figures_of(table: StageTable, around: Surroundings) -> Mapping[str, Figure]:
     """The pictures of a table by the end of their names."""
     from tuning_tables.passages.passage_table import PassageTable
 

@@ -16,7 +16,8 @@ from tuning_tables.active_table import ActiveTable
 from tuning_tables.decisions import Decisions
 from tuning_tables.estimator import Estimator
 from tuning_tables.held_table import lines_apart
-from tuning_tables.table import MOST_STAGES, ControllerTable
+from tuning_tables.stage import MOST_STAGES
+from tuning_tables.table import ControllerTable
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 

@@ -222,8 +222,11 @@ def array_fields(node: ast.ClassDef, words: set[str]) -> list[ast.AnnAssign]:
 
 
 def type_names(annotation: ast.AST) -> Iterator[str]:
-    """The names in an annotation, those inside `Callable` left out."""
+    """The names in an annotation, less those inside `Callable`, and less what `Annotated` says of a type."""
     if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value) == "Callable":
+        return
+    if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value) == "Annotated":
+        yield from type_names(next(ast.iter_child_nodes(annotation.slice)))
         return
     if isinstance(annotation, ast.Name | ast.Attribute):
         yield annotation.id if isinstance(annotation, ast.Name) else annotation.attr
@@ -287,6 +290,8 @@ def test_arrays_of_frozen_values_are_read_only() -> None:
         ("synth/a.py", "@frozen_arrays\n@dataclass(frozen=True)", "tuple[npt.NDArray[np.float64], ...]", 1),
         ("synth/a.py", "@frozen_arrays\n@dataclass", "Floats", 1),
         ("synth/a.py", "@dataclass(frozen=True)", "Callable[[Floats], Floats]", 0),
+        ("synth/a.py", "@dataclass(frozen=True)", "Annotated[float, Floats()]", 0),
+        ("synth/a.py", "@dataclass(frozen=True)", "Annotated[Floats, 1]", 1),
         ("tuning_tables/a.py", "@dataclass(frozen=True)", "Floats", 1),
         ("tuning_tables/a.py", "@dataclass(frozen=True)", "Floats = field(compare=False)", 1),
     ],

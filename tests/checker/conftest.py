@@ -76,19 +76,19 @@ def tuned_once(corpus: Corpus) -> Path:
 
 @pytest.fixture(scope="session")
 def estimated_once(corpus: Corpus) -> Path:
-    """The directory of the same tune with an estimator, version 2; not to be changed."""
+    """The directory of the same tune with an estimator; not to be changed."""
     return tune(corpus, f"{CONFIG}[regulator]\napproach_m = 0.0\nestimator = true\n")
 
 
 @pytest.fixture(scope="session", params=[False, True], ids=["measured", "estimated"])
 def approached_once(request: pytest.FixtureRequest, corpus: Corpus) -> Path:
-    """The directory of the same tune with an approach, version 3, without and with estimator; not to be changed."""
+    """The directory of the same tune with an approach, without and with estimator; not to be changed."""
     return tune(corpus, f"{APPROACHED}estimator = {str(request.param).lower()}\n")
 
 
 @pytest.fixture(scope="session")
 def gauged_once(corpus: Corpus) -> Path:
-    """The directory of a tune of one table of version 5, with a gauge; not to be changed."""
+    """The directory of a tune of one table at any time, with a gauge; not to be changed."""
     return tune(corpus, f"{ANY_TIME}{REGULATORS_AT_ANY_TIME['gauge']}")
 
 

@@ -27,13 +27,15 @@ from tests.checker.planted_fault import Document, found, judged, look
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
-from tuning_tables import from_json, to_json
-from tuning_tables.aim import AimTables, from_aim_json, to_aim_csv, to_aim_json
+from tuning_tables.aim import AimTables
+from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.c_source import aim_c_files
 from tuning_tables.aim.st_source import aim_st_files, aim_st_unit_files
 from tuning_tables.c_source import c_files
 from tuning_tables.canonical import canonical_json, document_checksum
+from tuning_tables.csv_file import to_csv
 from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.json_file import from_json, to_json
 from tuning_tables.table_book import TableBook
 
 AIMS = AimTables((category_table(1.0), measured_table(), category_table(1.5, 4, "СТ")))
@@ -45,8 +47,8 @@ def write_all(folder: Path, aims: AimTables) -> Path:
     for name in ("tables", "c", "st"):
         (folder / name).mkdir(parents=True)
     for table in aims.tables:
-        (folder / "tables" / f"{table.id}.json").write_bytes(to_aim_json(table))
-        (folder / "tables" / f"{table.id}.csv").write_bytes(to_aim_csv(table))
+        (folder / "tables" / f"{table.id}.json").write_bytes(to_json(table))
+        (folder / "tables" / f"{table.id}.csv").write_bytes(to_csv(table))
     exports = {"c": aim_c_files(aims), "st": aim_st_files(aims), "": aim_c_files(aims, PARK)}
     for place, files in (*exports.items(), ("st", aim_st_unit_files(aims, PARK))):
         for name, content in files.items():
@@ -79,7 +81,7 @@ def test_sound_tables_and_exports_are_confirmed(exported_once: Path, tmp_path: P
 
 def test_the_checkers_rule_is_the_rule_to_the_last_bit() -> None:
     aims = sample_set()
-    read = [read_aim(to_aim_json(table)) for table in aims.tables]
+    read = [read_aim(to_json(table)) for table in aims.tables]
     asked = hard_questions(aims, 20_000, 77)
     for (number, cars, distance, resistance), right in zip(asked.tolist(), answers(aims, asked), strict=True):
         speed = exit_speed(read[number], cars, distance, resistance)
@@ -150,7 +152,7 @@ def test_a_table_more_or_less_is_found(exported: Path) -> None:
 
 
 def rewritten(change: Callable[[Document], object], measured: bool = False) -> bytes:
-    document = json.loads(to_aim_json(measured_table() if measured else category_table(1.0)))
+    document = json.loads(to_json(measured_table() if measured else category_table(1.0)))
     change(document)
     return canonical_json({**document, "crc32": document_checksum(document)})
 
@@ -170,19 +172,19 @@ def put(place: tuple[Any, ...], value: object) -> Callable[[Document], None]:
 FAULTS: tuple[tuple[Callable[[Document], object], str], ...] = (
     (put(("version",), 2), "its version is 2"),
     (put(("surplus",), 2), "without missing or unknown keys"),
-    (lambda d: d.pop("bounds"), "without missing or unknown keys"),
-    (put(("knowledge",), {"kind": "guess"}), "knowledge.kind is 'guess'"),
-    (put(("knowledge",), {"kind": "measured_resistance"}), "axes.resistance_n_per_kn is None"),
-    (put(("exit_speed_m_s", 1), [1.0]), r"the length of exit_speed_m_s\[1\] is 1"),
-    (lambda d: d["exit_speed_m_s"].pop(), "the length of exit_speed_m_s is 4"),
+    (lambda d: d.pop("bounds_m_s"), "without missing or unknown keys"),
+    (put(("kind",), "guess"), "its kind is 'guess'"),
+    (put(("measured",), {"from_m": 0.0, "to_m": 1.0, "speed_std_m_s": 0.1}), "axes.resistance_n_per_kn is None"),
+    (put(("exit_speed_m_s", 1), [1.0]), r"exit_speed_m_s\[1\] is \[1\], but it must be an array of 7"),
+    (lambda d: d["exit_speed_m_s"].pop(), "exit_speed_m_s is .* an array of 5"),
     (put(("reported", "mean_gap_m", 0, 0), "2"), "must be a number"),
     (put(("category", "number"), 3), "has the number 3, which is not its own"),
     (put(("category",), {"number": 7, "name": "own"}), "has the number 7"),
     (put(("required", "p_overspeed"), 1.0), r"does not lie within \(0, 1\)"),
     (put(("required", "coupling_speed_m_s"), 0), "its coupling speed of 0"),
-    (put(("bounds", "exit_speed_m_s"), [0.0, 7.0]), "its bounds .* do not rise"),
-    (put(("bounds", "exit_speed_m_s"), [7.0, 0.5]), "two numbers, the smaller one first"),
-    (put(("interpolation", "error_m_s"), -1.0), "its interpolation error"),
+    (put(("bounds_m_s",), [0.0, 7.0]), "its bounds .* do not rise"),
+    (put(("bounds_m_s",), [7.0, 0.5]), "two numbers, the smaller one first"),
+    (put(("interpolation_error_m_s",), -1.0), "its interpolation error"),
     (put(("reported", "passes"), 0), "its number of passes"),
     (put(("position", "exit_at_m"), -1.0), "its position ends at -1 m"),
     (put(("created",), "2026-11-22"), "its date"),
@@ -202,12 +204,13 @@ FAULTS: tuple[tuple[Callable[[Document], object], str], ...] = (
 MEASURED_FAULTS: tuple[tuple[Callable[[Document], object], str], ...] = (
     (put(("axes", "resistance_n_per_kn", 1), 0.4), "its resistances do not rise"),
     (put(("axes", "resistance_n_per_kn", 4), 1001.0), "its resistances"),
-    (put(("axes", "resistance_n_per_kn"), None), "must be an array"),
-    (put(("knowledge", "to_m"), 228.0), "its resistance is measured from 228 to 228 m"),
-    (put(("knowledge", "speed_std_m_s"), -0.1), "its resistance is measured"),
+    (put(("axes", "resistance_n_per_kn"), None), "axes.resistance_n_per_kn is None"),
+    (put(("measured",), None), "axes.resistance_n_per_kn is"),
+    (put(("measured", "to_m"), 228.0), "its resistance is measured from 228 to 228 m"),
+    (put(("measured", "speed_std_m_s"), -0.1), "its resistance is measured"),
     (put(("exit_speed_m_s", 1, 2, 2), 0.6), "2 cars at 100 m and 1.5 N/kN: the exit speed is less than for a"),
     (put(("exit_speed_m_s", 1, 2, slice(1, 3)), [None, 0.6]), "2 cars at 100 m and 1.5 N/kN: the exit speed is less"),
-    (put(("exit_speed_m_s", 0, 0), [1.0]), r"the length of exit_speed_m_s\[0\]\[0\] is 1"),
+    (put(("exit_speed_m_s", 0, 0), [1.0]), r"exit_speed_m_s\[0\]\[0\] is \[1\], but it must be an array of 5"),
 )  # fmt: skip
 
 
@@ -229,11 +232,11 @@ def require_found(content: bytes, words: str, folder: Path) -> None:
     (folder / "aim.json").write_bytes(content)
     assert found(look(folder / "aim.json"), Kind.DAMAGED, words)
     with pytest.raises(ValueError):  # noqa: PT011  # whichever kind of refusal
-        from_aim_json(content)
+        from_json(content, AimTable)
 
 
 def test_a_wrong_checksum_is_damage(tmp_path: Path) -> None:
-    (tmp_path / "aim.json").write_bytes(to_aim_json(category_table()).replace(b"0.012", b"0.013"))
+    (tmp_path / "aim.json").write_bytes(to_json(category_table()).replace(b"0.012", b"0.013"))
     assert found(look(tmp_path / "aim.json"), Kind.DAMAGED, "crc32")
     assert found(look(tmp_path), Kind.DAMAGED, "aim.json: its crc32")
 
@@ -295,8 +298,8 @@ def test_beside_controller_tables(exported: Path) -> None:
     for text in ("AIM", "aim", "PARK_AIM"):
         with pytest.raises(ValueError, match="must not end with AIM"):
             ExportPrefix(text)
-    with pytest.raises(ValueError, match="give a controller table"):
-        from_json(to_aim_json(category_table()))
+    with pytest.raises(ValueError, match="its kind is aim"):
+        from_json(to_json(category_table()))
 
 
 def test_words_json_and_no_numpy(exported_once: Path, capfd: pytest.CaptureFixture[str]) -> None:

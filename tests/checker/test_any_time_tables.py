@@ -85,11 +85,6 @@ def without(key: str) -> Callable[[Document], None]:
     return lambda document: document.pop(key)
 
 
-def no_slope_at_all(document: Document) -> None:
-    for stage in document["stages"]:
-        stage.update({LOWER: None, UPPER: None})
-
-
 def wrong_sign(key: str) -> Callable[[Document], None]:
     def change(document: Document) -> None:
         document["stages"][1][key] *= -1.0
@@ -104,14 +99,12 @@ def beyond_float32(document: Document) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (member("version", 6), "its version is 6, but tables with lines are of the versions 1, 2, 3 and 5 only"),
-        (member("version", 3), "unknown keys"),
-        (member("decisions", "at_rest"), "decisions is 'at_rest', but it must be \"at_any_time\""),
+        (member("version", 2), "its version is 2, but this checker knows only version 1"),
+        (member("kind", "passages"), "missing or unknown"),
+        (member("kind", "line"), "its kind is 'line', but it must be lines"),
+        (member("decisions", "at_once"), 'decisions is \'at_once\', but it must be "at_rest" or "at_any_time"'),
         (member("decisions", True), "decisions is True"),
-        (member("pressure", "guage"), 'pressure is \'guage\', but it must be "gauge" or "none"'),
-        (member("pressure", None), "pressure is None"),
-        (member("pressure", "none"), r"stages\[0\] is \['lower_slope.*unknown keys"),
-        (without("pressure"), r"\['pressure'\].*missing"),
+        (member("decisions", "at_rest"), "at rest"),
         (without("decisions"), r"\['decisions'\].*missing"),
         (member("gauge_delay_s", 0.1), "gauge_delay_s"),
         (without_slope, r"stages\[1\] is \['lower_slope_m_s_per_kpa'\]"),
@@ -122,7 +115,6 @@ def beyond_float32(document: Document) -> None:
         (of_stage(0, LOWER, 0.0), "stage 0 has a slope of the lower line, but no such line"),
         (of_stage(2, UPPER, 0.0), "stage 2 has a slope of the upper line, but no such line"),
         (of_stage(1, UPPER, -0.003), "the upper line of stage 1 has the slope -0.003, which is no float32 number"),
-        (no_slope_at_all, "depend on the pressure, but none has a slope"),
         (wrong_sign(LOWER), r"at stage 1 the lower line is not below .* and a pressure of 300 kPa"),
         (wrong_sign(UPPER), r"at stage 1 the lower line is not below .* and a pressure of 0 kPa"),
         (beyond_float32, "exceed what float32 can hold"),
@@ -176,42 +168,28 @@ def cell(name: str, index: tuple[int, ...], value: float) -> Edit:
     return edit
 
 
-def at_rest_all(file: Any) -> None:
-    for name in ("at_any_time", "has_gauge", "slopes"):
-        put(file, name, file[name][()] * 0)
-
-
 def other_unit(file: Any) -> None:
-    file["slopes"].attrs["units"] = "m/s"
+    file[f"stage_{UPPER}"].attrs["units"] = "m/s"
+
+
+def at_rest(file: Any) -> None:
+    put(file, "decisions", np.array([b"at_rest"]))
 
 
 @pytest.mark.parametrize(
     ("edit", "words"),
     [
-        (cell("at_any_time", (0,), 2), "at_any_time 2 and has_gauge 1"),
-        (cell("at_any_time", (0,), 0), "none of its tables decides at any time"),
-        (cell("has_gauge", (0,), 2), "at_any_time 1 and has_gauge 2"),
-        (cell("has_gauge", (0,), 0), "slopes holds values beside those of the tables"),
-        (cell("slopes", (0, 0, 0), 0.5), "slopes holds values beside those of the tables"),
-        (cell("slopes", (0, 1, 0), np.nan), r"stages\[1\].lower_slope"),
-        (cell("slopes", (0, 1, 0), -0.0), r"stages\[1\].lower_slope"),
-        (at_rest_all, "its schema_version is 5, but none of its tables decides at any time"),
-        (other_unit, "slopes has the units 'm/s', but must have m/s per kPa"),
+        (at_rest, "at rest"),
+        (cell(f"stage_{LOWER}", (0, 0), 0.5), "stage 0 has a slope of the lower line, but no such line"),
+        (cell(f"stage_{LOWER}", (0, 1), np.nan), "the lower line of stage 1 has no slope"),
+        (cell(f"stage_{LOWER}", (0, 1), -0.0), r"stages\[1\].lower_slope"),
+        (other_unit, "upper_slope_m_s_per_kpa has the units 'm/s', but must have m/s per kPa"),
     ],
 )
 def test_a_forged_book_is_damaged(left: Path, edit: Edit, words: str) -> None:
     book = left / "book.h5"
     forge(book, edit)
     assert found(look(book), Kind.DAMAGED, words)
-
-
-def test_a_gauge_of_a_table_at_rest_is_damage(tmp_path: Path) -> None:
-    made = sloped(sound_table("plain"))
-    book = tmp_path / "book.h5"
-    write_book([made, replace(made, id="other", target_speed_m_s=3.9)], book)
-    assert judged(book).findings == ()
-    forge(book, cell("at_any_time", (0,), 0))
-    assert found(look(book), Kind.DAMAGED, "'plain-gauge' has at_any_time 0 and has_gauge 1")
 
 
 def change_text(file: Path, pattern: str, replacement: str) -> None:
@@ -248,7 +226,6 @@ def test_a_book_that_says_otherwise_is_found(left: Path) -> None:
             "",
             "stages.1.lower_slope_m_s_per_kpa is missing",
         ),
-        (r"text,pressure,gauge", "text,pressure,none", "row text,pressure holds"),
         (r"text,decisions,at_any_time", "text,decisions,at_rest", "row text,decisions holds"),
         (
             r"number,stages.2.lower_slope",

@@ -14,7 +14,7 @@ from synth.checker.finding import Kind
 from synth.checker.source import read_source
 from tests.tuning_tables.forged_book import forge, put
 from tuning_tables import TableError, read_book, write_book
-from tuning_tables.book_columns import PLAIN, WITH_ESTIMATORS
+from tuning_tables.book_layout import Layout, book_layout
 
 Edit = Callable[[Any], None]
 
@@ -58,42 +58,52 @@ def numbered(axis: str, values: Callable[[int], Any]) -> Edit:
     return edit
 
 
-@pytest.mark.parametrize("axis", WITH_ESTIMATORS.axes)
-@pytest.mark.parametrize(
-    "values",
-    [lambda n: np.zeros(n, "<i4"), lambda n: np.arange(1, n + 1, dtype="<i4"), lambda n: np.arange(n + 1, dtype="<i4"),
-     lambda n: np.arange(float(n)), lambda n: "none"],
-)  # fmt: skip
-def test_an_axis_that_does_not_number_from_0(mixed: Path, tmp_path: Path, axis: str, values: Any) -> None:
-    refused(mixed, tmp_path / "book.h5", numbered(axis, values))
+@pytest.fixture(scope="module")
+def layout(mixed: Path) -> Layout:
+    return book_layout(read_book(mixed))
 
 
-@pytest.mark.parametrize("column", WITH_ESTIMATORS.columns, ids=lambda column: column.name)
-def test_a_column_of_another_type_unit_or_length(mixed: Path, tmp_path: Path, column: Any) -> None:
-    name = column.name
+def test_an_axis_that_does_not_number_from_0(mixed: Path, layout: Layout, tmp_path: Path) -> None:
+    makers: tuple[Callable[[int], Any], ...] = (
+        lambda n: np.zeros(n, "<i4") if n > 1 else np.ones(n, "<i4"),
+        lambda n: np.arange(1, n + 1, dtype="<i4"),
+        lambda n: np.arange(n + 1, dtype="<i4"),
+        lambda n: np.arange(float(n)),
+        lambda n: "none",
+    )
+    for axis in layout.axes:
+        for values in makers:
+            refused(mixed, tmp_path / "book.h5", numbered(axis, values))
 
-    def other_unit(file: Any) -> None:
-        file[name].attrs["units"] = "furlong"
 
-    def wider(file: Any) -> None:
-        put(file, name, file[name][()].astype({"S": "S90", "<f8": "<f4", "<f4": "<f8"}.get(column.dtype, "<i2")))
+def test_a_column_of_another_type_unit_or_length(mixed: Path, layout: Layout, tmp_path: Path) -> None:
+    def other_unit(name: str) -> Edit:
+        def edit(file: Any) -> None:
+            file[name].attrs["units"] = "furlong"
 
-    edits = [other_unit, wider]
-    for axis in range(len(column.axes)):
+        return edit
 
-        def longer(file: Any, axis: int = axis) -> None:
+    def wider(name: str, dtype: str) -> Edit:
+        return lambda file: put(file, name, file[name][()].astype(dtype))
+
+    def longer(name: str, axis: int) -> Edit:
+        def edit(file: Any) -> None:
             values = file[name][()]
             put(file, name, np.concatenate([values, np.take(values, [-1], axis=axis)], axis=axis))
 
-        edits.append(longer)
-    for edit in edits:
-        refused(mixed, tmp_path / "book.h5", edit)
+        return edit
+
+    for column in layout.columns:
+        dtype = {"S": "S90", "<f8": "<f4", "<f4": "<f8"}.get(column.dtype, "<i2")
+        edits = [other_unit(column.name), wider(column.name, dtype)]
+        for edit in (*edits, *(longer(column.name, axis) for axis in range(len(column.axes)))):
+            refused(mixed, tmp_path / "book.h5", edit)
 
 
 @pytest.mark.parametrize("axis", ["zone", "axle", "stage", "power", "break"])
-def test_arrays_longer_than_the_longest_table(mixed: Path, tmp_path: Path, axis: str) -> None:
+def test_arrays_longer_than_the_longest_table(mixed: Path, layout: Layout, tmp_path: Path, axis: str) -> None:
     def edit(file: Any) -> None:
-        for column in WITH_ESTIMATORS.columns:
+        for column in layout.columns:
             if axis in column.axes:
                 values, place = file[column.name][()], column.axes.index(axis)
                 filler = np.full_like(np.take(values, [0], axis=place), np.nan if values.dtype.kind == "f" else 0)
@@ -103,34 +113,48 @@ def test_arrays_longer_than_the_longest_table(mixed: Path, tmp_path: Path, axis:
     refused(mixed, tmp_path / "book.h5", edit)
 
 
+def cell(name: str, index: tuple[int, ...], value: float) -> Edit:
+    def edit(file: Any) -> None:
+        file[name][index] = value
+
+    return edit
+
+
 @pytest.mark.parametrize(
-    ("name", "index"),
-    [("axle_offsets_m", (0, 1)), ("pressure_kpa", (1, -1)), ("coefficients", (1, -1, 0, 0)),
-     ("coefficients", (0, 0, 0, 0)), ("has_line", (1, -1, 0)), ("validated_rms_m_s", (1,)),
-     ("validated_rms_ci95_m_s", (1, 0)), ("estimator_s_m", (1, 0)), ("estimator_path_std", (1,)),
-     ("estimator_frozen_readings", (1,)), ("estimator_unlikely_deviation", (1,))],
+    ("name", "index", "value"),
+    [("cut_axle_offsets_m", (0, 1), np.nan), ("stage_pressure_kpa", (1, -1), 1), ("stage_k", (1, -1), 1),
+     ("stage_lower", (1, -1, 0), 1), ("stage_lower", (0, 0, 0), 1), ("stages", (0,), 99), ("stages", (1,), -1),
+     ("validated", (0,), 2), ("validated", (0,), 0), ("validated_rms_m_s", (1,), 1), ("estimator", (0,), 2),
+     ("validated_rms_ci95_m_s", (1, 0), 1), ("estimator_s_m", (1, 0), 1), ("estimator_path_std", (1,), 1),
+     ("estimator_frozen_readings", (1,), 1), ("estimator_unlikely_deviation", (1,), 1)],
 )  # fmt: skip
-def test_nothing_stands_beside_the_tables(mixed: Path, tmp_path: Path, name: str, index: tuple[int, ...]) -> None:
-    def edit(file: Any) -> None:
-        file[name][index] = 1 if name != "axle_offsets_m" else np.nan
+def test_nothing_stands_beside_the_tables(
+    mixed: Path, tmp_path: Path, name: str, index: tuple[int, ...], value: float
+) -> None:
+    refused(mixed, tmp_path / "book.h5", cell(name, index, value))
 
-    refused(mixed, tmp_path / "book.h5", edit)
 
-
-@pytest.mark.parametrize("column", [each for each in PLAIN.columns if "f" in each.dtype], ids=lambda each: each.name)
 @pytest.mark.parametrize("value", [-0.0, np.inf, -np.inf])
-def test_a_number_that_is_none(mixed: Path, tmp_path: Path, column: Any, value: float) -> None:
-    index = (0, 0, 1, 0) if column.name == "coefficients" else (0,) * len(column.axes)
+def test_a_number_that_is_none(mixed: Path, layout: Layout, tmp_path: Path, value: float) -> None:
+    for column in layout.columns:
+        if "f" in column.dtype and "slope" not in column.name:
+            index = (0, 1, *(0 for _ in column.axes[2:])) if "stage" in column.axes else (0,) * len(column.axes)
+            refused(mixed, tmp_path / "book.h5", cell(column.name, index, value))
 
+
+def test_columns_of_a_section_that_no_table_has(mixed: Path, tmp_path: Path) -> None:
     def edit(file: Any) -> None:
-        file[column.name][index] = value
+        for name in list(file):
+            if name == "estimator" or name.startswith("estimator_"):
+                put(file, name, file[name][()] * 0 + (np.nan if file[name].dtype.kind == "f" else 0))
 
     refused(mixed, tmp_path / "book.h5", edit)
 
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("complete", True), ("complete", [1]), ("complete", 1.0), ("schema_version", 2.0), ("schema_version", [2]),
+    [("complete", True), ("complete", [1]), ("complete", 1.0), ("version", 2.0), ("version", [1]),
+     ("version", 2), ("version", 0), ("kind", "passages"), ("kind", "aim"), ("kind", 1),
      ("format", ["retarder-book"]), ("format", np.bytes_(b"retarder-book")), ("config_sha256", "0" * 63),
      ("config_sha256", 0), ("tool_version", ""), ("tool_version", "two\nlines"), ("tool_version", 0.1)],
     ids=repr,

@@ -24,7 +24,8 @@ from tests.frame.results import results_in
 from tests.printed_page import Page, page_about, require_column, table_of
 from tests.system.conftest import EPOCH, Command
 from tuning_tables.aim import aim_exit_speed
-from tuning_tables.aim.json_file import read_aim_json
+from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.json_file import read_json
 
 SMALL = """\
 [cuts]
@@ -81,7 +82,7 @@ def check_file(path: Path) -> None:
     content = path.read_bytes()
     match path.parent.name, path.suffix:
         case "tables", ".json":
-            read_aim_json(path)
+            read_json(path, AimTable)
         case (("tables" | "c" | "sheets"), ".csv"):
             assert content.endswith(b"\r\n")
         case "c", ".c" | ".h":
@@ -148,7 +149,7 @@ def test_the_summary_tells_what_the_tables_hold(aimed_once: tuple[Path, int]) ->
     directory, _ = aimed_once
     tables = json.loads((directory / "summary.json").read_bytes())["tables"]
     for told in tables["aim-tables"]:
-        table = read_aim_json(directory / "tables" / f"{told['id']}.json")
+        table = read_json(directory / "tables" / f"{told['id']}.json", AimTable)
         assert (table.id, table.category.name) == (told["id"], told["category"])
         assert told["cells_without_speed"] == int(np.isnan(table.exit_speed_m_s).sum())
         assert table.interpolation_error_m_s == told["below_m_s"]
@@ -190,7 +191,7 @@ def test_the_speeds_are_those_of_the_closed_form_where_there_is_one(tmp_path: Pa
     (tmp_path / "still.toml").write_text(HEAD + text, encoding="utf-8")
     (tmp_path / "aim.toml").write_text(UNIFORM, encoding="utf-8")
     assert main(["aim", str(tmp_path / "aim.toml"), "-o", str(tmp_path / "out")]) == 0
-    table = read_aim_json(tmp_path / "out" / "tables" / "rnz-2m-park-LS-category.json")
+    table = read_json(tmp_path / "out" / "tables" / "rnz-2m-park-LS-category.json", AimTable)
     rng = np.random.default_rng(5)
     for cars in (1, 3):
         mass = rng.uniform(28.0, 44.0, (400_000, cars))
@@ -301,7 +302,7 @@ def test_a_track_on_which_no_speed_is_safe_is_told_and_not_accepted(command: Com
     ran = command("aim", tmp_path / "steep.toml", "-o", tmp_path / "out")
     assert ran.code == 1
     assert "not accepted: no exit speed keeps the required probability anywhere" in ran.out
-    table = read_aim_json(tmp_path / "out" / "tables" / "rnz-2m-park-T-category.json")
+    table = read_json(tmp_path / "out" / "tables" / "rnz-2m-park-T-category.json", AimTable)
     assert np.isnan(table.exit_speed_m_s).all()
     assert aim_exit_speed(table, 1, 200.0, 0.0) is None
     assert "Not accepted" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")

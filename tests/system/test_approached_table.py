@@ -33,7 +33,7 @@ def test_every_form_of_export_holds_it(command: Command, tmp_path: Path) -> None
         ("csv", "one.csv", "text,approach.interlock,position_clear"),
         ("c", "retarder_table.c", "1, /* entrance_stage */"),
         ("st", "retarder_table.st", "EntranceStageOf"),
-        ("json", "one.json", '"version": 3'),
+        ("json", "one.json", '"interlock": "position_clear"'),
     ):
         run = command("export", tmp_path / "one.json", "--format", form, "-o", tmp_path / form)
         assert run.code == 0, run.err

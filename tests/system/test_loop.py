@@ -18,7 +18,7 @@ from tests.printed_page import Page, table_of
 from tests.synth.conftest import GONDOLA_OFFSETS_M
 from tests.system.conftest import Command
 from tuning_tables import Approach, CutId, Generator, Predicted, RetarderId
-from tuning_tables.passages.json_file import write_passage_json
+from tuning_tables.json_file import write_json
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.plausible_motion import PlausibleMotion
@@ -58,7 +58,7 @@ def test_a_directory_gives_pictures_figures_and_a_table(
 def test_a_table_for_point_sensors_is_shown_too(command: Command, two_classes: Path, tmp_path: Path) -> None:
     """The class is found though a configuration knows no sensors; a table of another cut is refused by name."""
     table = tmp_path / "points.json"
-    write_passage_json(passage_table(two_classes), table)
+    write_json(passage_table(two_classes), table)
     ran = command("loop", table, "-o", tmp_path / "out", "--config", two_classes, "--json")
     assert ran.code == 0, ran.err
     [found] = json.loads(ran.out)["loops"]
@@ -78,7 +78,7 @@ def test_a_table_for_point_sensors_is_shown_too(command: Command, two_classes: P
     assert told.code == 0
     assert "–" in told.out
     changed = replace(passage_table(two_classes), cut=CutId("Л", 23.0, GONDOLA_OFFSETS_M, 1))
-    write_passage_json(changed, table)
+    write_json(changed, table)
     refused = command("loop", table, "-o", tmp_path / "no", "--config", two_classes)
     assert refused.code == 2
     assert "the nearest, gondola-4-22t, differs in cut.mass_t (22, in the table 23)" in refused.sentence

@@ -14,12 +14,12 @@ from tests.controller_code.sample_book import sample_book
 from tests.frame.results import results_in
 from tests.system.conftest import Command
 from tests.system.test_start_up import HEAVY, modules_after
-from tuning_tables import RetarderId, write_book, write_json
+from tuning_tables import RetarderId, write_book
+from tuning_tables.csv_file import to_csv
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.json_file import to_json, write_json
 from tuning_tables.passages.c_source import passage_c_files
-from tuning_tables.passages.csv_file import to_passage_csv
 from tuning_tables.passages.golden_passages import few_golden_passages
-from tuning_tables.passages.json_file import to_passage_json, write_passage_json
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.st_source import passage_st_files, passage_st_unit_files
 
@@ -31,7 +31,7 @@ def folder(tmp_path: Path) -> Path:
     """A directory with tables/, whose file names are in the order of the book."""
     (tmp_path / "points" / "tables").mkdir(parents=True)
     for number, table in enumerate(BOOK.tables):
-        write_passage_json(table, tmp_path / "points" / "tables" / f"{number}.json")
+        write_json(table, tmp_path / "points" / "tables" / f"{number}.json")
     return tmp_path / "points"
 
 
@@ -44,9 +44,9 @@ def folder(tmp_path: Path) -> Path:
         (("--format", "st"), lambda: passage_st_files(BOOK)),
         (("--format", "st", "--split", "--self-test", "small"),
          lambda: passage_st_unit_files(BOOK, RETARDER, few_golden_passages)),
-        (("--format", "json"), lambda: {f"{table.id.replace(' ', '-')}.json": to_passage_json(table)
+        (("--format", "json"), lambda: {f"{table.id.replace(' ', '-')}.json": to_json(table)
                                         for table in BOOK.tables}),
-        (("--format", "csv"), lambda: {f"{table.id.replace(' ', '-')}.csv": to_passage_csv(table)
+        (("--format", "csv"), lambda: {f"{table.id.replace(' ', '-')}.csv": to_csv(table)
                                        for table in BOOK.tables}),
     ],
 )  # fmt: skip
@@ -79,7 +79,7 @@ def test_what_makes_no_export_is_refused(command: Command, folder: Path, tmp_pat
     assert (ran.code, ran.out) == (2, "")
     assert "--correction is for tables with lines" in ran.sentence
     other = replace(passage_table("else"), retarder=RetarderId("РНЗ-2М", ((0.0, 6.0),), 37.45, 10.0))
-    write_passage_json(other, folder / "tables" / "3.json")
+    write_json(other, folder / "tables" / "3.json")
     ran = command("export", folder, "--format", "c", "-o", tmp_path / "c")
     assert ran.code == 2
     assert "a book serves one position: export them apart" in ran.sentence

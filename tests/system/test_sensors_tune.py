@@ -18,7 +18,8 @@ from tests.checker.planted_fault import rewrite
 from tests.frame.results import results_in
 from tests.printed_page import Page, page_about, require_column, table_of, with_half
 from tests.system.conftest import EPOCH, MEASURED, Command, changed
-from tuning_tables.passages.json_file import read_passage_json
+from tuning_tables.json_file import read_json
+from tuning_tables.passages.passage_table import PassageTable
 
 CONFIG = """\
 [position]
@@ -106,7 +107,7 @@ def test_it_prints_the_figures_of_its_summary(tuned_points: Path, pages: list[Pa
 def test_tables_say_what_was_predicted_and_simulated(tuned_points: Path) -> None:
     summary = json.loads((tuned_points / "summary.json").read_bytes())
     for case in summary["tables"]["cases"]:
-        table = read_passage_json(tuned_points / "tables" / f"{case['id']}.json")
+        table = read_json(tuned_points / "tables" / f"{case['id']}.json", PassageTable)
         assert table.validated is not None
         assert table.validated.rms_m_s == case["rms_m_s"]["value"]
         assert table.predicted.rms_m_s == case["predicted_rms_m_s"]
@@ -179,7 +180,7 @@ def test_inspect_tells_sensors_passages_and_switching_speeds(
     command: Command, tuned_points: Path, pages: list[Page]
 ) -> None:
     ran = command("inspect", tuned_points / "tables" / f"{TABLE}.json")
-    table = read_passage_json(tuned_points / "tables" / f"{TABLE}.json")
+    table = read_json(tuned_points / "tables" / f"{TABLE}.json", PassageTable)
     assert ran.code == 0
     assert "7 at -4.5, 0, 4, 8, 12, 16, 22.5 m" in ran.out
     rows = [line.split() for line in ran.out.splitlines()]

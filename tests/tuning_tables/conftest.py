@@ -77,14 +77,14 @@ def turning_table(linear_table: ControllerTable) -> ControllerTable:
 
 @pytest.fixture(scope="session")
 def approached_table(table: ControllerTable) -> ControllerTable:
-    """The table with 4 m of approach and entrance stage 1, so of version 3: stage 1 has an upper line to be gated."""
+    """The table with 4 m of approach and entrance stage 1: stage 1 has an upper line to be gated."""
     valid = replace(table.valid, s_m=(-4.0, 37.45))
     return replace(table, id="approached", valid=valid, approach=Approach(4.0, 1))
 
 
 @pytest.fixture(scope="session")
 def estimated_table(linear_table: ControllerTable) -> ControllerTable:
-    """The linear table for the estimated speed, so of version 2; the retarder stands between 2 and 7 m."""
+    """The linear table for the estimated speed; the retarder stands between 2 and 7 m."""
     breaks, drive, brake = (0.0, 2.0, 5.0, 7.0, 9.5), (0.0, 0.132, 0.33, 0.4, 0.55), (0.0, 0.0, 0.008, 0.02, 0.02)
     estimator = Estimator(0.05, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 60.0, breaks, drive, brake)
     predicted = Predicted(0.1, 0.0, 0.0, 2.0, 0.25, passes=5000)
@@ -107,7 +107,7 @@ def approached_estimate(estimated_table: ControllerTable) -> ControllerTable:
 
 @pytest.fixture(scope="session")
 def surface_table(approached_table: ControllerTable) -> ControllerTable:
-    """The table with approach that decides at any time, with a gauge: so of version 5. Raised to stage 2 at most."""
+    """The table with approach that decides at any time, with a gauge. Raised to stage 2 at most."""
     slopes = ((None, -0.004), (-0.006, -0.005), (-0.003, None), (0.0, None))
     rounded = [[None if each is None else round_coefficients([each])[0] for each in pair] for pair in slopes]
     stages = tuple(
@@ -119,7 +119,7 @@ def surface_table(approached_table: ControllerTable) -> ControllerTable:
 
 @pytest.fixture(scope="session")
 def surface_estimate(approached_estimate: ControllerTable) -> ControllerTable:
-    """The estimated table with approach, at any time, but without gauge: of version 5."""
+    """The estimated table with approach, at any time, but without gauge."""
     return replace(approached_estimate, id="surface-estimate", decisions=Decisions.AT_ANY_TIME)
 
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from tests.tuning_tables.forged_book import forge, put
 from tuning_tables import ControllerTable, to_json, write_book
-from tuning_tables.book_columns import layout_stored
+from tuning_tables.book_layout import stored_layout
 from tuning_tables.canonical import canonical_json, document_checksum
 
 TOKEN = re.compile(rb'"(?:[^"\\]|\\.)*"|[-+0-9.eE]+|[a-z]+|\s+|.', re.DOTALL)
@@ -180,7 +180,7 @@ def _forged_book(rng: random.Random, book: bytes, folder: Path) -> Attempt:
     path.write_bytes(book)
 
     def edit(file: Any) -> None:
-        columns = layout_stored(int(file.attrs["schema_version"]), set(file)).columns
+        columns = stored_layout(str(file.attrs["kind"]), set(file)).columns
         for column in rng.sample(columns, rng.choice((1, 1, 2, 4))):
             values = file[column.name][()]
             if rng.random() < 0.8:

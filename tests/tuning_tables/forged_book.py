@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.book_kinds import stored_layout
+from tuning_tables.book_layout import stored_layout
 from tuning_tables.canonical import canonical_json
 from tuning_tables.payload import payload_sha256
 from tuning_tables.seal import seal_of
@@ -59,7 +59,7 @@ def _correct_payload(file: h5py.File, known: Arrays) -> None:
     attributes = {name: value.item() if isinstance(value, np.generic) else value for name, value in file.attrs.items()}
     attributes.pop("payload_sha256", None)
     try:
-        layout = stored_layout(file.attrs.get("schema_version"), set(file))
+        layout = stored_layout(file.attrs.get("kind"), set(file))
         # One that was removed is not among the known ones: its name raises.
         arrays = {
             column.name: known[column.name] if column.name in known else file[column.name][()]

@@ -21,8 +21,8 @@ from tuning_tables import (
 )
 from tuning_tables.category_number import KNOWN_NUMBERS
 from tuning_tables.line_order import require_order
+from tuning_tables.stage import HIGHEST_DEGREE, MOST_STAGES
 from tuning_tables.surface_order import require_stage
-from tuning_tables.table import HIGHEST_DEGREE, MOST_STAGES
 
 # Whatever is printable in any script; but no space other than U+0020 is.
 texts = st.text(st.characters(exclude_categories=("C", "Z")) | st.just(" "), min_size=1, max_size=12)

@@ -10,7 +10,7 @@ import numpy as np
 
 from tests.tuning_tables.damaged_inputs import Attempt
 from tuning_tables import TableError, from_json, read_book, to_json, write_book
-from tuning_tables.book_columns import layout_of
+from tuning_tables.book_layout import book_layout
 from tuning_tables.canonical import canonical_json
 
 LONGEST_MESSAGE = 1000
@@ -52,6 +52,6 @@ def _require_exact_book(content: bytes, folder: Path) -> None:
     again = folder / "again.h5"
     write_book(tables, again, tables[0].generator)
     with h5py.File(path) as one, h5py.File(again) as other:
-        for column in layout_of(tables).columns:
+        for column in book_layout(tables).columns:
             if not np.array_equal(one[column.name], other[column.name], equal_nan=column.dtype in ("<f4", "<f8")):
                 raise Finding(f"{column.name} of the book is not that of the tables read from it")

@@ -1,7 +1,5 @@
 """Tables that act before the entrance: what they must be, what they may command there, and who reads them."""
 
-import json
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,13 +8,12 @@ import h5py
 import numpy as np
 import pytest
 
+from tests.tuning_tables.every_kind import document_of
 from tuning_tables import (
     Approach,
     ControllerTable,
-    DamagedTable,
     Estimator,
     InvalidTable,
-    NewerVersion,
     ValidRange,
     decide_for,
     decide_many,
@@ -26,18 +23,8 @@ from tuning_tables import (
     write_book,
 )
 from tuning_tables.active_table import active, between, interpolable
-from tuning_tables.canonical import canonical_json, document_checksum
 
 TINY = float(np.finfo(np.float32).smallest_subnormal)
-
-
-def document_of(table: ControllerTable) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads(to_json(table))
-    return document
-
-
-def sealed(document: dict[str, Any]) -> bytes:
-    return canonical_json({**document, "crc32": document_checksum(document)})
 
 
 def with_estimator(table: ControllerTable, *breaks: float) -> ControllerTable:
@@ -111,60 +98,25 @@ def test_a_wrong_approach_is_refused(length_m: float, stage: Any) -> None:
         Approach(length_m, stage)
 
 
-def test_versions_follow_from_what_is_in_the_table(approached_table: ControllerTable, table: ControllerTable) -> None:
-    estimated = with_estimator(approached_table, -4.0, 0.0, 12.0)
-    without = replace(estimated, approach=None, valid=table.valid)
-    assert [document_of(each)["version"] for each in (table, without, approached_table, estimated)] == [1, 2, 3, 3]
-    assert list(document_of(estimated))[-4:] == ["validated", "estimator", "approach", "crc32"]
-    expected = {"length_m": 4.0, "entrance_stage": 1, "interlock": "position_clear"}
-    assert document_of(approached_table)["approach"] == expected
-    assert [from_json(to_json(each)) for each in (approached_table, estimated)] == [approached_table, estimated]
-
-
-@pytest.mark.parametrize(
-    ("change", "reason"),
-    [
-        (lambda document: document.update(version=1), "unknown key 'approach'"),
-        (lambda document: document.update(version=2), "estimator is missing"),
-        (lambda document: document.pop("approach"), "approach is missing"),
-        (lambda document: document["approach"].pop("interlock"), r"approach\.interlock is missing"),
-        (lambda document: document["approach"].update(interlock="none"), 'only "position_clear" is allowed'),
-        (lambda document: document["approach"].update(length_m=4.1), "must begin at"),
-        (lambda document: document["approach"].update(entrance_stage=4), "entrance_stage is 4"),
-        (lambda document: document["approach"].update(entrance_stage=1.5), "entrance_stage is 1.5"),
-        (lambda document: document["predicted"].update(passes=10), "unknown key 'passes'"),
-    ],
-)
-def test_a_document_of_version_3_is_read_strictly(
-    approached_table: ControllerTable, change: Callable[[dict[str, Any]], object], reason: str
-) -> None:
-    document = document_of(approached_table)
-    change(document)
-    with pytest.raises(DamagedTable, match=reason):
-        from_json(sealed(document))
-
-
-def test_a_reader_refuses_a_version_that_it_does_not_know(approached_table: ControllerTable) -> None:
-    # The readers of before know 1 and 2, and refuse 3 by the same comparison.
-    with pytest.raises(NewerVersion, match="version is 6, this reader knows only 1 to 5"):
-        from_json(sealed({**document_of(approached_table), "version": 6}))
-
-
-def test_books_with_and_without_estimators_hold_approaches(
+def test_an_approach_survives_every_file(
     approached_table: ControllerTable, table: ControllerTable, tmp_path: Path
 ) -> None:
     estimated = replace(with_estimator(approached_table, -4.0, 0.0, 12.0), id="estimated", approach=Approach(4.0, 3))
+    expected = {"length_m": 4.0, "entrance_stage": 1, "interlock": "position_clear"}
+    assert document_of(approached_table)["approach"] == expected
+    assert document_of(table)["approach"] is None
+    assert [from_json(to_json(each)) for each in (approached_table, estimated)] == [approached_table, estimated]
     for tables in ((approached_table,), (table, approached_table), (table, approached_table, estimated)):
         write_book(tables, tmp_path / "book.h5")
         assert read_book(tmp_path / "book.h5") == tables
         with h5py.File(tmp_path / "book.h5") as file:
-            assert file.attrs["schema_version"] == 3
             assert ("break" in file) == (estimated in tables)
-            stages = [-1 if each.approach is None else each.approach.entrance_stage for each in tables]
+            assert file["approach"][:].tolist() == [int(each.approach is not None) for each in tables]
+            stages = [0 if each.approach is None else each.approach.entrance_stage for each in tables]
             assert file["approach_entrance_stage"][:].tolist() == stages
     write_book((table,), tmp_path / "book.h5")
     with h5py.File(tmp_path / "book.h5") as file:
-        assert file.attrs["schema_version"] == 1
+        assert file["approach"][:].tolist() == [0]
         assert "approach_length_m" not in file
 
 

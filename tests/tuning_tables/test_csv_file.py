@@ -3,14 +3,20 @@
 import csv
 import io
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from synth.kernels.aim_speeds import aim_exit_speeds
+from tests.tuning_tables.aim.made_tables import category_table, measured_table
+from tests.tuning_tables.every_kind import smallest_aim
+from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import ControllerTable, InvalidTable, to_csv, to_json, write_csv
+from tuning_tables.aim import AimTable
 
 
 def test_every_value_reads_back_exactly(
@@ -23,22 +29,49 @@ def test_every_value_reads_back_exactly(
     for exported in (table, linear_table, approached_estimate, surface_table, surface_estimate):
         rows = list(csv.DictReader(io.StringIO(to_csv(exported).decode("utf-8"), newline="")))
         document = json.loads(to_json(exported))
-        lines = {(row["record"], int(row["key"])): numbers(row) for row in rows if row["record"] in ("lower", "upper")}
-        for stage in exported.stages:
-            assert lines.pop(("lower", stage.k), None) == stage.lower
-            assert lines.pop(("upper", stage.k), None) == stage.upper
-        assert not lines
-        leaves = dict(flattened({**document, "stages": [without_lines(stage) for stage in document["stages"]]}))
+        leaves = dict(flattened(document))
         for row in rows:
             if row["record"] == "text":
                 assert leaves.pop(row["key"]) == row["value0"]
             elif row["record"] == "number":
                 assert leaves.pop(row["key"]) == numbers(row)
-        # What is null has no row: the figures of no closed loop, and the slope of no line.
-        missing = {key for key in leaves if key == "validated" or key.endswith("_slope_m_s_per_kpa")}
-        assert leaves == dict.fromkeys(missing)
-        assert ("validated" in missing) == (exported.validated is None)
-        assert len(missing - {"validated"}) == exported.has_gauge * int((~exported.has_line).sum())
+        # What is null has no row.
+        assert set(leaves.values()) <= {None}
+        assert ("validated" in leaves) == (exported.validated is None)
+        assert len([key for key in leaves if key.endswith(("lower", "upper"))]) == int((~exported.has_line).sum())
+
+
+def test_a_switching_speed_that_is_never_reached_is_infinite() -> None:
+    table = table_of()
+    rows = csv.reader(io.StringIO(to_csv(table).decode("utf-8"), newline=""))
+    told = {(record, key): values for record, key, *values in rows}
+    assert told["text", "kind"][0] == "passages"
+    for index, passage in enumerate(table.passages):
+        for stage, row in enumerate(passage.switching_m_s):
+            key = f"passages.{index}.switching_m_s.{stage}"
+            assert [float(value) for value in told["number", key][:2]] == list(row)
+
+
+@pytest.mark.parametrize("make", [category_table, measured_table, smallest_aim])
+def test_every_node_of_an_aim_table_has_a_row(make: Callable[[], AimTable]) -> None:
+    table, document = make(), json.loads(to_json(make()))
+    rows = list(csv.reader(io.StringIO(to_csv(table).decode(), newline="")))
+    assert len({len(row) for row in rows}) == 1
+    by_key = {tuple(row[:2]): row[2:] for row in rows}
+    assert len(by_key) == len(rows)
+    assert by_key["number", "required.p_overspeed"][0] == "0.1"
+    assert by_key["number", "bounds_m_s"][:2] == ["0.5", "7.0"]
+    assert by_key["number", "axes.cars"][: len(table.axes.cars)] == [str(cars) for cars in document["axes"]["cars"]]
+    assert by_key["text", "crc32"][0] == document["crc32"]
+    assert ("number", "exit_speed_m_s") not in by_key
+    names = [name for name in by_key["names", "node"] if name]
+    nodes = [dict(zip(names, row[2:], strict=False)) for row in rows if row[0] == "node"]
+    assert len(nodes) == table.exit_speed_m_s.size
+    speeds = [float(node["exit_speed_m_s"] or "nan") for node in nodes]
+    assert np.array_equal(speeds, table.exit_speed_m_s.ravel(), equal_nan=True)
+    asked = [[float(node[name] or "nan") for node in nodes] for name in ("free_distance_m", "resistance_n_per_kn")]
+    answers = aim_exit_speeds(table.held, [int(node["cars"]) for node in nodes], *asked)
+    assert np.array_equal(answers, np.array(speeds, np.float32), equal_nan=True)
 
 
 def test_rows_form_a_rectangle_and_equal_tables_give_equal_bytes(table: ControllerTable, tmp_path: Path) -> None:
@@ -52,10 +85,6 @@ def test_rows_form_a_rectangle_and_equal_tables_give_equal_bytes(table: Controll
 
 def numbers(row: Mapping[str, str]) -> tuple[float, ...]:
     return tuple(float(value) for name, value in row.items() if name.startswith("value") and value)
-
-
-def without_lines(stage: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in stage.items() if key not in ("lower", "upper")}
 
 
 def flattened(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:

@@ -276,7 +276,7 @@ def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:
         ({"lost_speed_std_m_s": 0.0}, "estimator.lost_speed_std_m_s"),
         ({"unlikely_deviation": np.inf}, "estimator.unlikely_deviation"),
         ({"correlation_length_m": 0.0}, "estimator.correlation_length_m"),
-        ({"s_m": (0.0,)}, "1 breaks"),
+        ({"s_m": (0.0,)}, "1 entries"),
         ({"s_m": (0.0, 1.0, 1.0, 3.0, 4.0, 5.0)}, "must rise by 0.001 m"),
         ({"s_m": (0.0, 1.0, 2.0, 3.0, 4.0, 2e4)}, r"estimator.s_m\[5\] is 20000"),
         ({"touch_pressure_kpa": -1.0}, "estimator.touch_pressure_kpa"),

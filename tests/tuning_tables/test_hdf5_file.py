@@ -18,7 +18,6 @@ from tuning_tables import (
     Generator,
     InvalidTable,
     NewerVersion,
-    OlderVersion,
     TableError,
     UnknownFormat,
     read_book,
@@ -66,17 +65,17 @@ def test_the_book_explains_itself_to_h5py(book: Path, table: ControllerTable) ->
         assert file.attrs["format"] == "retarder-book"
         assert file.attrs["complete"] == 1
         assert file.attrs["config_sha256"] == table.generator.config_sha256
-        coefficients = file["coefficients"]
-        assert coefficients.dtype == np.float32
-        assert coefficients.shape == (2, 4, 2, 4)
-        assert [dimension[0].name for dimension in coefficients.dims] == ["/table", "/stage", "/line", "/power"]
-        assert coefficients.attrs["units"] == "m/s per m^power"
-        assert np.array_equal(coefficients[0], table.coefficients, equal_nan=True)
-        assert np.isnan(coefficients[1, :, :, 2:]).all()
+        upper = file["stage_upper"]
+        assert upper.dtype == np.float32
+        assert upper.shape == (2, 4, 4)
+        assert [dimension[0].name for dimension in upper.dims] == ["/table", "/stage", "/power"]
+        assert upper.attrs["units"] == "m/s per m^power"
+        assert np.array_equal(upper[0], table.coefficients[:, 1], equal_nan=True)
+        assert np.isnan(upper[1, :, 2:]).all()
         assert file["id"].asstr()[:].tolist() == ["leer-22t-4.0", "linear"]
-        assert file["retarder"].asstr()[0] == "Talbremse Süd"
-        assert file["n_stages"][:].tolist() == [4, 2]
-        assert file["has_line"][1].sum() == 2
+        assert file["retarder_name"].asstr()[0] == "Talbremse Süd"
+        assert file["stages"][:].tolist() == [4, 2]
+        assert file["validated"][:].tolist() == [1, 0]
         assert file["validated_passes"][:].tolist() == [20000, 0]
         assert np.isnan(file["predicted_p_stall"][0])
         for name, dataset in file.items():
@@ -128,11 +127,11 @@ def edit_value(name: str, index: int | tuple[int, ...], value: object) -> Edit:
 
 
 def edit_dataset_attribute(file: h5py.File) -> None:
-    file["mass_t"].attrs["units"] = "kg"
+    file["cut_mass_t"].attrs["units"] = "kg"
 
 
 def delete_dataset(file: h5py.File) -> None:
-    del file["mass_t"]
+    del file["cut_mass_t"]
 
 
 def add_dataset(file: h5py.File) -> None:
@@ -144,41 +143,39 @@ def delete_attribute(file: h5py.File) -> None:
 
 
 def change_type(file: h5py.File) -> None:
-    values = file["mass_t"][()]
-    del file["mass_t"]
-    file.create_dataset("mass_t", data=values.astype(np.float32), chunks=values.shape, fletcher32=True)
+    values = file["cut_mass_t"][()]
+    del file["cut_mass_t"]
+    file.create_dataset("cut_mass_t", data=values.astype(np.float32), chunks=values.shape, fletcher32=True)
 
 
 def change_shape(file: h5py.File) -> None:
-    values = file["mass_t"][()]
-    del file["mass_t"]
-    file.create_dataset("mass_t", data=values[:, np.newaxis], chunks=(2, 1), fletcher32=True)
+    values = file["cut_mass_t"][()]
+    del file["cut_mass_t"]
+    file.create_dataset("cut_mass_t", data=values[:, np.newaxis], chunks=(2, 1), fletcher32=True)
 
 
 @pytest.mark.parametrize(
     ("edit", "error", "reason"),
     [
         (edit_attribute("format", "kea-image"), UnknownFormat, "format is"),
-        (edit_attribute("schema_version", 6), NewerVersion, "schema_version is 6"),
-        (edit_attribute("schema_version", 5), DamagedTable, "missing or unknown"),
-        (edit_attribute("schema_version", 4), DamagedTable, "missing or unknown"),
-        (edit_attribute("schema_version", 3), DamagedTable, "missing or unknown"),
-        (edit_attribute("schema_version", 2), DamagedTable, "missing or unknown"),
-        (edit_attribute("schema_version", 0), OlderVersion, "schema_version is 0"),
-        (edit_attribute("schema_version", "1"), DamagedTable, "schema_version is"),
+        (edit_attribute("version", 2), NewerVersion, "version is 2"),
+        (edit_attribute("version", 0), DamagedTable, "version is 0"),
+        (edit_attribute("version", "1"), DamagedTable, "version is '1'"),
+        (edit_attribute("kind", "passages"), DamagedTable, "missing or unknown"),
+        (edit_attribute("kind", "aim"), DamagedTable, "kind is 'aim'"),
         (edit_attribute("complete", 0), DamagedTable, "complete is 0"),
         (edit_attribute("tool_version", "9"), DamagedTable, "payload_sha256"),
         (edit_attribute("payload_sha256", "0" * 64), DamagedTable, "payload_sha256"),
         (edit_attribute("surplus", 1), DamagedTable, "root attributes"),
-        (edit_value("coefficients", (0, 1, 0, 0), 5.25), DamagedTable, "payload_sha256"),
-        (edit_value("mass_t", 0, 85.0), DamagedTable, "payload_sha256"),
+        (edit_value("stage_lower", (0, 1, 0), 5.25), DamagedTable, "payload_sha256"),
+        (edit_value("cut_mass_t", 0, 85.0), DamagedTable, "payload_sha256"),
         (edit_value("id", 0, b"other"), DamagedTable, "payload_sha256"),
         (edit_dataset_attribute, DamagedTable, "other units than 't'"),
-        (delete_dataset, DamagedTable, "mass_t"),
+        (delete_dataset, DamagedTable, "cut_mass_t"),
         (add_dataset, DamagedTable, "surplus"),
         (delete_attribute, DamagedTable, "root attributes"),
-        (change_type, DamagedTable, "mass_t is float32"),
-        (change_shape, DamagedTable, r"mass_t is float64 \(2, 1\)"),
+        (change_type, DamagedTable, "cut_mass_t is float32"),
+        (change_shape, DamagedTable, r"cut_mass_t is float64 \(2, 1\)"),
     ],
 )
 def test_an_edited_book_is_refused_even_when_sealed_anew(

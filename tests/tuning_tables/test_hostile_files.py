@@ -200,11 +200,11 @@ def named_type(file: h5py.File, name: str, folder: Path) -> None:
 
 
 def alias(file: h5py.File, name: str, folder: Path) -> None:
-    file[name] = file["exit_m"]
+    file[name] = file["retarder_exit_m"]
 
 
 def reference_attribute(file: h5py.File, folder: Path) -> None:
-    file.attrs["tool_version"] = file["mass_t"].ref
+    file.attrs["tool_version"] = file["cut_mass_t"].ref
 
 
 def long_attribute(file: h5py.File, folder: Path) -> None:
@@ -216,33 +216,35 @@ def surplus(file: h5py.File, folder: Path) -> None:
         file.create_group(f"surplus-{index}")
 
 
+SLOPE = "stage_upper_slope_m_s_per_kpa"
+
 HOSTILE: dict[str, Forging] = {
-    "1-tib-contiguous": replace_by("mass_t", claim((2**37,))),
-    "1-tib-chunked": replace_by("mass_t", claim((2**37,), chunks=(2**10,), fletcher32=True)),
+    "1-tib-contiguous": replace_by("cut_mass_t", claim((2**37,))),
+    "1-tib-chunked": replace_by("cut_mass_t", claim((2**37,), chunks=(2**10,), fletcher32=True)),
     "overflowing": replace_by("valid_s_m", claim((2**62, 2**62), chunks=(1, 2), fletcher32=True)),
-    "largest-chunk": replace_by("mass_t", claim((2**28,), chunks=(2**28,), fletcher32=True)),
-    "filler": replace_by("mass_t", filler),
-    "bomb": replace_by("mass_t", bomb),
-    "soft-link": replace_by("mass_t", soft_link),
-    "dangling-link": replace_by("mass_t", dangling_link),
-    "circular-link": replace_by("mass_t", circular_link),
-    "external-link-to-file": replace_by("mass_t", external_link("/etc/passwd")),
-    "external-link-to-pipe": replace_by("mass_t", external_link(None)),
-    "virtual-of-file": replace_by("mass_t", virtual("/etc/passwd", False)),
-    "virtual-of-pipe": replace_by("mass_t", virtual(None, False)),
-    "virtual-without-end": replace_by("mass_t", virtual(None, True)),
-    "storage-in-file": replace_by("mass_t", foreign_storage("/etc/passwd")),
-    "storage-in-pipe": replace_by("mass_t", foreign_storage(None)),
-    "group": replace_by("mass_t", group),
-    "named-type": replace_by("mass_t", named_type),
-    "alias": replace_by("mass_t", alias),
+    "largest-chunk": replace_by("cut_mass_t", claim((2**28,), chunks=(2**28,), fletcher32=True)),
+    "filler": replace_by("cut_mass_t", filler),
+    "bomb": replace_by("cut_mass_t", bomb),
+    "soft-link": replace_by("cut_mass_t", soft_link),
+    "dangling-link": replace_by("cut_mass_t", dangling_link),
+    "circular-link": replace_by("cut_mass_t", circular_link),
+    "external-link-to-file": replace_by("cut_mass_t", external_link("/etc/passwd")),
+    "external-link-to-pipe": replace_by("cut_mass_t", external_link(None)),
+    "virtual-of-file": replace_by("cut_mass_t", virtual("/etc/passwd", False)),
+    "virtual-of-pipe": replace_by("cut_mass_t", virtual(None, False)),
+    "virtual-without-end": replace_by("cut_mass_t", virtual(None, True)),
+    "storage-in-file": replace_by("cut_mass_t", foreign_storage("/etc/passwd")),
+    "storage-in-pipe": replace_by("cut_mass_t", foreign_storage(None)),
+    "group": replace_by("cut_mass_t", group),
+    "named-type": replace_by("cut_mass_t", named_type),
+    "alias": replace_by("cut_mass_t", alias),
     "reference-attribute": reference_attribute,
     "long-attribute": long_attribute,
     "surplus": surplus,
     "axis-link": replace_by("stage", external_link(None)),
-    "slopes-1-tib": replace_by("slopes", claim((2**37, 2, 2), chunks=(2**10, 2, 2), fletcher32=True)),
-    "slopes-bomb": replace_by("slopes", bomb),
-    "slopes-link": replace_by("slopes", external_link(None)),
+    "slopes-1-tib": replace_by(SLOPE, claim((2**37, 2), chunks=(2**10, 2), fletcher32=True)),
+    "slopes-bomb": replace_by(SLOPE, bomb),
+    "slopes-link": replace_by(SLOPE, external_link(None)),
 }
 """Those of slopes need a book with a table at any time."""
 

@@ -6,20 +6,17 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
 import pytest
 
-from tests.tuning_tables.test_approach import document_of, sealed
+from tests.tuning_tables.every_kind import Document, document_of, sealed
 from tests.tuning_tables.test_surfaces import with_stage
 from tuning_tables import (
     ControllerTable,
     DamagedTable,
     Decisions,
-    OtherDecisions,
-    Stage,
     from_json,
     read_book,
     to_csv,
@@ -27,10 +24,7 @@ from tuning_tables import (
     write_book,
 )
 
-Document = dict[str, Any]
-
 SLOPES = ["lower_slope_m_s_per_kpa", "upper_slope_m_s_per_kpa"]
-STAGE_KEYS = ["k", "pressure_kpa", "lower", "upper"]
 
 
 def at_any_time(table: ControllerTable) -> ControllerTable:
@@ -45,41 +39,6 @@ def tilted_estimate(surface_estimate: ControllerTable) -> ControllerTable:
     return replace(surface_estimate, id="tilted-estimate", stages=stages)
 
 
-def test_the_version_follows_from_the_times_of_decision(
-    table: ControllerTable,
-    estimated_table: ControllerTable,
-    approached_table: ControllerTable,
-    surface_table: ControllerTable,
-    surface_estimate: ControllerTable,
-) -> None:
-    at_rest = (table, estimated_table, approached_table)
-    assert [document_of(each)["version"] for each in at_rest] == [1, 2, 3]
-    made = (*map(at_any_time, at_rest), surface_table, surface_estimate)
-    for each in made:
-        document = document_of(each)
-        assert document["version"] == 5
-        assert document["decisions"] == "at_any_time"
-        assert document["pressure"] == ("gauge" if each is surface_table else "none")
-        assert ("estimator" in document) == (each.estimator is not None)
-        assert ("approach" in document) == (each.approach is not None)
-        assert from_json(to_json(each)) == from_json(sealed(document)) == each
-
-
-def test_keys_and_their_order_are_the_contract(
-    surface_table: ControllerTable, surface_estimate: ControllerTable, tilted_estimate: ControllerTable
-) -> None:
-    gauge, without, both = map(document_of, (surface_table, surface_estimate, tilted_estimate))
-    assert list(gauge)[-5:] == ["validated", "approach", "decisions", "pressure", "crc32"]
-    assert list(without)[-6:] == list(both)[-6:] == ["validated", "estimator", *list(gauge)[-4:]]
-    for stage in [*gauge["stages"], *both["stages"]]:
-        assert list(stage) == STAGE_KEYS + SLOPES
-        for side, slope in zip(("lower", "upper"), SLOPES, strict=True):
-            assert (stage[side] is None) == (stage[slope] is None)
-    assert [list(stage) for stage in without["stages"]] == [STAGE_KEYS] * 2
-    # Each slope is the float32 number itself, as it reads back.
-    assert gauge["stages"][1]["lower_slope_m_s_per_kpa"] == float(np.float32(-0.006))
-
-
 def test_a_slope_that_is_a_whole_number_is_read_from_its_own_text(surface_table: ControllerTable) -> None:
     flat = with_stage(surface_table, 0, upper_slope_m_s_per_kpa=0)
     assert flat == with_stage(surface_table, 0, upper_slope_m_s_per_kpa=0.0)
@@ -87,82 +46,32 @@ def test_a_slope_that_is_a_whole_number_is_read_from_its_own_text(surface_table:
     assert from_json(to_json(flat)) == flat
 
 
-def remove_slopes(document: Document) -> None:
-    for stage in document["stages"]:
-        for key in SLOPES:
-            del stage[key]
-
-
-def forget_slopes(document: Document) -> None:
-    for stage in document["stages"]:
-        stage.update(dict.fromkeys(SLOPES))
-
-
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (lambda d: d.update(version=1), "unknown key 'approach'"),
-        (lambda d: d.update(version=2), "estimator is missing"),
-        (lambda d: d.update(version=3), "unknown key 'decisions'"),
-        (lambda d: d.update(version=4), "decides at sensor passages"),
-        (lambda d: d.pop("decisions"), "decisions is missing"),
-        (lambda d: d.pop("pressure"), "pressure is missing"),
-        (lambda d: d.update(decisions="at_rest"), "decisions is 'at_rest', but only \"at_any_time\" is allowed"),
-        (lambda d: d.update(decisions="at_sensor_passages"), 'only "at_any_time" is allowed'),
-        (lambda d: d.update(decisions=None), "decisions is None, but it must be a string"),
-        (lambda d: d.update(pressure="Gauge"), 'only "gauge" and "none" are allowed'),
-        (lambda d: d.update(pressure=None), "pressure is None, but it must be a string"),
-        (lambda d: d.update(pressure=True), "pressure is True, but it must be a string"),
-        (lambda d: d.update(pressure="none"), r"stages\[0\] has the unknown key 'lower_slope_m_s_per_kpa'"),
-        (lambda d: d.update(gauge="none"), "unknown key 'gauge'"),
-        (remove_slopes, r"stages\[0\]\.lower_slope_m_s_per_kpa is missing"),
-        (forget_slopes, 'pressure is "gauge", but no line has a slope'),
-        (lambda d: d["stages"][1].pop(SLOPES[0]), r"stages\[1\]\.lower_slope_m_s_per_kpa is missing"),
+        (lambda d: d.update(decisions="at_rest"), "decisions are at rest"),
+        (lambda d: d.update(decisions="at_sensor_passages"), '"at_rest" or "at_any_time"'),
         (lambda d: d["stages"][1].update({SLOPES[0]: None}), r"stages\[1\]\.lower_slope_m_s_per_kpa is missing, but"),
         (lambda d: d["stages"][0].update({SLOPES[0]: 0.5}), r"stages\[0\]\.lower is null"),
         (lambda d: d["stages"][1].update({SLOPES[1]: 0.1}), r"stages\[1\]\.upper_slope.* float32 cannot hold"),
         (lambda d: d["stages"][1].update({SLOPES[1]: 1e39}), r"stages\[1\]\.upper_slope.* float32 cannot hold"),
-        (lambda d: d["stages"][1].update({SLOPES[1]: "0.5"}), r"stages\[1\]\.upper_slope.* must be a number"),
-        (lambda d: d["stages"][1].update({SLOPES[1]: [0.5]}), r"stages\[1\]\.upper_slope.* must be a number"),
-        (lambda d: d["stages"][1].update({SLOPES[1]: False}), r"stages\[1\]\.upper_slope.* must be a number"),
         (lambda d: d["stages"][1].update({SLOPES[1]: -0.0625}), r"stages\[1\]: upper - lower comes down to"),
         (lambda d: d["stages"][3].update(pressure_kpa=1e39), r"stages\[3\]\.pressure_kpa is 1e\+39, which exceeds"),
-        (lambda d: d["predicted"].update(passes=10), "unknown key 'passes'"),
     ],
 )
-def test_a_document_of_version_5_is_read_strictly(
+def test_slopes_that_make_no_table_are_refused(
     surface_table: ControllerTable, change: Callable[[Document], object], reason: str
 ) -> None:
     document = document_of(surface_table)
     change(document)
-    with pytest.raises(OtherDecisions if document["version"] == 4 else DamagedTable, match=reason) as caught:
+    with pytest.raises(DamagedTable, match=reason):
         from_json(sealed(document), source="t.json")
-    assert str(caught.value).startswith("t.json: ")
-    assert str(caught.value).isprintable()
-
-
-def test_a_slope_of_minus_zero_is_refused_in_either_layout(surface_table: ControllerTable) -> None:
-    flat = with_stage(surface_table, 0, upper_slope_m_s_per_kpa=0.0)
-    assert to_json(flat).count(b'"upper_slope_m_s_per_kpa": 0.0}') == 1
-    signed = to_json(flat).replace(b'"upper_slope_m_s_per_kpa": 0.0}', b'"upper_slope_m_s_per_kpa": -0.0}')
-    with pytest.raises(DamagedTable, match=r"stages\[0\]\.upper_slope_m_s_per_kpa is -0\.0, but"):
-        from_json(signed)
-
-
-def test_a_table_without_a_single_line_has_no_gauge(surface_table: ControllerTable) -> None:
-    bare = replace(surface_table, stages=(Stage(0, 0.0, None, None), Stage(1, 1.0, None, None)))
-    document = document_of(bare)
-    assert document["pressure"] == "none"
-    for stage in document["stages"]:
-        stage.update(dict.fromkeys(SLOPES))
-    with pytest.raises(DamagedTable, match="no line has a slope"):
-        from_json(sealed({**document, "pressure": "gauge"}))
 
 
 def test_csv_has_the_slopes_and_says_what_it_is(surface_table: ControllerTable) -> None:
     rows = list(csv.DictReader(io.StringIO(to_csv(surface_table).decode("utf-8"), newline="")))
     cells = {row["key"]: row["value0"] for row in rows if row["record"] in ("text", "number")}
-    assert (cells["decisions"], cells["pressure"], cells["version"]) == ("at_any_time", "gauge", "5")
+    assert (cells["decisions"], cells["kind"]) == ("at_any_time", "lines")
     slopes = {
         (stage.k, f"{side}_slope_m_s_per_kpa"): slope
         for stage in surface_table.stages
@@ -191,22 +100,17 @@ def test_a_book_holds_tables_at_rest_and_at_any_time(
         assert read_book(path) == tables
         assert [to_json(read) for read in read_book(path)] == [to_json(each) for each in tables]
         with h5py.File(path) as file:
-            assert file.attrs["schema_version"] == 5
             assert ("break" in file) == any(each.estimator is not None for each in tables)
-            deciding = [each.decisions is Decisions.AT_ANY_TIME for each in tables]
-            assert file["at_any_time"][:].tolist() == deciding
-            assert file["has_gauge"][:].tolist() == [each.has_gauge for each in tables]
-            assert [file[name].dtype.str for name in ("at_any_time", "has_gauge", "slopes")] == ["|u1", "|u1", "<f4"]
-            for each, slopes in zip(tables, file["slopes"][:], strict=True):
-                assert np.array_equal(slopes[: len(each.stages)], each.slopes)
-                assert np.isnan(slopes[len(each.stages) :]).all()
-
-
-def test_a_book_of_tables_at_rest_is_of_no_version_5(approached_table: ControllerTable, tmp_path: Path) -> None:
-    write_book((approached_table,), tmp_path / "book.h5")
-    with h5py.File(tmp_path / "book.h5") as file:
-        assert file.attrs["schema_version"] == 3
-        assert {"at_any_time", "has_gauge", "slopes"}.isdisjoint(file)
+            words = [b"at_any_time" if each.decisions is Decisions.AT_ANY_TIME else b"at_rest" for each in tables]
+            assert file["decisions"][:].tolist() == words
+            for side in ("lower", "upper"):
+                stored = file[f"stage_{side}_slope_m_s_per_kpa"]
+                assert stored.dtype.str == "<f4"
+                for each, slopes in zip(tables, stored[:], strict=True):
+                    own = [getattr(stage, f"{side}_slope_m_s_per_kpa") for stage in each.stages]
+                    wanted = np.array([np.nan if slope is None else slope for slope in own])
+                    assert np.array_equal(slopes[: len(each.stages)], wanted, equal_nan=True)
+                    assert np.isnan(slopes[len(each.stages) :]).all()
 
 
 def test_slopes_keep_their_last_bit(surface_table: ControllerTable, tmp_path: Path) -> None:

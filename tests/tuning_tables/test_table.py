@@ -83,7 +83,7 @@ def test_validated_is_filled_in_on_a_copy(linear_table: ControllerTable) -> None
     ids=repr,
 )
 def test_a_wrong_field_is_refused_by_name(table: ControllerTable, change: dict[str, object]) -> None:
-    key = {"degree": "(polynomial.degree|coefficients)"}.get(next(iter(change)), next(iter(change)))
+    key = {"degree": "(degree|coefficients)"}.get(next(iter(change)), next(iter(change)))
     with pytest.raises(InvalidTable, match=key):
         replace(table, **change)  # type: ignore[arg-type]  # one of the values has a wrong type
 
@@ -98,9 +98,8 @@ def test_a_wrong_field_is_refused_by_name(table: ControllerTable, change: dict[s
         (Stage(0, 0.0, (1.0,), (4.0,)), Stage(1, 100.0, (2.0,), None)),
         (Stage(0, 0.0, None, (4.0,)), Stage(1, 100.0, (2.0,), (4.0,))),
         (Stage(0, 0.0, None, (4.0, 0.0)), Stage(1, 100.0, (2.0,), None)),
-        (Stage(0, 0.0, None, ()), Stage(1, 100.0, (2.0,), None)),
         (Stage(0, 0.0, None, (2.0**127,)), Stage(1, 100.0, (2.0,), None)),
-        tuple(Stage(k, 10.0 * k, None, None) for k in range(33)),
+        (*(Stage(k, 10.0 * k, None, None) for k in range(32)), Stage(31, 320.0, None, None)),
         (None, None),
     ],
 )
@@ -117,6 +116,7 @@ def test_wrong_stages_are_refused(linear_table: ControllerTable, stages: tuple[S
         (lambda: Stage(0, INF, None, None), "pressure_kpa"),
         (lambda: Stage(0, 0.0, None, [4.0]), "upper"),  # type: ignore[arg-type]  # a list
         (lambda: Stage(0, 0.0, None, (NAN,)), "upper"),
+        (lambda: Stage(0, 0.0, None, ()), r"upper has 0 entries, but 1 to 10 are allowed"),
         (lambda: Stage(0, 0.0, None, (0.1,)), "round_coefficients"),
         (lambda: Stage(0, 0.0, None, (1e39,)), "float32"),
         (lambda: round_coefficients([1.0, 1e39]), "coefficient 1"),

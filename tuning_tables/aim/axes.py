@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.aim.nodes import Nodes, nodes_of
+from tuning_tables.declared.numbers import Count, Number, Row
 from tuning_tables.errors import InvalidTable
 
 MOST_CARS: Final = 1000
@@ -27,12 +28,7 @@ MOST_NODES: Final = 20_000
 
 @dataclass(frozen=True, eq=False)
 class AimAxes:
-    """Three axes, each rising; read-only copies of what is given.
-
-    cars                 whole numbers, 1 to 1000, at most 64 of them, (C,)
-    free_distance_m      what the head of the cut has still to roll to the standing cars when its last axle leaves the
-                         position, 0 to 10 000 m, (D,)
-    resistance_n_per_kn  measured rolling resistance, within +-1000 N/kN, (R,); None in a table by category alone
+    """The axes of the nodes, each rising; read-only copies of what is given.
 
     Free distances and resistances are 0.001 apart at least, as float32; D times R is 999 at most, C times that
     20 000.
@@ -40,9 +36,33 @@ class AimAxes:
     Raises `InvalidTable`.
     """
 
-    cars: npt.NDArray[np.int64]
-    free_distance_m: Nodes
-    resistance_n_per_kn: Nodes | None = None
+    cars: Annotated[npt.NDArray[np.int64], Row(Count("numbers of cars", 1, MOST_CARS), "cars", 1, MOST_NUMBERS_OF_CARS)]
+    free_distance_m: Annotated[
+        Nodes,
+        Row(
+            Number(
+                "from the head of the cut to the standing cars, when its last axle leaves the position",
+                0.0,
+                LONGEST_FREE_DISTANCE_M,
+            ),
+            "free_distance",
+            1,
+            MOST_NODES_OF_A_CUT,
+        ),
+    ]
+    resistance_n_per_kn: Annotated[
+        Nodes | None,
+        Row(
+            Number(
+                "measured rolling resistance; null by category alone",
+                -LARGEST_RESISTANCE_N_PER_KN,
+                LARGEST_RESISTANCE_N_PER_KN,
+            ),
+            "resistance",
+            1,
+            MOST_NODES_OF_A_CUT,
+        ),
+    ] = None
 
     def __post_init__(self) -> None:
         cars = np.array(self.cars)

@@ -2,12 +2,81 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+from typing import Any, Final
+
 import numpy as np
 import numpy.typing as npt
 
+from tuning_tables.declared.leaf import Json
+from tuning_tables.declared.numbers import Number
+from tuning_tables.declared.place import Place
 from tuning_tables.errors import InvalidTable
 
 Nodes = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NodeNumbers:
+    """Numbers from `least` to `most` at the nodes of a table, null where there is none; an array in Python."""
+
+    meaning: str
+    least: float
+    most: float = math.inf
+    unit: str = ""
+    axes: None = None
+    dtype: str = "<f8"
+    absent: Any = None
+
+    @property
+    def allowed(self) -> str:
+        """Its limits in words."""
+        return f"{Number('', self.least, self.most).allowed}, or null"
+
+    def check(self, value: Any, key: str) -> None:
+        """Nothing yet: the table knows their shape, and looks at them with it."""
+
+    def written(self, value: Any) -> object:
+        """Arrays in arrays, null where there is no number."""
+        if np.ndim(value) > 1:
+            return [self.written(part) for part in value]
+        return [None if np.isnan(number) else float(number) for number in value]
+
+    def read(self, value: object, place: Place) -> Any:
+        """Arrays in arrays, all of one length side by side, of numbers or null."""
+        return np.array(_rectangle(value, place), dtype=np.float64)
+
+    def schema(self) -> Json:
+        """Arrays in arrays, two or three deep, of numbers or null."""
+        number = {"anyOf": [{"type": "null"}, Number(self.meaning, self.least, self.most).schema()]}
+        inner = {"anyOf": [*number["anyOf"], {"type": "array", "items": number, "minItems": 1}]}
+        row = {"type": "array", "items": inner, "minItems": 1}
+        return {"type": "array", "items": row, "minItems": 1}
+
+    def cells(self, value: Any) -> Any:
+        """Itself."""
+        return value
+
+    def of_cells(self, cells: Any) -> Any:
+        """Itself."""
+        return cells
+
+
+def _rectangle(value: object, place: Place) -> Any:
+    """`value`, numbers or null in arrays in arrays, each as long as those beside it; NaN for null."""
+    if value is None:
+        return np.nan
+    if not isinstance(value, list):
+        return ANY_NUMBER.read(value, place)
+    found = [_rectangle(item, place.item(index)) for index, item in enumerate(value)]
+    for index, (item, each) in enumerate(zip(value, found, strict=True)):
+        if np.shape(each) != np.shape(found[0]):
+            place.item(index).refuse(item, "of the shape of the entries beside it")
+    return found
+
+
+ANY_NUMBER: Final = Number("at a node")
 
 
 def nodes_of(values: npt.ArrayLike, key: str, shape: tuple[int, ...]) -> Nodes:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Annotated, ClassVar, Final
 
-from tuning_tables.category_number import require_category_number
+from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN, LEAST_OWN, require_category_number
+from tuning_tables.declared.leaf import Json
+from tuning_tables.declared.members import require_declared
+from tuning_tables.declared.numbers import Count, Number
+from tuning_tables.declared.texts import Text
 from tuning_tables.errors import InvalidTable
-from tuning_tables.requirement import require_between, require_finite, require_text
 
 FASTEST_M_S: Final = 40.0
 FARTHEST_M: Final = 1e5
@@ -15,66 +18,61 @@ FARTHEST_M: Final = 1e5
 
 @dataclass(frozen=True)
 class ParkPosition:
-    """The position that is told an exit speed; a cut leaves it when its last axle is `exit_at_m` from the crest."""
+    """The position that is told an exit speed."""
 
-    name: str
-    exit_at_m: float
+    name: Annotated[str, Text("its name")]
+    exit_at_m: Annotated[float, Number("a cut leaves it when its last axle is so far from the crest", 0.0, FARTHEST_M)]
 
     def __post_init__(self) -> None:
-        require_text(self.name, "position.name")
-        require_between(self.exit_at_m, "position.exit_at_m", 0.0, FARTHEST_M)
+        require_declared(self, "position")
 
 
 @dataclass(frozen=True)
 class AimCategory:
-    """The weight category of the cuts: its number in controllers, 1 to 5 or 16 to 255, and its name."""
+    """The weight category of the cuts."""
 
-    number: int
-    name: str
+    number: Annotated[int, Count("what stands for it in controllers", 1, LARGEST_OWN)]
+    name: Annotated[str, Text("its name")]
+    SCHEMA: ClassVar[Json] = {
+        "oneOf": [
+            {"properties": {"name": {"not": {"enum": list(KNOWN_NUMBERS)}}, "number": {"minimum": LEAST_OWN}}},
+            *(
+                {"properties": {"name": {"const": name}, "number": {"const": number}}}
+                for name, number in KNOWN_NUMBERS.items()
+            ),
+        ]
+    }
 
     def __post_init__(self) -> None:
-        require_text(self.name, "category.name")
+        require_declared(self, "category")
         require_category_number(self.name, self.number, "category.number")
 
 
 @dataclass(frozen=True)
 class Required:
-    """A cut may couple faster than `coupling_speed_m_s` with the probability `p_overspeed`, within (0, 1)."""
+    """What is required of the speed at which cuts couple."""
 
-    p_overspeed: float
-    coupling_speed_m_s: float
+    p_overspeed: Annotated[
+        float, Number("a cut may couple faster than that with this probability, within (0, 1)", 0.0, 1.0)
+    ]
+    coupling_speed_m_s: Annotated[float, Number("fastest coupling that is wanted", 0.01, FASTEST_M_S)]
+    SCHEMA: ClassVar[Json] = {"properties": {"p_overspeed": {"exclusiveMinimum": 0, "exclusiveMaximum": 1}}}
 
     def __post_init__(self) -> None:
-        require_finite(self.p_overspeed, "required.p_overspeed")
+        require_declared(self, "required")
         if not 0.0 < self.p_overspeed < 1.0:
             raise InvalidTable(f"required.p_overspeed is {self.p_overspeed!r}, but it must lie within (0, 1).")
-        require_between(self.coupling_speed_m_s, "required.coupling_speed_m_s", 0.01, FASTEST_M_S)
-
-
-@dataclass(frozen=True)
-class CategoryAlone:
-    """Of a cut the category is known and the number of its cars."""
 
 
 @dataclass(frozen=True)
 class MeasuredResistance:
-    """Of a cut the rolling resistance was measured, too: by its speeds at `from_m` and `to_m` from the crest.
+    """By which speeds the rolling resistance of a cut was measured; null: its category alone is known."""
 
-    `speed_std_m_s`: standard deviation of each of the two speeds.
-    """
-
-    from_m: float
-    to_m: float
-    speed_std_m_s: float
+    from_m: Annotated[float, Number("first place, from the crest", 0.0, FARTHEST_M)]
+    to_m: Annotated[float, Number("second place, from the crest", 0.0, FARTHEST_M)]
+    speed_std_m_s: Annotated[float, Number("standard deviation of each of the two speeds", 0.0, FASTEST_M_S)]
 
     def __post_init__(self) -> None:
-        require_between(self.from_m, "knowledge.from_m", 0.0, FARTHEST_M)
-        require_between(self.to_m, "knowledge.to_m", 0.0, FARTHEST_M)
+        require_declared(self, "measured")
         if not self.from_m < self.to_m:
-            raise InvalidTable(
-                f"knowledge.to_m is {self.to_m!r}, but it must exceed knowledge.from_m, {self.from_m!r}."
-            )
-        require_between(self.speed_std_m_s, "knowledge.speed_std_m_s", 0.0, FASTEST_M_S)
-
-
-Knowledge: TypeAlias = CategoryAlone | MeasuredResistance
+            raise InvalidTable(f"measured.to_m is {self.to_m!r}, but it must exceed measured.from_m, {self.from_m!r}.")

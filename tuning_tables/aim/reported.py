@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
-from tuning_tables.aim.nodes import Nodes, nodes_of, require_all
+from tuning_tables.aim.nodes import NodeNumbers, Nodes, nodes_of, require_all
+from tuning_tables.declared.numbers import Count
 from tuning_tables.requirement import require_count
 
 FIGURES: Final = ("p_overspeed", "p_overspeed_low95", "p_overspeed_high95", "mean_gap_m")
@@ -16,20 +17,19 @@ FIGURES: Final = ("p_overspeed", "p_overspeed_low95", "p_overspeed_high95", "mea
 
 @dataclass(frozen=True, eq=False)
 class Reported:
-    """Figures of `passes` simulated cuts a node, of other draws than those that the exit speeds were chosen on.
+    """Figures of simulated cuts at the nodes, of other draws than those that the exit speeds were chosen on.
 
-    p_overspeed       share that coupled faster than required, with the ends of its 95 % interval: low <= p <= high
-    mean_gap_m        mean of what stayed free before the standing cars, >= 0; 0 for a cut that coupled
-
-    All have the shape of the axes, and NaN at the same nodes: where there is no exit speed, and where too few of the
-    passes came to a node to tell. Read-only copies. Raises `InvalidTable`.
+    The share lies within its interval. All figures have the shape of the axes, and NaN at the same nodes: where there
+    is no exit speed, and where too few of the passes came to a node to tell. Read-only copies. Raises `InvalidTable`.
     """
 
-    passes: int
-    p_overspeed: Nodes
-    p_overspeed_low95: Nodes
-    p_overspeed_high95: Nodes
-    mean_gap_m: Nodes
+    passes: Annotated[int, Count("simulated cuts at each node", 1)]
+    p_overspeed: Annotated[Nodes, NodeNumbers("share that coupled faster than required", 0.0, 1.0)]
+    p_overspeed_low95: Annotated[Nodes, NodeNumbers("lower end of its 95 % interval", 0.0, 1.0)]
+    p_overspeed_high95: Annotated[Nodes, NodeNumbers("upper end of its 95 % interval", 0.0, 1.0)]
+    mean_gap_m: Annotated[
+        Nodes, NodeNumbers("mean of what stayed free before the standing cars; 0 for a cut that coupled", 0.0)
+    ]
 
     def __post_init__(self) -> None:
         require_count(self.passes, "reported.passes", 1)

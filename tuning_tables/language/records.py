@@ -12,10 +12,7 @@ from enum import Enum
 from math import prod
 from typing import Final, get_args, get_type_hints
 
-UNITS: Final = (
-    "m2_s2_per_kpa", "m_s_per_kpa", "m2_s2", "m2_s4", "m_s2", "m_s", "n_per_kn", "kpa", "m", "s", "t",
-)  # fmt: skip
-"""Units as names end with them, each before one that it ends with."""
+from tuning_tables.units import ending_of
 
 WORDS: Final[Mapping[str, str]] = {"s_m": "Path_m", "v_m_s": "Speed_m_s", "s": "Path", "v": "Speed"}
 """Letters of the mathematics in Structured Text, where one letter is no name."""
@@ -148,7 +145,7 @@ def st_name(name: str) -> str:
     """A name in Structured Text: `path_min_m` is `PathMin_m`; letters of the mathematics are words."""
     if name in WORDS:
         return WORDS[name]
-    unit = next((each for each in UNITS if name.endswith(f"_{each}")), "")
+    unit = ending_of(name)
     stem = name.removesuffix(f"_{unit}") if unit else name
     words = "".join(word[:1].upper() + word[1:] for word in stem.split("_"))
     return f"{words}_{unit}" if unit else words

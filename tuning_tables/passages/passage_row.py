@@ -5,12 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final
+from typing import Annotated, Any, Final
 
 import numpy as np
 
+from tuning_tables.declared.leaf import Json
+from tuning_tables.declared.members import require_declared
+from tuning_tables.declared.numbers import Count, Number, present_rows
+from tuning_tables.declared.place import Place
 from tuning_tables.errors import InvalidTable
-from tuning_tables.requirement import require_between, require_count, require_finite, require_tuple
+from tuning_tables.line_order import LARGEST_FLOAT32
+from tuning_tables.requirement import require_finite, require_tuple
+from tuning_tables.stage import MOST_STAGES
 
 PATH_RANGE_M: Final = (-100.0, 1e5)
 
@@ -18,40 +24,92 @@ Row = tuple[float, ...]
 
 
 @dataclass(frozen=True)
-class PassageRow:
-    """Axle `axle` over sensor `sensor`, both numbered from 0, when the first axle is at `path_m`.
+class SwitchingSpeeds:
+    """K speeds for each stage k = 0 … K in force, float32 numbers >= 0 that do not fall in a row.
 
-    `switching_m_s` has a row of K speeds for each stage k = 0 … K in force; row[j] parts wanting stage j from wanting
-    stage j + 1 (see `rule.wanted_stage`). The speeds of a row are float32 numbers >= 0 that do not fall, and
-    row[k − 1] < row[k] in the row of stage k. A speed may be −∞ at j < k (never lower so far) and +∞ at j >= k (never
-    raise so far).
+    A speed may be −∞ at j < k and +∞ at j >= k, which JSON writes as null.
+    """
+
+    meaning: str
+    unit: str = ""
+    axes: tuple[str, ...] = ("stage", "threshold")
+    dtype: str = "<f4"
+    absent: Any = ()
+    allowed: str = "float32, 0 or more, not falling in a row; null: never"
+
+    def check(self, value: Any, key: str) -> None:
+        """They are such speeds, and a stage is lowered below less than it is raised above."""
+        require_tuple(value, key)
+        highest = len(value) - 1
+        for stage, row in enumerate(value):
+            at = f"{key}[{stage}]"
+            require_tuple(row, at, highest)
+            for index, speed in enumerate(row):
+                _require_speed(speed, f"{at}[{index}]", never(stage, index))
+            if any(later < earlier for earlier, later in pairwise(row)):
+                raise InvalidTable(f"{at} is {row!r}, but its speeds must not fall.")
+            if 0 < stage < highest and not row[stage - 1] < row[stage]:
+                raise InvalidTable(
+                    f"{at} is {row!r}, but its speed {stage - 1}, below which the stage is lowered, must be less than "
+                    f"its speed {stage}, above which it is raised."
+                )
+
+    def written(self, value: Any) -> object:
+        """Rows, null for an infinity."""
+        return [[None if math.isinf(speed) else float(speed) for speed in row] for row in value]
+
+    def read(self, value: object, place: Place) -> Any:
+        """Rows of numbers or null."""
+        return tuple(
+            tuple(
+                never(stage, index) if item is None else SPEED.read(item, place.item(stage).item(index))
+                for index, item in enumerate(place.item(stage).array(row))
+            )
+            for stage, row in enumerate(place.array(value))
+        )
+
+    def schema(self) -> Json:
+        """Rows of numbers or null."""
+        speed = {"anyOf": [{"type": "null"}, SPEED.schema()]}
+        row = {"type": "array", "items": speed, "minItems": 1, "maxItems": MOST_STAGES - 1}
+        return {"type": "array", "items": row, "minItems": 2, "maxItems": MOST_STAGES}
+
+    def cells(self, value: Any) -> Any:
+        """Itself, infinities too."""
+        return value
+
+    def of_cells(self, cells: Any) -> Any:
+        """Those that are no filling."""
+        return present_rows(cells)
+
+
+def never(stage: int, index: int) -> float:
+    """In the row of `stage`, the speed at which stage `index` is never parted from the next."""
+    return -math.inf if index < stage else math.inf
+
+
+SPEED: Final = Number("switching speed", 0.0, LARGEST_FLOAT32)
+
+
+@dataclass(frozen=True)
+class PassageRow:
+    """A passage of an axle over a sensor, with its switching speeds.
+
+    `switching_m_s[k][j]` parts wanting stage j from wanting stage j + 1 when stage k is in force (see
+    `rule.wanted_stage`): row[k − 1] < row[k] in the row of stage k.
 
     Raises `InvalidTable`.
     """
 
-    sensor: int
-    axle: int
-    path_m: float
-    switching_m_s: tuple[Row, ...]
+    sensor: Annotated[int, Count("number of the sensor, from 0")]
+    axle: Annotated[int, Count("number of the axle, from 0")]
+    path_m: Annotated[float, Number("of the first axle when that axle is at the middle of the base", *PATH_RANGE_M)]
+    switching_m_s: Annotated[
+        tuple[Row, ...], SwitchingSpeeds("by stage in force, what parts wanting stage j from wanting stage j + 1")
+    ]
 
     def __post_init__(self) -> None:
-        require_count(self.sensor, "passages.sensor", 0)
-        require_count(self.axle, "passages.axle", 0)
-        require_between(self.path_m, "passages.path_m", *PATH_RANGE_M)
-        require_tuple(self.switching_m_s, "passages.switching_m_s")
-        highest = len(self.switching_m_s) - 1
-        for stage, row in enumerate(self.switching_m_s):
-            key = f"{self._key}.switching_m_s[{stage}]"
-            require_tuple(row, key, highest)
-            for index, speed in enumerate(row):
-                _require_speed(speed, f"{key}[{index}]", -math.inf if index < stage else math.inf)
-            if any(later < earlier for earlier, later in pairwise(row)):
-                raise InvalidTable(f"{key} is {row!r}, but its speeds must not fall.")
-            if 0 < stage < highest and not row[stage - 1] < row[stage]:
-                raise InvalidTable(
-                    f"{key} is {row!r}, but its speed {stage - 1}, below which the stage is lowered, must be less than "
-                    f"its speed {stage}, above which it is raised."
-                )
+        require_declared(self, self._key)
 
     @property
     def _key(self) -> str:

@@ -4,30 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.approach import Approach
+from tuning_tables.declared.members import Several, require_declared
+from tuning_tables.declared.numbers import Count, Number, Row
 from tuning_tables.errors import InvalidTable
 from tuning_tables.figures import Predicted, Validated
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.plausible_motion import PlausibleMotion
 from tuning_tables.passages.sensor_layout import SensorLayout
-from tuning_tables.provenance import CutId, Generator, RetarderId
-from tuning_tables.requirement import (
-    UTC_INSTANT,
-    require_between,
-    require_count,
-    require_kind,
-    require_match,
-    require_positive,
-    require_rising,
-    require_text,
-    require_tuple,
-)
-from tuning_tables.table import MOST_STAGES
+from tuning_tables.provenance import CREATED, TABLE_NAME, CutId, Generator, RetarderId
+from tuning_tables.requirement import require_between, require_count, require_rising
+from tuning_tables.stage import MOST_STAGES
 
 LONGEST_CUT_M: Final = 1e4
 PATH_ERROR_M: Final = 1e-6
@@ -41,19 +33,10 @@ MOST_SPEEDS: Final = 2**17
 class PassageTable:
     """A complete, checked table; it cannot be built otherwise, and nothing in it can be changed.
 
-    id, created       name of the table; UTC instant "2026-11-20T22:46:00Z", given by the caller
-    generator, retarder, cut   what made it and what it is for
-    target_speed_m_s  exit speed the table aims at, > 0
-    pressure_kpa      gauge pressure of stage k = 0 … K, >= 0, rising, 1 <= K <= 31
-    sensors           where speed is measured and how, and at whose passages is decided
-    approach          the regulator acts from the first sensor on: length_m is −sensors.path_m[0]
-    initial_stage     at rest when the regulator takes over a cut, 0 … approach.entrance_stage
-    passages          all those before retarder.exit_m, in the order of the path, then of the sensors; at most 1024,
-                      each with K + 1 rows, at most 131 072 switching speeds in all; path within 1e-6 m of the sensor's
-                      plus the axle's offset
-    plausible         limits of the tracker
-    valid_v_m_s       (least, greatest) speed that the switching speeds were made for, >= 0; the rule does not use it
-    predicted         figures of the solver, computed without passes; `validated` those of a closed loop, None before
+    Pressures rise. The regulator acts from the first sensor on: approach.length_m is −sensors.path_m[0]; the initial
+    stage is at most the entrance stage. Passages are all those before retarder.exit_m, in the order of the path, then
+    of the sensors, each with K + 1 rows, at most 131 072 switching speeds in all; the path is within 1e-6 m of the
+    sensor's plus the axle's offset. The prediction is exact, without passes.
 
     Derived from these (arrays are read-only). For `rule.wanted_stage`, M passages:
 
@@ -72,19 +55,24 @@ class PassageTable:
     Raises `InvalidTable`.
     """
 
-    id: str
-    created: str
+    id: Annotated[str, TABLE_NAME]
+    created: Annotated[str, CREATED]
     generator: Generator
     retarder: RetarderId
     cut: CutId
-    target_speed_m_s: float
-    pressure_kpa: tuple[float, ...]
+    target_speed_m_s: Annotated[float, Number("exit speed that the table aims at", is_positive=True)]
+    pressure_kpa: Annotated[
+        tuple[float, ...], Row(Number("gauge pressure of each stage", 0.0), "stage", 2, MOST_STAGES)
+    ]
     sensors: SensorLayout
     approach: Approach
-    initial_stage: int
-    passages: tuple[PassageRow, ...]
+    initial_stage: Annotated[int, Count("at rest when the regulator takes over a cut", 0, MOST_STAGES - 1)]
+    passages: Annotated[tuple[PassageRow, ...], Several("passages", "passage", 1, MOST_PASSAGES)]
     plausible: PlausibleMotion
-    valid_v_m_s: tuple[float, float]
+    valid_v_m_s: Annotated[
+        tuple[float, float],
+        Row(Number("least and greatest speed that the switching speeds were made for", 0.0), "end", 2, 2),
+    ]
     predicted: Predicted
     validated: Validated | None = None
     switching_m_s: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
@@ -127,39 +115,21 @@ class PassageTable:
         return replace(self, validated=validated)
 
     def _require_fields(self) -> None:
-        require_text(self.id, "id")
-        require_match(self.created, "created", UTC_INSTANT, "2026-11-20T22:46:00Z")
-        require_kind(self.generator, "generator", Generator)
-        require_kind(self.retarder, "retarder", RetarderId)
-        require_kind(self.cut, "cut", CutId)
-        require_positive(self.target_speed_m_s, "target_speed_m_s")
-        require_kind(self.sensors, "sensors", SensorLayout)
-        require_kind(self.approach, "approach", Approach)
-        require_kind(self.plausible, "plausible", PlausibleMotion)
-        require_tuple(self.valid_v_m_s, "valid.v_m_s", 2)
-        require_rising(self.valid_v_m_s, "valid.v_m_s")
-        require_between(self.valid_v_m_s[0], "valid.v_m_s[0]", 0.0)
-        require_kind(self.predicted, "predicted", Predicted)
+        require_declared(self)
+        require_rising(self.valid_v_m_s, "valid_v_m_s")
         if self.predicted.passes is not None:
             raise InvalidTable("predicted.passes is given, but the prediction of a table for sensors is exact.")
-        if self.validated is not None:
-            require_kind(self.validated, "validated", Validated)
 
     def _require_stages(self) -> None:
-        require_tuple(self.pressure_kpa, "stages")
-        if not 2 <= len(self.pressure_kpa) <= MOST_STAGES:
-            raise InvalidTable(f"stages has {len(self.pressure_kpa)} entries, but 2 to {MOST_STAGES} are allowed.")
-        for stage, pressure in enumerate(self.pressure_kpa):
-            require_between(pressure, f"stages[{stage}].pressure_kpa", 0.0)
         for stage, (below, above) in enumerate(pairwise(self.pressure_kpa), start=1):
             if not below < above:
                 raise InvalidTable(
-                    f"stages[{stage}].pressure_kpa is {above!r}, but it must exceed that of the stage below, {below!r}."
+                    f"pressure_kpa[{stage}] is {above!r}, but it must exceed that of the stage below, {below!r}."
                 )
 
     def _require_approach(self) -> None:
         require_count(self.approach.entrance_stage, "approach.entrance_stage", 0, len(self.pressure_kpa) - 1)
-        require_count(self.initial_stage, "approach.initial_stage", 0, self.approach.entrance_stage)
+        require_count(self.initial_stage, "initial_stage", 0, self.approach.entrance_stage)
         if self.approach.length_m != -self.sensors.path_m[0]:
             raise InvalidTable(
                 f"approach.length_m is {self.approach.length_m!r}, but the regulator acts from the first sensor on: it "
@@ -167,7 +137,6 @@ class PassageTable:
             )
 
     def _require_passages(self) -> None:
-        require_tuple(self.passages, "passages")
         stages = len(self.pressure_kpa)
         axles = len(self.cut.axle_offsets_m)
         require_between(self.cut.axle_offsets_m[-1], f"cut.axle_offsets_m[{axles - 1}]", 0.0, LONGEST_CUT_M)
@@ -188,7 +157,6 @@ class PassageTable:
                 "sensors and cut.axle_offsets_m."
             )
         for index, (row, (sensor, axle, path_m)) in enumerate(zip(self.passages, wanted, strict=True)):
-            require_kind(row, f"passages[{index}]", PassageRow)
             if (row.sensor, row.axle) != (sensor, axle) or not abs(row.path_m - path_m) <= PATH_ERROR_M:
                 raise InvalidTable(
                     f"passages[{index}] is axle {row.axle} over sensor {row.sensor} at {row.path_m!r} m, but from "

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, Final
 
+from tuning_tables.declared.members import require_declared
+from tuning_tables.declared.numbers import Number, Row
 from tuning_tables.errors import InvalidTable
-from tuning_tables.requirement import require_between, require_tuple
 
 FASTEST_M_S: Final = 40.0
 SPEED_RANGE_M_S: Final = (0.01, FASTEST_M_S)
@@ -19,31 +20,21 @@ PATH_TOLERANCE_RANGE_M: Final = (0.0, 10.0)
 class PlausibleMotion:
     """Limits for `tracker.believed_passage`, all inclusive.
 
-    speed_m_s             (least, greatest) speed that a reading may tell, within [0.01, 40]
-    acceleration_m_s2     greatest acceleration of a cut, 0.001 to 10
-    deceleration_m_s2     greatest deceleration, 0.001 to 10
-    speed_tolerance       relative error allowed of a speed, 0 to 0.9
-    path_tolerance_m      error allowed of a path, 0 to 10
-
     Raises `InvalidTable`.
     """
 
-    speed_m_s: tuple[float, float]
-    acceleration_m_s2: float
-    deceleration_m_s2: float
-    speed_tolerance: float
-    path_tolerance_m: float
+    speed_m_s: Annotated[
+        tuple[float, float], Row(Number("least and greatest speed that is believed", *SPEED_RANGE_M_S), "end", 2, 2)
+    ]
+    acceleration_m_s2: Annotated[float, Number("greatest of a cut", *ACCELERATION_RANGE_M_S2)]
+    deceleration_m_s2: Annotated[float, Number("greatest of a cut", *ACCELERATION_RANGE_M_S2)]
+    speed_tolerance: Annotated[float, Number("relative error allowed of a speed", *SPEED_TOLERANCE_RANGE)]
+    path_tolerance_m: Annotated[float, Number("error allowed of a path", *PATH_TOLERANCE_RANGE_M)]
 
     def __post_init__(self) -> None:
-        require_tuple(self.speed_m_s, "plausible.speed_m_s", 2)
-        for index, speed in enumerate(self.speed_m_s):
-            require_between(speed, f"plausible.speed_m_s[{index}]", *SPEED_RANGE_M_S)
+        require_declared(self, "plausible")
         if not self.speed_m_s[0] < self.speed_m_s[1]:
             raise InvalidTable(f"plausible.speed_m_s is {self.speed_m_s!r}, but the lesser speed must come first.")
-        require_between(self.acceleration_m_s2, "plausible.acceleration_m_s2", *ACCELERATION_RANGE_M_S2)
-        require_between(self.deceleration_m_s2, "plausible.deceleration_m_s2", *ACCELERATION_RANGE_M_S2)
-        require_between(self.speed_tolerance, "plausible.speed_tolerance", *SPEED_TOLERANCE_RANGE)
-        require_between(self.path_tolerance_m, "plausible.path_tolerance_m", *PATH_TOLERANCE_RANGE_M)
 
     @property
     def numbers(self) -> tuple[float, float, float, float, float, float]:

@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 from itertools import pairwise
-from typing import Final
+from typing import Annotated, Final
 
+from tuning_tables.declared.members import require_declared
+from tuning_tables.declared.numbers import Number, Row
+from tuning_tables.declared.texts import Word
 from tuning_tables.errors import InvalidTable
-from tuning_tables.requirement import require_between, require_kind, require_rising
+from tuning_tables.requirement import require_rising
 
 MOST_SENSORS: Final = 32
 SHORTEST_SECTION_M: Final = 0.3
@@ -41,47 +44,41 @@ class DecidesOn(Enum):
 class SensorLayout:
     """The sensors of a retarder position and the clock of the regulator that listens to them.
 
-    path_m                middle of the base of each sensor, from the entrance of the first retarder, rising, each at
-                          least 0.3 m behind the one before and no base over another; the first before the entrance
-    base_m                distance of the two coils of a sensor; speed is base_m over the time between their pulses
-    base_tolerance        standard deviation of its relative error, lasting for each sensor
-    timer_noise_s         standard deviation of a measured time
-    timer_resolution_s    measured times are whole multiples of it; 0: not rounded
-    computing_delay_s     from the second pulse to the command on the wires of the valves
-    scan_period_s         step of the regulator's clock: a change of stage lasts a whole number of them
-    decides_on            whose passages are decided at
+    Sensors rise along the path, each at least 0.3 m behind the one before and no base over another; the first stands
+    before the entrance. Speed is the base over the time between the pulses of the two coils.
 
     Raises `InvalidTable`.
     """
 
-    path_m: tuple[float, ...]
-    base_m: float
-    base_tolerance: float
-    timer_noise_s: float
-    timer_resolution_s: float
-    computing_delay_s: float
-    scan_period_s: float
-    decides_on: DecidesOn
+    path_m: Annotated[
+        tuple[float, ...],
+        Row(Number("middle of the base of each, from the entrance", *PLACE_RANGE_M), "sensor", 1, MOST_SENSORS),
+    ]
+    base_m: Annotated[float, Number("distance of the two coils of a sensor", *BASE_RANGE_M)]
+    base_tolerance: Annotated[
+        float, Number("standard deviation of its relative error, lasting for each sensor", *TOLERANCE_RANGE)
+    ]
+    timer_noise_s: Annotated[float, Number("standard deviation of a measured time", *TIMER_RANGE_S)]
+    timer_resolution_s: Annotated[
+        float, Number("measured times are whole multiples of it; 0: not rounded", *TIMER_RANGE_S)
+    ]
+    computing_delay_s: Annotated[
+        float, Number("from the second pulse to the command on the wires of the valves", *DELAY_RANGE_S)
+    ]
+    scan_period_s: Annotated[
+        float, Number("step of the regulator's clock: a change of stage lasts a whole number of them", *SCAN_RANGE_S)
+    ]
+    decides_on: Annotated[DecidesOn, Word("whose passages are decided at", DecidesOn)]
 
     def __post_init__(self) -> None:
+        require_declared(self, "sensors")
         require_rising(self.path_m, "sensors.path_m")
-        if len(self.path_m) > MOST_SENSORS:
-            raise InvalidTable(f"sensors.path_m has {len(self.path_m)} entries, but 1 to {MOST_SENSORS} are allowed.")
-        for index, place in enumerate(self.path_m):
-            require_between(place, f"sensors.path_m[{index}]", *PLACE_RANGE_M)
-        require_between(self.base_m, "sensors.base_m", *BASE_RANGE_M)
         for index, (before, after) in enumerate(pairwise(self.path_m), start=1):
             if not (after - before >= SHORTEST_SECTION_M - ROUNDING_M and after - before > self.base_m):
                 raise InvalidTable(
                     f"sensors.path_m[{index}] is {after!r}, but it must be at least {SHORTEST_SECTION_M} m, and more "
                     f"than sensors.base_m, {self.base_m!r}, behind the sensor before, {before!r}."
                 )
-        require_between(self.base_tolerance, "sensors.base_tolerance", *TOLERANCE_RANGE)
-        require_between(self.timer_noise_s, "sensors.timer_noise_s", *TIMER_RANGE_S)
-        require_between(self.timer_resolution_s, "sensors.timer_resolution_s", *TIMER_RANGE_S)
-        require_between(self.computing_delay_s, "sensors.computing_delay_s", *DELAY_RANGE_S)
-        require_between(self.scan_period_s, "sensors.scan_period_s", *SCAN_RANGE_S)
-        require_kind(self.decides_on, "sensors.decides_on", DecidesOn)
 
     def heard(self, axle_offsets_m: tuple[float, ...]) -> tuple[Met, ...]:
         """Every passage of an axle over a sensor, in the order of the path, then of the sensors: each gives pulses."""

@@ -73,7 +73,7 @@ def aim_csv_files(folder: Path) -> list[Path]:
 def is_aim_csv(file: Path) -> bool:
     """Whether a CSV file says that it is of an aim table."""
     try:
-        return re.search(rb"^text,format,aim-table,", content_of(file), re.MULTILINE) is not None
+        return re.search(rb"^text,kind,aim,", content_of(file), re.MULTILINE) is not None
     except DamagedError:
         return False
 

@@ -2,38 +2,48 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from synth.checker.canonical import canonical_form, crc32, parse_json, without_checksum
-from synth.checker.document_shape import COUNT, NUMBER, TEXT, OrNull, Pair, refuse_unless, require_shape
-from synth.checker.finding import DamagedError, shown
+from synth.checker.document_shape import (
+    CHECKSUM,
+    COUNT,
+    NUMBER,
+    ORIGIN,
+    TEXT,
+    Nodes,
+    OrNull,
+    Pair,
+    Row,
+    checked_document,
+    refuse_unless,
+    require_shape,
+)
 
 NodeValues = tuple[tuple[tuple[float | None, ...], ...], ...]
 """By cars, free distance, resistance; one resistance in a table by category alone. None: no exit speed."""
 
-MARK: Final = re.compile(rb'"format"\s*:\s*"aim-table"')
-"""No text in a JSON document can hold this: its quotes would be escaped."""
-
+AIM: Final = "aim"
 FIGURES: Final = ("p_overspeed", "p_overspeed_low95", "p_overspeed_high95", "mean_gap_m")
-CATEGORY: Final[Mapping[str, Any]] = {"kind": TEXT}
-MEASURED: Final[Mapping[str, Any]] = {"kind": TEXT, "from_m": NUMBER, "to_m": NUMBER, "speed_std_m_s": NUMBER}
-SHAPE: Final[Mapping[str, Any]] = {
-    "format": TEXT,
-    "version": COUNT,
-    "id": TEXT,
-    "created": TEXT,
-    "generator": {"name": TEXT, "version": TEXT, "config_sha256": TEXT},
+AIM_SHAPE: Final[Mapping[str, Any]] = {
+    **ORIGIN,
     "position": {"name": TEXT, "exit_at_m": NUMBER},
     "category": {"number": COUNT, "name": TEXT},
     "required": {"p_overspeed": NUMBER, "coupling_speed_m_s": NUMBER},
-    "bounds": {"exit_speed_m_s": Pair()},
-    "interpolation": {"error_m_s": NUMBER},
-    "crc32": TEXT,
+    "measured": OrNull({"from_m": NUMBER, "to_m": NUMBER, "speed_std_m_s": NUMBER}),
+    "axes": {
+        "cars": Row("cars", COUNT),
+        "free_distance_m": Row("free_distance", NUMBER),
+        "resistance_n_per_kn": OrNull(Row("resistance", NUMBER)),
+    },
+    "exit_speed_m_s": Nodes(),
+    "bounds_m_s": Pair(),
+    "interpolation_error_m_s": NUMBER,
+    "reported": {"passes": COUNT, **dict.fromkeys(FIGURES, Nodes())},
+    **CHECKSUM,
 }
-"""Of both kinds; what depends on the kind is added by `shape_of`."""
+"""Of aim tables."""
 
 
 @dataclass(frozen=True)
@@ -73,33 +83,7 @@ class Aim:
 
 def read_aim(content: bytes) -> Aim:
     """The table in the JSON text `content`; `DamagedError` for whatever is not one, a wrong checksum among it."""
-    document = parse_json(content)
-    if not isinstance(document, dict) or document.get("format") != "aim-table":
-        raise DamagedError('it is no aim table: its format is not "aim-table"')
-    if document.get("version") != 1 or not isinstance(document["version"], int):
-        raise DamagedError(f"its version is {shown(document.get('version'))}, but this checker knows version 1 only")
-    require_shape(document, shape_of(document), "")
-    sum_found = f"{crc32(canonical_form(without_checksum(document)).encode('utf-8')):08x}"
-    if document["crc32"] != sum_found:
-        raise DamagedError(f"its crc32 is {shown(document['crc32'])}, but its content gives {sum_found}")
-    return aim_of(without_checksum(document))
-
-
-def shape_of(document: Mapping[str, Any]) -> Mapping[str, Any]:
-    """What the document must look like, by the kind of knowledge that it states."""
-    knowledge = document.get("knowledge")
-    kind = knowledge.get("kind") if isinstance(knowledge, dict) else None
-    refuse_unless(kind in ("category", "measured_resistance"), kind, "knowledge.kind", "category, measured_resistance")
-    measured = kind == "measured_resistance"
-    nodes: Any = [[[OrNull(NUMBER)]]] if measured else [[OrNull(NUMBER)]]
-    axes = {"cars": [COUNT], "free_distance_m": [NUMBER]}
-    return {
-        **SHAPE,
-        "knowledge": MEASURED if measured else CATEGORY,
-        "axes": {**axes, "resistance_n_per_kn": [NUMBER] if measured else None},
-        "exit_speed_m_s": nodes,
-        "reported": {"passes": COUNT, **dict.fromkeys(FIGURES, nodes)},
-    }
+    return aim_of(checked_document(content, AIM, AIM_SHAPE))
 
 
 def aim_of(document: Mapping[str, Any]) -> Aim:
@@ -107,7 +91,11 @@ def aim_of(document: Mapping[str, Any]) -> Aim:
     axes, required = document["axes"], document["required"]
     resistances = tuple(map(float, axes["resistance_n_per_kn"] or ()))
     lengths = (len(axes["cars"]), len(axes["free_distance_m"]), *([len(resistances)] if resistances else []))
-    low, high = document["bounds"]["exit_speed_m_s"]
+    low, high = document["bounds_m_s"]
+    told = document["measured"] is not None
+    refuse_unless(
+        told == bool(resistances), axes["resistance_n_per_kn"], "axes.resistance_n_per_kn", "as it is measured"
+    )
     return Aim(
         id=document["id"],
         category=document["category"]["number"],
@@ -126,10 +114,16 @@ def aim_of(document: Mapping[str, Any]) -> Aim:
 
 def nodes_of(value: Any, lengths: tuple[int, ...], path: str) -> NodeValues:
     """The numbers at the nodes, with a third axis in any case."""
-    refuse_unless(len(value) == lengths[0], len(value), f"the length of {path}", str(lengths[0]))
+    refuse_unless(isinstance(value, list) and len(value) == lengths[0], value, path, f"an array of {lengths[0]}")
     for c, rows in enumerate(value):
-        refuse_unless(len(rows) == lengths[1], len(rows), f"the length of {path}[{c}]", str(lengths[1]))
+        right = isinstance(rows, list) and len(rows) == lengths[1]
+        refuse_unless(right, rows, f"{path}[{c}]", f"an array of {lengths[1]}")
         for d, row in enumerate(rows if len(lengths) > 2 else ()):
-            refuse_unless(len(row) == lengths[2], len(row), f"the length of {path}[{c}][{d}]", str(lengths[2]))
+            right = isinstance(row, list) and len(row) == lengths[2]
+            refuse_unless(right, row, f"{path}[{c}][{d}]", f"an array of {lengths[2]}")
     plain = value if len(lengths) > 2 else [[[cell] for cell in rows] for rows in value]
+    for c, rows in enumerate(plain):
+        for d, row in enumerate(rows):
+            for x in row:
+                require_shape(x, OrNull(NUMBER), f"{path}[{c}][{d}]")
     return tuple(tuple(tuple(None if x is None else float(x) for x in row) for row in rows) for rows in plain)

@@ -31,7 +31,7 @@ def sense(aim: Aim) -> Iterator[str]:
 
 def purpose_faults(aim: Aim) -> Iterator[str]:
     """Faults of what it says that it is for."""
-    document, knowledge = aim.document, aim.document["knowledge"]
+    document, measured = aim.document, aim.document["measured"]
     known = YARD.get(aim.category_name)
     if aim.category != known if known is not None else aim.category not in OWN:
         yield f"its category {aim.category_name} has the number {aim.category}, which is not its own"
@@ -41,14 +41,14 @@ def purpose_faults(aim: Aim) -> Iterator[str]:
         yield f"its coupling speed of {aim.coupling_m_s:g} m/s is impossible"
     if not 0.01 <= aim.bounds_m_s[0] < aim.bounds_m_s[1] <= 40.0:
         yield f"its bounds {aim.bounds_m_s} do not rise within 0.01 to 40 m/s"
-    if not 0.0 <= document["interpolation"]["error_m_s"] <= 40.0 or document["reported"]["passes"] < 1:
+    if not 0.0 <= document["interpolation_error_m_s"] <= 40.0 or document["reported"]["passes"] < 1:
         yield "its interpolation error or its number of passes is impossible"
     if not 0.0 <= document["position"]["exit_at_m"] <= 1e5:
         yield f"its position ends at {document['position']['exit_at_m']:g} m"
-    if aim.is_measured and not (
-        0.0 <= knowledge["from_m"] < knowledge["to_m"] <= 1e5 and 0.0 <= knowledge["speed_std_m_s"] <= 40.0
+    if measured is not None and not (
+        0.0 <= measured["from_m"] < measured["to_m"] <= 1e5 and 0.0 <= measured["speed_std_m_s"] <= 40.0
     ):
-        yield f"its resistance is measured from {knowledge['from_m']:g} to {knowledge['to_m']:g} m, which is impossible"
+        yield f"its resistance is measured from {measured['from_m']:g} to {measured['to_m']:g} m, which is impossible"
     if re.fullmatch("[0-9a-f]{64}", document["generator"]["config_sha256"]) is None:
         yield "its config_sha256 is not one"
     if re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z", document["created"], re.ASCII) is None:

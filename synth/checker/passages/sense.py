@@ -56,7 +56,7 @@ def purpose_faults(table: PassageTable) -> Iterator[str]:
     pressures = table.pressures_kpa
     if pressures[0] < 0.0 or any(not a < b for a, b in pairwise(pressures)):
         yield f"its stage pressures {pressures} do not rise from 0 or more"
-    low, high = document["valid"]["v_m_s"]
+    low, high = document["valid_v_m_s"]
     if not 0.0 <= low < table.target_m_s < high:
         yield f"its target of {table.target_m_s:g} m/s is not within its valid speeds, {low:g} to {high:g} m/s"
     if re.fullmatch("[0-9a-f]{64}", document["generator"]["config_sha256"]) is None:
@@ -80,7 +80,7 @@ def number_faults(table: PassageTable) -> Iterator[str]:
     approach = document["approach"]
     if approach["length_m"] != -table.sensors_m[0]:
         yield f"its approach of {approach['length_m']:g} m does not begin at the first sensor, {table.sensors_m[0]:g} m"
-    first, most = approach["initial_stage"], approach["entrance_stage"]
+    first, most = document["initial_stage"], approach["entrance_stage"]
     if not 0 <= first <= most <= top:
         yield f"its stages {first} and {most} before the entrance are impossible"
     slow, fast = document["plausible"]["speed_m_s"]
@@ -122,7 +122,7 @@ def row_faults(table: PassageTable) -> Iterator[str]:
 
 def deed_faults(table: PassageTable) -> Iterator[str]:
     """Whether the table ever does something: brakes a fast cut, releases a slow one."""
-    low, high = table.document["valid"]["v_m_s"]
+    low, high = table.document["valid_v_m_s"]
     top = len(table.pressures_kpa) - 1
     places = range(len(table.passages))
     if not any(wanted(table, index, 0, high) > 0 for index in places):

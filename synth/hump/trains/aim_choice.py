@@ -127,7 +127,7 @@ def read_at(named: str, path: Path) -> Iterator[tuple[Path, AimTable]]:
     what = "is no aim table" if path.is_file() else "holds no aim tables"
     require(
         len(found) > 0,
-        f"{named} names {path}, which {what} (JSON of the format aim-table); give what 'retarder-synth aim' left",
+        f"{named} names {path}, which {what} (JSON of the kind aim); give what 'retarder-synth aim' left",
     )
     for each in found:
         yield each.path, each.table

@@ -17,7 +17,7 @@ from synth.hump.trains.aim_choice import AimChoice
 from synth.hump.trains.aim_design import AimDesign, MeasuredAhead, scene_of
 from synth.hump.trains.hump_aim import CategoryAim, HumpAim, no_speeds
 from synth.hump.trains.hump_routes import HumpRoutes
-from tuning_tables.aim import AimTable, MeasuredResistance
+from tuning_tables.aim import AimTable
 
 Floats = NDArray[np.float64]
 
@@ -79,12 +79,8 @@ def aim_warnings(aims: tuple[AimChoice, ...], routes: HumpRoutes, settings: Hump
     """A sentence for each thing in which the tables are for something else than what is simulated."""
     for choice in aims:
         for table in choice.tables.tables:
-            known, std = table.knowledge, settings.sensors.speed_std_m_s
-            if (
-                settings.aim.knowledge == "measured"
-                and isinstance(known, MeasuredResistance)
-                and known.speed_std_m_s != std
-            ):
+            known, std = table.measured, settings.sensors.speed_std_m_s
+            if settings.aim.knowledge == "measured" and known is not None and known.speed_std_m_s != std:
                 yield (
                     f"sensors.speed_std_m_s is {std:g}; the aim table {table.id} was made for speeds measured to "
                     f"{known.speed_std_m_s:g} m/s"
@@ -107,9 +103,7 @@ def stretches_m(choice: AimChoice, routes: HumpRoutes) -> Floats:
     """Where the resistance is measured on each route of `choice`, (rows, 2): as far from the end of the position as the
     tables have it. `PlantError` where the tables differ in it, or it reaches into the position."""
     stretches = {
-        (table.knowledge.from_m, table.knowledge.to_m)
-        for table in choice.tables.tables
-        if isinstance(table.knowledge, MeasuredResistance)
+        (table.measured.from_m, table.measured.to_m) for table in choice.tables.tables if table.measured is not None
     }
     if len(stretches) != 1:
         raise PlantError(

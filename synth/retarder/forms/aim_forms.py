@@ -8,20 +8,20 @@ from synth.retarder.forms.code_options import PLAIN, CodeOptions
 from synth.retarder.forms.table_forms import Files, one_each
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.aim_tables import AimTables
-from tuning_tables.aim.csv_file import to_aim_csv
-from tuning_tables.aim.json_file import to_aim_json
+from tuning_tables.csv_file import to_csv
+from tuning_tables.json_file import to_json
 
 AimForm = Callable[[Sequence[AimTable], CodeOptions], Files]
 
 
 def aim_json_form(tables: Sequence[AimTable], _options: CodeOptions = PLAIN) -> Files:
     """One JSON file a table."""
-    return one_each(tables, to_aim_json, ".json")
+    return one_each(tables, to_json, ".json")
 
 
 def aim_csv_form(tables: Sequence[AimTable], _options: CodeOptions = PLAIN) -> Files:
     """One CSV file a table."""
-    return one_each(tables, to_aim_csv, ".csv")
+    return one_each(tables, to_csv, ".csv")
 
 
 def aim_c_form(tables: Sequence[AimTable], options: CodeOptions = PLAIN) -> Files:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from synth.retarder.forms.passage_mark import is_passage_table
 from synth.retarder.forms.table_file import HDF5_SIGNATURE
+from synth.retarder.forms.table_mark import is_table_of
 from tuning_tables.hdf5_file import read_any_book
-from tuning_tables.passages.json_file import read_passage_json
+from tuning_tables.json_file import read_json
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.regular_file import first_bytes
 
@@ -19,9 +19,10 @@ def read_passages(path: Path) -> tuple[PassageTable, ...]:
     """
     if path.is_dir():
         folder = path / "tables" if (path / "tables").is_dir() else path
-        return tuple(read_passage_json(file) for file in sorted(folder.glob("*.json")) if is_passage_table(file))
-    if is_passage_table(path):
-        return (read_passage_json(path),)
+        files = (file for file in sorted(folder.glob("*.json")) if is_table_of(PassageTable, file))
+        return tuple(read_json(file, PassageTable) for file in files)
+    if is_table_of(PassageTable, path):
+        return (read_json(path, PassageTable),)
     if not is_book(path):
         return ()
     return tuple(table for table in read_any_book(path) if isinstance(table, PassageTable))

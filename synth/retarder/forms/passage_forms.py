@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from synth.retarder.forms.code_options import PLAIN, CodeOptions
 from synth.retarder.forms.table_forms import Files, one_each
-from tuning_tables.passages.csv_file import to_passage_csv
-from tuning_tables.passages.json_file import to_passage_json
+from tuning_tables.csv_file import to_csv
+from tuning_tables.json_file import to_json
 from tuning_tables.passages.passage_table import PassageTable
 
 PassageForm = Callable[[Sequence[PassageTable], CodeOptions], Files]
@@ -15,12 +15,12 @@ PassageForm = Callable[[Sequence[PassageTable], CodeOptions], Files]
 
 def passage_json_form(tables: Sequence[PassageTable], _options: CodeOptions = PLAIN) -> Files:
     """One JSON file a table."""
-    return one_each(tables, to_passage_json, ".json")
+    return one_each(tables, to_json, ".json")
 
 
 def passage_csv_form(tables: Sequence[PassageTable], _options: CodeOptions = PLAIN) -> Files:
     """One CSV file a table."""
-    return one_each(tables, to_passage_csv, ".csv")
+    return one_each(tables, to_csv, ".csv")
 
 
 def passage_c_form(tables: Sequence[PassageTable], options: CodeOptions = PLAIN) -> Files:

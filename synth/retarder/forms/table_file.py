@@ -10,8 +10,7 @@ from pathlib import Path
 from synth.frame.input_error import InputError
 from synth.frame.machine_fault import MACHINE_FAULTS
 from synth.frame.summary import FORMAT
-from synth.retarder.forms.aim_file import is_aim_table
-from synth.retarder.forms.passage_mark import is_passage_table
+from synth.retarder.forms.table_mark import is_table_of
 from tuning_tables import ControllerTable, read_book, read_json
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.passages.passage_table import PassageTable
@@ -52,8 +51,8 @@ def table_files(directory: Path) -> list[Path]:
     """
     folder = directory / "tables" if (directory / "tables").is_dir() else directory
     tables = sorted(file for file in folder.glob("*.json") if file.name != "summary.json")
-    others = [file for file in tables if not is_aim_table(file)]
-    with_lines = [file for file in others if not is_passage_table(file)]
+    others = [file for file in tables if not is_table_of(AimTable, file)]
+    with_lines = [file for file in others if not is_table_of(PassageTable, file)]
     return with_lines or ([] if others else sorted(directory.glob("*.h5")))
 
 

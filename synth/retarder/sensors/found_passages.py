@@ -9,8 +9,8 @@ from synth.retarder.acceptance import CaseVerdict
 from synth.retarder.sensors.sensor_acceptance import judged
 from synth.retarder.sensors.sensor_tune import SensorBook
 from tuning_tables import InvalidTable
+from tuning_tables.csv_file import to_csv
 from tuning_tables.passages.c_source import passage_c_files
-from tuning_tables.passages.csv_file import to_passage_csv
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.st_source import passage_st_files
 
@@ -41,5 +41,5 @@ def found_passages(book: SensorBook) -> FoundPassages:
     except InvalidTable as fault:
         no_st = str(fault)
     if book.config.output.csv:
-        files |= {f"tables/{table.id}.csv": to_passage_csv(table) for table in tables}
+        files |= {f"tables/{table.id}.csv": to_csv(table) for table in tables}
     return FoundPassages(book, judged(book), tuple(File(*each) for each in files.items()), no_st)

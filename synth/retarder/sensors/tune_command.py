@@ -105,9 +105,9 @@ def compute(asked: AskedSensors, work: Work) -> FoundPassages:
 
 def stored(table: PassageTable, directory: ResultsDirectory) -> PassageTable:
     """Write `table` as JSON; the table as a controller will load it."""
-    from tuning_tables.passages.json_file import read_passage_json, to_passage_json
+    from tuning_tables.json_file import read_json, to_json
 
-    return read_passage_json(directory.write(f"tables/{table.id}.json", to_passage_json(table)))
+    return read_json(directory.write(f"tables/{table.id}.json", to_json(table)), PassageTable)
 
 
 def limits(found: FoundPassages) -> Iterator[Limit]:

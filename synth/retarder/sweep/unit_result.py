@@ -92,7 +92,7 @@ def row_from(row: dict[str, Any], source: str) -> Row:
     """One row of the file."""
     judgement = Judgement(tuple(row["missed"]), tuple(row["undecided"]))
     statistics, power = ExitStatistics(**with_tuples(row["statistics"])), BrakePower(**with_tuples(row["brake_power"]))
-    return Row(from_document(row["table"], source), statistics, power, judgement)
+    return Row(from_document(row["table"], source, (ControllerTable,)), statistics, power, judgement)
 
 
 def with_tuples(figures: dict[str, Any]) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_p
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import Interval
 from tuning_tables import ControllerTable
-from tuning_tables.any_table import AnyTable
+from tuning_tables.table_kinds import StageTable
 
 LENGTH_TOLERANCE = 1e-6
 """Relative, for lengths, masses and pressures that must be the same."""
@@ -42,7 +42,7 @@ class Revalidation:
     very configuration.
     """
 
-    table: AnyTable
+    table: StageTable
     label: str
     statistics: ExitStatistics
     brake_power: BrakePower
@@ -101,7 +101,7 @@ def revalidated(
 
 
 def revalidation(
-    table: AnyTable, label: str, sample: ExitSample, power: BrakePower, infeasible: bool, config: ResolvedConfig
+    table: StageTable, label: str, sample: ExitSample, power: BrakePower, infeasible: bool, config: ResolvedConfig
 ) -> Revalidation:
     """What `sample` says of `table`, beside what the table says of itself."""
     target, limits = table.target_speed_m_s, config.acceptance
@@ -121,7 +121,7 @@ def revalidation(
     )
 
 
-def confirmed(table: AnyTable, found: ExitStatistics) -> bool | None:
+def confirmed(table: StageTable, found: ExitStatistics) -> bool | None:
     """Whether the interval that the file states and that of `found` overlap."""
     if table.validated is None:
         return None

@@ -7,16 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.aim import (
-    AimAxes,
-    AimCategory,
-    AimTable,
-    CategoryAlone,
-    MeasuredResistance,
-    ParkPosition,
-    Reported,
-    Required,
-)
+from tuning_tables.aim import AimAxes, AimCategory, AimTable, MeasuredResistance, ParkPosition, Reported, Required
 from tuning_tables.provenance import Generator
 
 COUPLING_M_S = 1.39
@@ -58,7 +49,7 @@ def table_of(axes: AimAxes, speeds: npt.NDArray[np.float64], number: int = 1, na
         position=ParkPosition("rnz-2m-park", 338.0),
         category=AimCategory(number, name),
         required=Required(0.1, COUPLING_M_S),
-        knowledge=CategoryAlone() if axes.resistance_n_per_kn is None else measured,
+        measured=None if axes.resistance_n_per_kn is None else measured,
         axes=axes,
         exit_speed_m_s=speeds,
         bounds_m_s=BOUNDS_M_S,

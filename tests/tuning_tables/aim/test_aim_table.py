@@ -16,7 +16,6 @@ from tuning_tables.aim import (
     AimCategory,
     AimTable,
     AimTables,
-    CategoryAlone,
     MeasuredResistance,
     ParkPosition,
     Reported,
@@ -54,9 +53,9 @@ def test_arrays_are_copies_that_cannot_be_written() -> None:
         (lambda: ParkPosition("p", float("inf")), "position.exit_at_m"),
         (lambda: AimCategory(2, "Л"), "category.number of the category Л is 2, but it must be 1"),
         (lambda: AimCategory(5, "own"), "category.number of the category own"),
-        (lambda: MeasuredResistance(10.0, 10.0, 0.1), "knowledge.to_m"),
-        (lambda: MeasuredResistance(0.0, 10.0, -0.1), "knowledge.speed_std_m_s"),
-        (lambda: MeasuredResistance(-1.0, 10.0, 0.1), "knowledge.from_m"),
+        (lambda: MeasuredResistance(10.0, 10.0, 0.1), "measured.to_m"),
+        (lambda: MeasuredResistance(0.0, 10.0, -0.1), "measured.speed_std_m_s"),
+        (lambda: MeasuredResistance(-1.0, 10.0, 0.1), "measured.from_m"),
         (lambda: AimAxes(np.array([1.0]), np.array([1.0])), "axes.cars must hold"),
         (lambda: AimAxes(np.array([], int), np.array([1.0])), "axes.cars must hold"),
         (lambda: AimAxes(np.array([[1]]), np.array([1.0])), "axes.cars must hold"),
@@ -104,11 +103,11 @@ def speeds_with(place: tuple[Any, ...], value: Any, measured: bool = False) -> d
         ({"exit_speed_m_s": [[1.0], [1.0, 2.0]]}, "exit_speed_m_s makes no array"),
         ({"exit_speed_m_s": "speeds"}, "exit_speed_m_s makes no array"),
         ({"bounds_m_s": (7.0, 0.5)}, "the lower bound must come first"),
-        ({"bounds_m_s": (0.0, 7.0)}, r"bounds.exit_speed_m_s\[0\]"),
+        ({"bounds_m_s": (0.0, 7.0)}, r"bounds_m_s\[0\]"),
         ({"bounds_m_s": [0.5, 7.0]}, "must be a tuple"),
         ({"interpolation_error_m_s": -0.1}, "interpolation.error_m_s"),
         ({"interpolation_error_m_s": NAN}, "interpolation.error_m_s"),
-        ({"knowledge": MeasuredResistance(0.0, 1.0, 0.1)}, "axes.resistance_n_per_kn must be an axis unless"),
+        ({"measured": MeasuredResistance(0.0, 1.0, 0.1)}, "axes.resistance_n_per_kn must be an axis unless"),
         ({"id": ""}, "id is ''"),
         ({"created": "yesterday"}, "created is 'yesterday'"),
         ({"generator": None}, "generator is None"),
@@ -125,7 +124,7 @@ def test_values_that_make_no_table_are_refused(changed: dict[str, Any], words: s
 
 def test_a_measured_table_needs_knowledge_of_it() -> None:
     with pytest.raises(InvalidTable, match="must be null where the category alone is known"):
-        replace(measured_table(), knowledge=CategoryAlone())
+        replace(measured_table(), measured=None)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,8 @@ from plant_models.library import load_hump, load_weight_categories
 from synth.hump.trains.aim_design import positions_m
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
-from tuning_tables.aim import AimTable, MeasuredResistance, ParkPosition, write_aim_json
+from tuning_tables.aim import AimTable, MeasuredResistance, ParkPosition
+from tuning_tables.json_file import write_json
 
 CATEGORIES = load_weight_categories()
 EXIT_M = 295.0
@@ -29,7 +30,7 @@ def made_tables(grade: float, measured: bool = True) -> list[AimTable]:
         named = member.number, member.name
         found.append(category_table(grade, *named))
         if measured:
-            found.append(replace(measured_table(grade, *named), knowledge=MeasuredResistance(*STRETCH_M, 0.1)))
+            found.append(replace(measured_table(grade, *named), measured=MeasuredResistance(*STRETCH_M, 0.1)))
     return [replace(each, position=ParkPosition("rnz-2m-park", EXIT_M)) for each in found]
 
 
@@ -37,7 +38,7 @@ def written(folder: Path, tables: Iterable[AimTable]) -> Path:
     """The tables as files of `folder`."""
     folder.mkdir(parents=True)
     for table in tables:
-        write_aim_json(table, folder / f"{table.id}.json")
+        write_json(table, folder / f"{table.id}.json")
     return folder
 
 

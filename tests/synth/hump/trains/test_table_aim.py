@@ -198,7 +198,7 @@ def test_an_exported_aim_agrees_with_the_one_that_is_designed_for_the_trial(tmp_
     ("text", "said"),
     [
         ('tables = "none"', "aim.tables names {0}/none, and there is no such file or directory"),
-        ('tables = "empty"', "aim.tables names {0}/empty, which holds no aim tables (JSON of the format aim-table)"),
+        ('tables = "empty"', "aim.tables names {0}/empty, which holds no aim tables (JSON of the kind aim)"),
         ('tables = "trial.csv"', "aim.tables names {0}/trial.csv, which is no aim table"),
         ('tables = "one"', "aim.tables names {0}/one, which has no table by category alone for the weight category ЛС"),
         (
