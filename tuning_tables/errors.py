@@ -33,5 +33,9 @@ class OlderVersion(TableError):
     """The file was written to a version of the format that this reader no longer knows: export it again."""
 
 
+class IllegalName(ValueError):
+    """A name of the export is none that a tool takes: choose another prefix."""
+
+
 class InvalidLog(ValueError):
     """A file of measured passes, or its mapping, cannot be used: correct the file, the mapping, or leave it out."""

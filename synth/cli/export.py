@@ -33,7 +33,7 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
     from synth.frame.results_directory import results_directory
     from synth.retarder.forms.aim_file import read_aims
-    from synth.retarder.forms.code_options import code_options
+    from synth.retarder.forms.code_options import PLC_NAMES, code_options
     from synth.retarder.forms.passage_file import read_passages
     from synth.retarder.forms.table_file import files_at, read_tables
     from synth.retarder.forms.table_forms import FORMS
@@ -49,7 +49,7 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
         files = exported_files(form, aims, passages, tables, options)
     except (InputError, InvalidTable) as fault:  # each table is right, but together they make no export
         raise InputError(f"{source}: {fault}") from None
-    if form in ("c", "st"):
+    if form == "c" or form in PLC_NAMES:
         warn_of_shadows(source, passages, tables)
     with results_directory(output, "export", files_at(source)) as directory:
         names = [str(file) for file in directory.write_all(files)]

@@ -119,7 +119,7 @@ def select_block(code: ControllerCode) -> Block:
         SELECT_NOTE.format(between=BLENDED_NOTE if code.blends else SLOWER_NOTE),
         tuple(SELECT.format(between=BLENDED if code.blends else SLOWER).split("\n")),
         inputs=(
-            Variable("Category", Kind.INT, "number as in the head of this file"),
+            Variable("Category", Kind.INT, "number of the weight category"),
             Variable("Axles", Kind.INT),
             Variable("Commanded_m_s", Kind.REAL, "exit speed wanted, m/s"),
         ),
@@ -247,7 +247,7 @@ def part_of_tables(code: ControllerCode, part: str, group: Sequence[str]) -> tup
         if content not in found:
             place = found[content] = len(found)
             first, *others = (array for name in group for array in member_arrays(code, name, place, table.values[name]))
-            declared += [replace(first, heading=f"{place}: {comment_text(table.id)}"), *others]
+            declared += [replace(first, note=f"{place}: {comment_text(table.id)}"), *others]
             cases += [f"{place}:", *(f"    {line}" for line in copied(code, group, place))]
         number_of.append(found[content])
     name = f"{part.capitalize()}Part"

@@ -36,13 +36,15 @@ def block_head(block: Block) -> str:
     return "\n".join([f"FUNCTION_BLOCK {block.name}", *st_comment(block.note), *rows])
 
 
-def section(word: str, variables: Sequence[Variable], layout: Callable[[Variable], Sequence[str]]) -> Iterator[str]:
+def section(
+    begin: str, variables: Sequence[Variable], layout: Callable[[Variable], Sequence[str]], end: str = "END_VAR"
+) -> Iterator[str]:
     """A section of declarations; nothing where there is none."""
     if variables:
-        yield word
+        yield begin
         for each in variables:
             yield from layout(each)
-        yield "END_VAR"
+        yield end
 
 
 def statements(block: Block) -> str:
@@ -53,14 +55,23 @@ def statements(block: Block) -> str:
 def declared(variable: Variable, depth: int = 1) -> list[str]:
     """A declaration with what it means beside it, or above it where there is no room."""
     pad = " " * 4 * depth
-    rows = st_comment(variable.heading, pad) if variable.heading else []
-    line = f"{pad}{variable.name} : {type_text(variable.type)}"
-    if isinstance(variable.type, ArrayOf) and variable.values:
-        return rows + array_lines(line, variable)
-    line += f" := {variable.values[0]};" if variable.values else ";"
-    beside = line + (f" (* {variable.note} *)" if variable.note else "")
-    above = [] if len(beside) <= WIDTH else st_comment(variable.note, pad)
-    return [*rows, *above, line if above else beside]
+    lines = with_values(f"{pad}{variable.name} : {type_text(variable.type)}", variable)
+    if not variable.note:
+        return lines
+    beside = f"{lines[0]} (* {variable.note} *)"
+    return [beside] if not is_array(variable) and len(beside) <= WIDTH else [*st_comment(variable.note, pad), *lines]
+
+
+def is_array(variable: Variable) -> bool:
+    """Whether a variable is an array that begins with values."""
+    return isinstance(variable.type, ArrayOf) and bool(variable.values)
+
+
+def with_values(head: str, variable: Variable) -> list[str]:
+    """The declaration `head` with the initial value of the variable; an array in as many lines as it needs."""
+    if is_array(variable):
+        return array_lines(head, variable)
+    return [f"{head} := {variable.values[0]};" if variable.values else f"{head};"]
 
 
 def type_text(kind: VariableType) -> str:

@@ -37,8 +37,8 @@ VariableType: TypeAlias = Kind | Declared | ArrayOf
 class Variable:
     """A variable, a constant, or a member of a structure.
 
-    `values`: its initial value as literals, those of an array one by one, none where it begins with 0; `row`: how many
-    of them belong into one line, 0 for as many as fit. `note`: what it means. `heading`: what is said above it.
+    `note`: what it means. `values`: its initial value as literals, those of an array one by one, none where it begins
+    with 0; `row`: how many of them belong into one line, 0 for as many as fit.
     """
 
     name: str
@@ -46,7 +46,6 @@ class Variable:
     note: str = ""
     values: tuple[str, ...] = ()
     row: int = 0
-    heading: str = ""
 
     def __post_init__(self) -> None:
         length = self.type.length if isinstance(self.type, ArrayOf) else 1
@@ -148,7 +147,6 @@ def _retold(variables: tuple[Variable, ...], change: Callable[[str], str]) -> tu
             name=change(each.name),
             type=Declared(change(each.type.name)) if isinstance(each.type, Declared) else each.type,
             note=change(each.note),
-            heading=change(each.heading),
         )
         for each in variables
     )
