@@ -145,7 +145,7 @@ def head(code: ControllerCode) -> tuple[str, ...]:
     )
     paragraphs = [
         textwrap.wrap(first, WIDTH - 5),
-        [*code.origin, *categories],
+        [*code.told_origin, *categories],
         ["Blocks", *listed],
         *(textwrap.wrap(text, WIDTH - 5) for text in (*code.head, *ARITHMETIC)),
     ]

@@ -102,7 +102,7 @@ def variable_lines(variable: Variable, depth: int) -> Iterator[str]:
         values = [f"<simpleValue value={quoteattr(each)}/>" for each in variable.values]
         if isinstance(variable.type, ArrayOf):
             yield f"{pad}    <initialValue><arrayValue>"
-            yield from (f"{pad}        <value>{each}</value>" for each in values)
+            yield from (f"<value>{each}</value>" for each in values)  # thousands: an indentation would double the file
             yield f"{pad}    </arrayValue></initialValue>"
         else:
             yield f"{pad}    <initialValue>{values[0]}</initialValue>"

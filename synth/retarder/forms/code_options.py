@@ -14,11 +14,13 @@ from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 SELF_TESTS: Mapping[str, SelfTestSize] = {"full": FULL, "small": SMALL}
 PLC_NAMES: Final = ("st", "plcopen", "twincat", "scl")
 """The forms of Structured Text."""
+CODE_NAMES: Final = ("c", *PLC_NAMES)
+"""The forms of code."""
 OPTIONS: Mapping[str, tuple[str, ...]] = {
-    "--prefix": ("c", *PLC_NAMES),
-    "--self-test": ("c", *PLC_NAMES),
+    "--prefix": CODE_NAMES,
+    "--self-test": CODE_NAMES,
     "--split": ("st",),
-    "--correction": ("c", *PLC_NAMES),
+    "--correction": CODE_NAMES,
 }
 """The forms that have each option."""
 

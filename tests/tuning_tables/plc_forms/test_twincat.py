@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
+import sys
 import uuid
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +19,8 @@ from tests.tuning_tables.st.syntax import faults, parse
 from tuning_tables.language.st_unit import Part, units_of
 from tuning_tables.plc_forms.twincat import twincat_files
 
+LARGEST_FOR_BLARK = 10_000
+"""Bytes; it takes minutes for an array of some hundred numbers, and for the blocks of the self-test."""
 EACH = pytest.mark.parametrize("kind", KINDS)
 
 
@@ -65,11 +69,17 @@ def test_the_head_is_a_comment_before_the_first_type() -> None:
 @pytest.mark.slow
 def test_blark_parses_every_object(tmp_path: Path) -> None:
     """A parser of TwinCAT, as a program of its own, since its licence is not ours: objects of each name once."""
-    blark = shutil.which("blark")
-    if blark is None:
+    blark = shutil.which("blark", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+    if blark is None and os.environ.get("RETARDER_SYNTH_TOOLCHAIN") != "complete":
         pytest.skip("no blark")
-    files = {path: content for kind in KINDS for path, content in twincat_files(exported(kind)).items()}
-    assert len(files) > 80
+    assert blark is not None
+    files = {
+        path: content
+        for kind in KINDS
+        for path, content in twincat_files(exported(kind)).items()
+        if not path.startswith("self_test/") and len(content) < LARGEST_FOR_BLARK
+    }
+    assert len(files) > 30
     broken = files["RETARDER_SELECT.TcPOU"].replace(b"END_IF;", b"END;", 1)
     for path, content in {"wrong/RETARDER_SELECT.TcPOU": broken, **files}.items():
         file = tmp_path / path
