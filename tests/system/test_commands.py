@@ -249,12 +249,13 @@ def test_export_is_faithful(command: Command, tuned: Path, tmp_path: Path) -> No
 def test_export_of_controller_code_is_what_tune_leaves(command: Command, tuned: Path, tmp_path: Path) -> None:
     ran = command("export", tuned / "book.h5", "--format", "c", "-o", tmp_path / "c", "--json")
     assert ran.code == 0
-    assert {Path(name).name for name in json.loads(ran.out)["files"]} == C_FILES
+    assert {Path(name).name for name in json.loads(ran.out)["files"]} == {*C_FILES, "retarder_configuration.toml"}
     for name in C_FILES:
         assert (tmp_path / "c" / name).read_bytes() == (tuned / "c" / name).read_bytes()
     ran = command("export", tuned / "tables" / f"{ID}.json", "--format", "st", "-o", tmp_path / "st")
     assert ran.code == 0
-    assert set(results_in(tmp_path / "st")) == {"retarder_table.st", "retarder_self_test.st"}
+    names = {"retarder_table.st", "retarder_self_test.st", "retarder_configuration.toml"}
+    assert set(results_in(tmp_path / "st")) == names
 
 
 def test_export_gives_the_correction_beside_unchanged_tables(command: Command, tuned: Path, tmp_path: Path) -> None:
@@ -302,7 +303,7 @@ def test_export_takes_a_prefix_a_small_self_test_and_splits(
     ran = command("export", book, "--format", "c", "--prefix", "Bunch", "--self-test", "small", "-o", tuned / "st")
     assert ran.code == 0
     names = {name.replace("retarder", "bunch").replace("golden", "bunch_golden") for name in C_FILES}
-    assert {Path(line).name for line in ran.out.splitlines()} == names
+    assert {Path(line).name for line in ran.out.splitlines()} == {*names, "bunch_configuration.toml"}
     # Tracks of an estimator are the same in every size.
     plain = ("export", measured_once / "book.h5", "--format", "c", "--self-test", "small", "-o", tmp_path / "small")
     assert command(*plain).code == 0
