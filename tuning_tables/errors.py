@@ -29,5 +29,9 @@ class NewerVersion(TableError):
     """The file was written to a later version of the format than this reader knows: update the reader."""
 
 
+class IllegalName(ValueError):
+    """A name of the export is none that a tool takes: choose another prefix."""
+
+
 class InvalidLog(ValueError):
     """A file of measured passes, or its mapping, cannot be used: correct the file, the mapping, or leave it out."""

@@ -5,17 +5,25 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tuning_tables.controller_code.correction_code import correction_code
+from tuning_tables.controller_code.st_export import st_export
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
-from tuning_tables.st_source import st_texts, st_unit_texts
+from tuning_tables.language.st_unit import Export
+from tuning_tables.plc_forms.iec import part_files, unit_files
+
+
+def correction_export(correction: Correction, prefix: ExportPrefix = RETARDER) -> Export:
+    """The blocks and the self-test, to be laid out in any form."""
+    return st_export(correction_code(correction), prefix)
 
 
 def correction_st_files(correction: Correction, prefix: ExportPrefix = RETARDER) -> Mapping[str, bytes]:
     """The files by name, ASCII with LF: the blocks, and the self-test. Equal corrections give equal bytes."""
-    return st_texts(correction_code(correction), prefix)
+    return part_files(correction_export(correction, prefix))
 
 
 def correction_st_unit_files(correction: Correction, prefix: ExportPrefix = RETARDER) -> Mapping[str, bytes]:
     """The same units, a file each; by their names in the order in which they need each other."""
     # Behind the name, so that they sort beside, not among, the numbered units of the tables.
-    return {f"correction_{name}": text for name, text in st_unit_texts(correction_code(correction), prefix).items()}
+    units = unit_files(correction_export(correction, prefix))
+    return {f"correction_{name}": text for name, text in units.items()}

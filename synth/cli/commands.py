@@ -145,7 +145,9 @@ def inspect(source: SourceOrDirectory, as_json: Json = False) -> int:
 @app.command()
 def export(
     source: ExportSource,
-    form: Annotated[str, typer.Option("--format", metavar="json|c|st|csv", help="Form of the tables.")],
+    form: Annotated[
+        str, typer.Option("--format", metavar="json|csv|c|st|plcopen|twincat|scl", help="Form of the tables.")
+    ],
     output: Annotated[
         Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where they go.")
     ] = Path("out/export"),
@@ -163,7 +165,8 @@ def export(
 ) -> int:
     """Write tables in another form.
 
-    JSON and CSV: a file each. C99 and Structured Text: all tables together, with the rule and a self-test.
+    JSON and CSV: a file each. C99 and Structured Text: all tables together, with the rule and a self-test. Structured
+    Text as bare text (st), as one XML file of PLCopen (CODESYS, Beremiz), for TwinCAT 3, or in SCL (TIA Portal).
     """
     from synth.cli.export import AskedCode, export_command
 

@@ -33,11 +33,13 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
     from synth.frame.results_directory import results_directory
     from synth.retarder.forms.aim_file import read_aims
-    from synth.retarder.forms.code_options import code_options
+    from synth.retarder.forms.code_options import CODE_NAMES, code_options
+    from synth.retarder.forms.configuration_beside import configuration_file
     from synth.retarder.forms.passage_file import read_passages
     from synth.retarder.forms.table_file import files_at, read_tables
     from synth.retarder.forms.table_forms import FORMS
     from tuning_tables import InvalidTable
+    from tuning_tables.aim.c_source import KIND
 
     if form not in FORMS:
         raise InputError(f"--format {form}: there is no such form; give {', '.join(FORMS)}")
@@ -47,9 +49,14 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
     tables = () if aims or passages else read_tables(source)[0].tables
     try:
         files = exported_files(form, aims, passages, tables, options)
+        if form in CODE_NAMES:
+            made: Sequence[AimTable | PassageTable | ControllerTable] = [*aims, *passages, *tables]
+            sha256s = {each.generator.config_sha256 for each in made}
+            prefix = options.prefix.of_kind(KIND) if aims else options.prefix
+            files = {**files, **configuration_file(source, sha256s, prefix)}
     except (InputError, InvalidTable) as fault:  # each table is right, but together they make no export
         raise InputError(f"{source}: {fault}") from None
-    if form in ("c", "st"):
+    if form in CODE_NAMES:
         warn_of_shadows(source, passages, tables)
     with results_directory(output, "export", files_at(source)) as directory:
         names = [str(file) for file in directory.write_all(files)]

@@ -76,6 +76,10 @@ ORDERS: tuple[Order, ...] = (
     Order(f"loop {BOOK} {PARK}", "loops"),
     *(Order(f"export {BOOK} --format {form}", f"export-{form}") for form in ("json", "c", "st", "csv")),
     Order(f"export {BOOK} --format st --split --self-test small --correction 0.2 --prefix PARK", "export-split"),
+    *(
+        Order(f"export {BOOK} --format {form} --self-test small", f"export-{form}")
+        for form in ("plcopen", "twincat", "scl")
+    ),
     Order("export any-time/book.h5 --format c", "export-any-time"),
     Order(f"identify {LOG}", "identified"),
     Order(f"watch {LOG}", "watched"),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shutil
+import tomllib
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from synth.checker.plant import config_sha256
 from synth.frame.results_directory import results_directory
 from synth.retarder.configuration.config_file import parse_config
 from tests.frame.results import results_in
@@ -240,18 +243,19 @@ def test_export_is_faithful(command: Command, tuned: Path, tmp_path: Path) -> No
     assert json.loads(ran.out) == {"files": [str(tmp_path / f"{ID}.csv")]}
     ran = command("export", tuned / "book.h5", "--format", "xml")
     assert ran.code == 2
-    assert "json, csv, c, st" in ran.sentence
+    assert "json, csv, c, st, plcopen, twincat, scl" in ran.sentence
 
 
 def test_export_of_controller_code_is_what_tune_leaves(command: Command, tuned: Path, tmp_path: Path) -> None:
     ran = command("export", tuned / "book.h5", "--format", "c", "-o", tmp_path / "c", "--json")
     assert ran.code == 0
-    assert {Path(name).name for name in json.loads(ran.out)["files"]} == C_FILES
+    assert {Path(name).name for name in json.loads(ran.out)["files"]} == {*C_FILES, "retarder_configuration.toml"}
     for name in C_FILES:
         assert (tmp_path / "c" / name).read_bytes() == (tuned / "c" / name).read_bytes()
     ran = command("export", tuned / "tables" / f"{ID}.json", "--format", "st", "-o", tmp_path / "st")
     assert ran.code == 0
-    assert set(results_in(tmp_path / "st")) == {"retarder_table.st", "retarder_self_test.st"}
+    names = {"retarder_table.st", "retarder_self_test.st", "retarder_configuration.toml"}
+    assert set(results_in(tmp_path / "st")) == names
 
 
 def test_export_gives_the_correction_beside_unchanged_tables(command: Command, tuned: Path, tmp_path: Path) -> None:
@@ -299,7 +303,7 @@ def test_export_takes_a_prefix_a_small_self_test_and_splits(
     ran = command("export", book, "--format", "c", "--prefix", "Bunch", "--self-test", "small", "-o", tuned / "st")
     assert ran.code == 0
     names = {name.replace("retarder", "bunch").replace("golden", "bunch_golden") for name in C_FILES}
-    assert {Path(line).name for line in ran.out.splitlines()} == names
+    assert {Path(line).name for line in ran.out.splitlines()} == {*names, "bunch_configuration.toml"}
     # Tracks of an estimator are the same in every size.
     plain = ("export", measured_once / "book.h5", "--format", "c", "--self-test", "small", "-o", tmp_path / "small")
     assert command(*plain).code == 0
@@ -337,8 +341,11 @@ def test_export_takes_a_prefix_a_small_self_test_and_splits(
         ("c", ("--prefix", "1st"), "--prefix 1st: the prefix is '1st', but it must have at most 10 Latin letters"),
         ("c", ("--self-test", "tiny"), "--self-test tiny: there is no such self-test; give full, small"),
         ("c", ("--split",), "--split is for --format st, not for c; leave it out"),
-        ("json", ("--prefix", "A"), "--prefix is for --format c and st, not for json; leave it out"),
-        ("csv", ("--self-test", "small"), "--self-test is for --format c and st, not for csv; leave it out"),
+        ("scl", ("--split",), "--split is for --format st, not for scl; leave it out"),
+        ("twincat", ("--prefix", "TRACK__2"), "--prefix TRACK__2: the prefix is 'TRACK__2', but it must have at most"),
+        ("plcopen", ("--self-test", "tiny"), "--self-test tiny: there is no such self-test; give full, small"),
+        ("json", ("--prefix", "A"), "--prefix is for --format c, st, plcopen, twincat, scl, not for json; leave it"),
+        ("csv", ("--self-test", "small"), "--self-test is for --format c, st, plcopen, twincat, scl, not for csv;"),
     ],
 )
 def test_export_refuses_options_that_have_no_use(
@@ -348,6 +355,48 @@ def test_export_refuses_options_that_have_no_use(
     assert ran.code == 2
     assert sentence in ran.err
     assert not (tmp_path / "none").exists()
+
+
+def test_export_for_the_tools_of_plc_engineers(command: Command, tuned: Path, tmp_path: Path) -> None:
+    for form, names in {
+        "plcopen": {"park_table.xml", "park_correction.xml"},
+        "scl": {"park_table.scl", "park_self_test.scl", "park_correction.scl", "park_correction_self_test.scl"},
+        "twincat": {"PARK_TABLE.TcDUT", "PARK_CORRECT.TcPOU", "self_test/PARK_SELF_TEST.TcPOU"},
+    }.items():
+        options = ("--format", form, "--prefix", "PARK", "--self-test", "small", "--correction", "0.15")
+        for _ in range(2):  # it replaces what it wrote itself
+            ran = command("export", tuned / "book.h5", *options, "-o", tmp_path / form)
+            assert ran.code == 0
+        files = {file.relative_to(tmp_path / form).as_posix() for file in (tmp_path / form).rglob("*.*")}
+        told = {Path(line).relative_to(tmp_path / form).as_posix() for line in ran.out.splitlines()}
+        assert files - {".retarder-synth"} == told
+        assert names | {"park_configuration.toml"} <= told
+        assert form == "twincat" or told == names | {"park_configuration.toml"}
+
+
+def test_export_of_code_brings_the_configuration_where_it_is_at_hand(
+    command: Command, tuned: Path, tmp_path: Path
+) -> None:
+    """As an independent reader makes its hash, which is the one at the head of the code."""
+    table = tuned / "tables" / f"{ID}.json"
+    assert command("export", table, "--format", "c", "-o", tmp_path / "c").code == 0
+    config = tomllib.loads((tmp_path / "c" / "retarder_configuration.toml").read_text("utf-8"))
+    sha256 = config_sha256(config)
+    assert f"configuration {sha256}" in (tmp_path / "c" / "retarder_table.h").read_text("ascii")
+    assert sha256 == from_json(table.read_bytes()).generator.config_sha256
+    alone = tmp_path / "alone" / "alone"
+    alone.mkdir(parents=True)
+    shutil.copy(table, alone / "table.json")
+    assert command("export", alone / "table.json", "--format", "st", "-o", tmp_path / "st").code == 0
+    assert not (tmp_path / "st" / "retarder_configuration.toml").exists()
+    summary = (tuned / "summary.json").read_text("utf-8")
+    for text in (summary.replace('"degree":', '"degrees":'), "[]", "{", '{"format": "another"}'):
+        (alone / "summary.json").write_text(text, "utf-8")
+        assert command("export", alone / "table.json", "--format", "st", "-o", tmp_path / "st").code == 0
+        assert not (tmp_path / "st" / "retarder_configuration.toml").exists()
+    (alone.parent / "summary.json").write_text(summary, "utf-8")
+    assert command("export", alone / "table.json", "--format", "st", "-o", tmp_path / "st").code == 0
+    assert (tmp_path / "st" / "retarder_configuration.toml").exists()
 
 
 def test_export_says_which_tables_a_controller_never_chooses(command: Command, tuned: Path, tmp_path: Path) -> None:

@@ -145,7 +145,7 @@ def head_comment(code: ControllerCode) -> list[str]:
     paragraphs = [first, None, *code.head]
     lines: list[str] = []
     for paragraph in paragraphs:
-        rows = list(code.origin) if paragraph is None else textwrap.wrap(paragraph, WIDTH - 3)
+        rows = list(code.told_origin) if paragraph is None else textwrap.wrap(paragraph, WIDTH - 3)
         lines += [*([""] if lines else []), *rows]
     return [f"/* {lines[0]}", *(f" * {line}".rstrip() for line in lines[1:]), " */"]
 

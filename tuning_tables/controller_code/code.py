@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.category_names import CategoryName
+from tuning_tables.category_names import CategoryName, comment_text
 from tuning_tables.language.folding import folded
 from tuning_tables.language.reading import program_of
 from tuning_tables.language.records import Kind, Record, SizedRecord
@@ -188,6 +188,18 @@ class ControllerCode:
     def program(self, rule: Rule) -> Program:
         """The folded program of a rule."""
         return next(each for each in self.programs if each.name == rule.function.__name__)
+
+    @property
+    def told_origin(self) -> tuple[str, ...]:
+        """The lines of `origin`; what `tag` is, and the tables by number, where they are those of a cut or category."""
+        if not self.categories:
+            return self.origin
+        return (
+            *self.origin,
+            "           retarder_configuration.toml beside this text, where there is one, is the configuration",
+            f"content    CRC-32 {self.tag:08x} over categories and tables, the same in each language",
+            *(f"table {number:<4} {comment_text(table.id)}" for number, table in enumerate(self.tables)),
+        )
 
     @cached_property
     def tag(self) -> int:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import textwrap
 
 from tuning_tables.controller_code.code import ControllerCode, looked_at
-from tuning_tables.controller_code.st_code import WIDTH, st_names
-from tuning_tables.controller_code.st_test_block import TestBlock, block_text, check, test_name
+from tuning_tables.controller_code.st_code import WIDTH, st_names, table_type
+from tuning_tables.controller_code.st_test_block import TestBlock, check, test_block, test_name
 from tuning_tables.language.records import Kind, SizedRecord, st_name
 from tuning_tables.language.st_data import real
+from tuning_tables.language.st_unit import Declared, Variable
 
 
 def odd_test(code: ControllerCode) -> TestBlock:
@@ -16,32 +17,34 @@ def odd_test(code: ControllerCode) -> TestBlock:
     names, name = st_names(code), f"{test_name(code)}_ODD"
     rules = {each.rule.name: each.rule for each in code.odd}
     begun = [each for each in code.states if any(each.record.name in code.program(r).records for r in rules.values())]
-    variables = [f"{st_name(rule.name)}Block : {names.block(code.program(rule))}" for rule in rules.values()]
-    body, constants = [], ["    Zero : INT := 0;"]
+    variables = [
+        Variable(f"{st_name(rule.name)}Block", Declared(names.block(code.program(rule)))) for rule in rules.values()
+    ]
+    body: list[str] = []
     for state in begun:
         rule = code.beginning(state.record.name)
-        variables += [f"{st_name(rule.name)}Block : {names.block(code.program(rule))}",
-                      f"{st_name(state.record.name)} : {names.types[state.record.name]}"]  # fmt: skip
+        variables += [Variable(f"{st_name(rule.name)}Block", Declared(names.block(code.program(rule)))),
+                      Variable(st_name(state.record.name), Declared(names.types[state.record.name]))]  # fmt: skip
     for each in code.odd:
         program = code.program(each.rule)
         body += [changed(code.table, *change) for change in each.changes]
         given = []
         for taken in program.parameters:
             if taken.record is not None:
-                given.append(f"{st_name(taken.name)} := {st_name(taken.name)}")
+                given.append(f"{st_name(taken.name)} := #{st_name(taken.name)}")
                 if taken.record.is_state:
-                    begin = f"{st_name(code.beginning(taken.name).name)}Block"
-                    body.append(f"{begin}({st_name(taken.name)} := {st_name(taken.name)});")
+                    begin = f"#{st_name(code.beginning(taken.name).name)}Block"
+                    body.append(f"{begin}({st_name(taken.name)} := #{st_name(taken.name)});")
             elif taken.name in looked_at(program):
                 number = each.given[taken.name]
                 given.append(f"{st_name(taken.name)} := {real(number) if taken.kind is Kind.REAL else int(number)}")
-        block = f"{st_name(each.rule.name)}Block"
+        block = f"#{st_name(each.rule.name)}Block"
         (answer,) = program.answers
         wanted = real(each.wanted) if answer.kind is Kind.REAL else str(int(each.wanted))
         body += textwrap.wrap(f"{block}({', '.join(given)});", WIDTH, subsequent_indent="    ")
         body += [*check(f"{block}.{st_name(answer.name)} <> {wanted}")]
     note = "Table 0, changed into one in which every condition counts, then damaged."
-    return TestBlock(name, block_text(code, name, note, True, variables, constants, body), 0)
+    return TestBlock(test_block(name, note, table_type(code), variables, [], body), 0)
 
 
 def changed(record: SizedRecord, member: str, place: tuple[int, ...], number: float) -> str:
@@ -50,4 +53,4 @@ def changed(record: SizedRecord, member: str, place: tuple[int, ...], number: fl
     index = 0
     for length, at in zip(record.shape(member), place, strict=True):
         index = index * length + at
-    return f"Table.{st_name(member)}{f'[{index}]' if place else ''} := {value};"
+    return f"#Table.{st_name(member)}{f'[{index}]' if place else ''} := {value};"

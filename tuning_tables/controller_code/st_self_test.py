@@ -21,19 +21,21 @@ from tuning_tables.controller_code.st_code import WIDTH, load_of, st_names, tabl
 from tuning_tables.controller_code.st_odd_test import odd_test
 from tuning_tables.controller_code.st_test_block import (
     TestBlock,
-    block_text,
     check,
     compared,
     loop,
     short_name,
+    test_block,
     test_name,
 )
 from tuning_tables.language.records import Kind, st_name
+from tuning_tables.language.st_unit import Block, Declared, Variable
 from tuning_tables.language.structured_text import broken
+from tuning_tables.language.tree import Parameter
 from tuning_tables.st_literals import LONGEST_ARRAY, bool_array, int_array, is_portable, real_array
 
 HEAD: Final = (
-    "Self-test of {file}, for the controller that is to run it. Generated: do not edit, export again.",
+    "Self-test of {tables}, for the controller that is to run it. Generated: do not edit, export again.",
     "Call one instance of {block} once a cycle until Done; Failed must be 0. It compares every constant with a second "
     "copy, and the answers of the blocks with those of the reference implementation. Questions that are not finite or "
     "denormal are left out, because they have no portable literal. REAL numbers are compared for equality on purpose: "
@@ -41,53 +43,36 @@ HEAD: Final = (
 )
 
 RUN_ALL: Final = """\
-FUNCTION_BLOCK {name}
-(* Call it once a cycle until Done: each call runs one block of the test. *)
-VAR_INPUT
-    Restart : BOOL; (* begin again *)
-END_VAR
-VAR_OUTPUT
-    Done : BOOL;
-    Failed : INT; (* blocks in which something is wrong; 0 when Done: all is as exported *)
-    FirstFailed : INT; (* the number of the first of them, -1: none *)
-    FirstFault : INT; (* FirstFailed of that block *)
-END_VAR
-VAR
-    Loader : {load};
-{instances}
-    Table : {type};
-    Number : INT;
-    Begun : BOOL;
-    Faults : INT;
-    Fault : INT;
-END_VAR
-
-IF Restart OR NOT Begun THEN
-    Begun := TRUE;
-    Done := FALSE;
-    Number := 0;
-    Failed := 0;
-    FirstFailed := -1;
-    FirstFault := -1;
+IF #Restart OR NOT #Begun THEN
+    #Begun := TRUE;
+    #Done := FALSE;
+    #Number := 0;
+    #Failed := 0;
+    #FirstFailed := -1;
+    #FirstFault := -1;
 END_IF;
-IF NOT Done THEN
-    Faults := 0;
-    Fault := -1;
-    CASE Number OF
+IF NOT #Done THEN
+    #Faults := 0;
+    #Fault := -1;
+    CASE #Number OF
 {cases}
     END_CASE;
-    IF Faults > 0 THEN
-        IF Failed = 0 THEN
-            FirstFailed := Number;
-            FirstFault := Fault;
+    IF #Faults > 0 THEN
+        IF #Failed = 0 THEN
+            #FirstFailed := #Number;
+            #FirstFault := #Fault;
         END_IF;
-        Failed := Failed + 1;
+        #Failed := #Failed + 1;
     END_IF;
-    Done := Number >= {last};
-    Number := Number + 1;
-END_IF;
-END_FUNCTION_BLOCK
-"""
+    #Done := #Number >= {last};
+    #Number := #Number + 1;
+END_IF;"""
+RUN_ALL_OUTPUTS: Final = (
+    Variable("Done", Kind.BOOL),
+    Variable("Failed", Kind.INT, "blocks in which something is wrong; 0 when Done: all is as exported"),
+    Variable("FirstFailed", Kind.INT, "the number of the first of them, -1: none"),
+    Variable("FirstFault", Kind.INT, "FirstFailed of that block"),
+)
 
 
 def self_test_name(code: ControllerCode) -> str:
@@ -95,7 +80,7 @@ def self_test_name(code: ControllerCode) -> str:
     return f"RETARDER{code.ending.upper()}_SELF_TEST"
 
 
-def st_test_units(code: ControllerCode, line_checks: int) -> list[str]:
+def st_test_units(code: ControllerCode, line_checks: int) -> list[Block]:
     """The blocks, none before one that it needs; `line_checks`: how many choices are compared by every number."""
     blocks = [
         *(constants_test(code, number) for number in range(len(code.tables))),
@@ -103,7 +88,7 @@ def st_test_units(code: ControllerCode, line_checks: int) -> list[str]:
         *([odd_test(code)] if code.odd else []),
         *(choice_tests(code, line_checks) if code.commands else []),
     ]
-    return [*(block.text for block in blocks), run_all(code, blocks)]
+    return [*(each.block for each in blocks), run_all(code, blocks)]
 
 
 def constants_test(code: ControllerCode, number: int) -> TestBlock:
@@ -112,7 +97,8 @@ def constants_test(code: ControllerCode, number: int) -> TestBlock:
     name = f"{test_name(code)}_{number}"
     constants, body = compared(code, table.values)
     note = f"Table {number}, {comment_text(table.id)}: its numbers once more."
-    return TestBlock(name, block_text(code, name, note, True, ["Index : INT"], constants, body), number)
+    block = test_block(name, note, table_type(code), [Variable("Index", Kind.INT)], constants, body)
+    return TestBlock(block, number)
 
 
 def questions_tests(code: ControllerCode, questions: Questions) -> Iterator[TestBlock]:
@@ -123,8 +109,8 @@ def questions_tests(code: ControllerCode, questions: Questions) -> Iterator[Test
         rows = kept[tables == number]
         for part, start in enumerate(range(0, len(rows), LONGEST_ARRAY)):
             name = f"{short_name(code)}_{questions.about.upper()}_{number}" + f"_{part}" * bool(part)
-            text = questions_text(code, name, questions, rows[start : start + LONGEST_ARRAY], number)
-            yield TestBlock(name, text, number)
+            block = questions_block(code, name, questions, rows[start : start + LONGEST_ARRAY], number)
+            yield TestBlock(block, number)
 
 
 def portable(questions: Questions) -> npt.NDArray[np.bool_]:
@@ -142,53 +128,60 @@ def portable(questions: Questions) -> npt.NDArray[np.bool_]:
     return fine
 
 
-def questions_text(
+def questions_block(
     code: ControllerCode, name: str, questions: Questions, rows: npt.NDArray[np.void], number: int
-) -> str:
+) -> Block:
     """The block of some questions."""
     names, kinds = st_names(code), kinds_of(code, questions)
     programs = [code.program(rule) for rule in questions.rules]
     states = [each for each in code.states if any(each.record.name in program.records for program in programs)]
     constants = [ARRAYS[kind](held(each), rows[each]) for each, kind in kinds.items() if each != "table"]
-    variables = [
-        f"{instance(rule)} : {names.block(program)}" for rule, program in zip(questions.rules, programs, strict=True)
-    ]
-    body, differs = [], []
+    variables = [Variable(instance(rule), Declared(names.block(code.program(rule)))) for rule in questions.rules]
+    body: list[str] = []
     for each in states:
         state = st_name(each.record.name)
-        variables.append(f"{state} : {names.types[each.record.name]}")
-        body += [f"{state}.{st_name(name)} := {held(BEFORE + name)}[Index];" for name in questions.members_before]
+        variables.append(Variable(state, Declared(names.types[each.record.name])))
+        body += [f"#{state}.{st_name(name)} := #{held(BEFORE + name)}[#Index];" for name in questions.members_before]
         if "begins" in kinds:
             rule = code.beginning(each.record.name)
-            variables.append(f"{instance(rule)} : {names.block(code.program(rule))}")
-            body += ["IF Begins[Index] = 1 THEN", f"    {instance(rule)}({state} := {state});", "END_IF;"]
+            variables.append(Variable(instance(rule), Declared(names.block(code.program(rule)))))
+            body += ["IF #Begins[#Index] = 1 THEN", f"    #{instance(rule)}({state} := #{state});", "END_IF;"]
     for rule, program in zip(questions.rules, programs, strict=True):
-        given = []
-        for parameter in program.parameters:
-            if parameter.name in names.arrays:
-                continue
-            if parameter.record is not None:
-                value = "Table" if not parameter.record.is_state else st_name(parameter.name)
-            elif parameter.name in kinds:
-                is_number = parameter.kind is Kind.BOOL and kinds[parameter.name] is Kind.INT
-                value = f"{held(parameter.name)}[Index]" + " = 1" * is_number
-            else:
-                continue
-            given.append(f"{st_name(parameter.name)} := {value}")
-        body += broken(f"{instance(rule)}({', '.join(given)});")
-        for answer in program.answers:
-            sign = "XOR" if answer.kind is Kind.BOOL else "<>"
-            differs.append(f"({instance(rule)}.{st_name(answer.name)} {sign} {held(answer.name)}[Index])")
-    told = {answer.name for program in programs for answer in program.answers}
-    differs += [f"({st_name(state.record.name)}.{st_name(each)} <> {held(each)}[Index])" for state in states
-                for each in questions.expected if each not in told]  # fmt: skip
-    body = loop(len(rows), [*body, *check("\n    OR ".join(differs))])
+        given = [text for parameter in program.parameters for text in asked(code, kinds, parameter)]
+        body += broken(f"#{instance(rule)}({', '.join(given)});")
+    body = loop(len(rows), [*body, *check("\n    OR ".join(differences(code, questions)))])
     of_table = f" of table {number}, {comment_text(code.tables[number].id)}" if "table" in kinds else ""
     note = f"{len(rows)} golden {questions.about}{of_table}."
-    return block_text(code, name, note, True, [*variables, "Index : INT"], constants, body)
+    return test_block(name, note, table_type(code), [*variables, Variable("Index", Kind.INT)], constants, body)
 
 
-ARRAYS: Final[Mapping[Kind, Callable[[str, Any], str]]] = {
+def asked(code: ControllerCode, kinds: Mapping[str, Kind], parameter: Parameter) -> Iterator[str]:
+    """What is handed over for a parameter of a rule; nothing for what is none in the block, or nothing looks at."""
+    if parameter.name in st_names(code).arrays:
+        return
+    if parameter.record is not None:
+        yield f"{st_name(parameter.name)} := #{st_name(parameter.name) if parameter.record.is_state else 'Table'}"
+    elif parameter.name in kinds:
+        is_number = parameter.kind is Kind.BOOL and kinds[parameter.name] is Kind.INT
+        yield f"{st_name(parameter.name)} := #{held(parameter.name)}[#Index]" + " = 1" * is_number
+
+
+def differences(code: ControllerCode, questions: Questions) -> Iterator[str]:
+    """Whether an answer, or a member of the state, is another one than is due, each as a condition."""
+    programs = [code.program(rule) for rule in questions.rules]
+    for rule, program in zip(questions.rules, programs, strict=True):
+        for answer in program.answers:
+            sign = "XOR" if answer.kind is Kind.BOOL else "<>"
+            yield f"(#{instance(rule)}.{st_name(answer.name)} {sign} #{held(answer.name)}[#Index])"
+    told = {answer.name for program in programs for answer in program.answers}
+    for state in code.states:
+        if any(state.record.name in program.records for program in programs):
+            for each in questions.expected:
+                if each not in told:
+                    yield f"(#{st_name(state.record.name)}.{st_name(each)} <> #{held(each)}[#Index])"
+
+
+ARRAYS: Final[Mapping[Kind, Callable[[str, Any], Variable]]] = {
     Kind.REAL: real_array, Kind.INT: int_array, Kind.BOOL: bool_array,
 }  # fmt: skip
 """How a column is written."""
@@ -205,32 +198,41 @@ def instance(rule: Rule) -> str:
     return f"{st_name(rule.name)}Block"
 
 
-def run_all(code: ControllerCode, blocks: list[TestBlock]) -> str:
+def run_all(code: ControllerCode, blocks: list[TestBlock]) -> Block:
     """The block that runs one block a call."""
-    cases = []
-    for number, block in enumerate(blocks):
-        given = "" if block.table is None else "Table := Table"
-        load = [] if block.table is None else [f"Loader(TableNo := {block.table}, Table := Table);"]
+    cases: list[str] = []
+    for number, each in enumerate(blocks):
+        given = "" if each.table is None else "Table := #Table"
+        load = [] if each.table is None else [f"#Loader(TableNo := {each.table}, Table := #Table);"]
         lines = [
             *load,
-            f"Test_{number}({given});",
-            f"Faults := Test_{number}.Failed;",
-            f"Fault := Test_{number}.FirstFailed;",
+            f"#Test_{number}({given});",
+            f"#Faults := #Test_{number}.Failed;",
+            f"#Fault := #Test_{number}.FirstFailed;",
         ]
         cases += [f"        {number}:", *(f"            {line}" for line in lines)]
-    return RUN_ALL.format(
-        name=self_test_name(code), load=load_of(code), type=table_type(code), cases="\n".join(cases),
-        last=len(blocks) - 1,
-        instances="\n".join(f"    Test_{number} : {block.name};" for number, block in enumerate(blocks)),
-    )  # fmt: skip
+    return Block(
+        self_test_name(code),
+        "Call it once a cycle until Done: each call runs one block of the test.",
+        tuple(RUN_ALL.format(cases="\n".join(cases), last=len(blocks) - 1).split("\n")),
+        inputs=(Variable("Restart", Kind.BOOL, "begin again"),),
+        outputs=RUN_ALL_OUTPUTS,
+        own=(
+            Variable("Loader", Declared(load_of(code))),
+            *(Variable(f"Test_{number}", Declared(each.block.name)) for number, each in enumerate(blocks)),
+            Variable("Table", Declared(table_type(code))),
+            Variable("Number", Kind.INT),
+            Variable("Begun", Kind.BOOL),
+            Variable("Faults", Kind.INT),
+            Variable("Fault", Kind.INT),
+        ),
+    )
 
 
-def self_test_head(code: ControllerCode) -> str:
-    """The comment at the beginning of the self-test."""
-    file = f"retarder_{code.stem}.st"
-    texts = (textwrap.wrap(text.format(file=file, block=self_test_name(code)), WIDTH - 5) for text in HEAD)
-    first, *lines = "\n\n".join("\n".join(text) for text in texts).split("\n")
-    return "\n".join([f"(* {first}", *(f"   {line}".rstrip() for line in lines)]) + " *)\n"
+def self_test_head(code: ControllerCode) -> tuple[str, ...]:
+    """The lines of the comment at the beginning of the self-test."""
+    told = (text.format(tables=f"retarder_{code.stem}", block=self_test_name(code)) for text in HEAD)
+    return tuple(line for text in told for line in ("", *textwrap.wrap(text, WIDTH - 5)))[1:]
 
 
 def calls(code: ControllerCode, line_checks: int) -> int:

@@ -8,48 +8,31 @@ from typing import Final
 import numpy as np
 
 from tuning_tables.controller_code.code import ControllerCode, Values
-from tuning_tables.controller_code.st_code import member_array, table_type
-from tuning_tables.language.records import st_name
+from tuning_tables.controller_code.st_code import member_array
+from tuning_tables.language.records import Kind, st_name
+from tuning_tables.language.st_unit import Block, Declared, Variable
 from tuning_tables.st_literals import pieces, place_of
 
 CHECK: Final = """\
 IF {differs} THEN
-    IF Failed = 0 THEN
-        FirstFailed := Number;
+    IF #Failed = 0 THEN
+        #FirstFailed := #Number;
     END_IF;
-    Failed := Failed + 1;
+    #Failed := #Failed + 1;
 END_IF;
-Number := Number + 1;"""
+#Number := #Number + 1;"""
 
-BLOCK: Final = """\
-FUNCTION_BLOCK {name}
-(* {note} *)
-{shared}VAR_OUTPUT
-    Failed : INT; (* checks that are wrong *)
-    FirstFailed : INT; (* the first of them, counted from 0; -1: none *)
-END_VAR
-VAR
-{variables}
-    Number : INT;
-END_VAR
-VAR CONSTANT
-{constants}
-END_VAR
-
-Failed := 0;
-FirstFailed := -1;
-Number := 0;
-{body}
-END_FUNCTION_BLOCK
-"""
+OUTPUTS: Final = (
+    Variable("Failed", Kind.INT, "checks that are wrong"),
+    Variable("FirstFailed", Kind.INT, "the first of them, counted from 0; -1: none"),
+)
 
 
 @dataclass(frozen=True)
 class TestBlock:
-    """A block of the self-test: its name and text, and the table that it takes, None for none."""
+    """A block of the self-test, and the table that it takes, None for none."""
 
-    name: str
-    text: str
+    block: Block
     table: int | None
 
 
@@ -63,15 +46,19 @@ def short_name(code: ControllerCode) -> str:
     return test_name(code) if not code.ending else f"RETARDER{code.ending.upper()}"
 
 
-def block_text(
-    code: ControllerCode, name: str, note: str, table: bool, variables: list[str], constants: list[str], body: list[str]
-) -> str:
-    """A block of the test."""
-    shared = f"VAR_IN_OUT\n    Table : {table_type(code)};\nEND_VAR\n" if table else ""
-    return BLOCK.format(
-        name=name, note=note, shared=shared, variables="\n".join(f"    {each};" for each in variables),
-        constants="\n".join(constants), body="\n".join(body),
-    )  # fmt: skip
+def test_block(
+    name: str, note: str, table: str, variables: list[Variable], constants: list[Variable], body: list[str]
+) -> Block:
+    """A block of the test; `table`: the type of the one that it takes, "" for none."""
+    return Block(
+        name,
+        note,
+        ("#Failed := 0;", "#FirstFailed := -1;", "#Number := 0;", *body),
+        in_outs=(Variable("Table", Declared(table)),) if table else (),
+        outputs=OUTPUTS,
+        own=(*variables, Variable("Number", Kind.INT)),
+        constants=tuple(constants),
+    )
 
 
 def check(differs: str, depth: int = 0) -> list[str]:
@@ -82,17 +69,19 @@ def check(differs: str, depth: int = 0) -> list[str]:
 def loop(length: int, body: list[str]) -> list[str]:
     """A loop over Index from 0."""
     return [
-        "Index := 0;",
-        f"WHILE Index < {length} DO",
+        "#Index := 0;",
+        f"WHILE #Index < {length} DO",
         *(f"    {line}" for line in body),
-        "    Index := Index + 1;",
+        "    #Index := #Index + 1;",
         "END_WHILE;",
     ]
 
 
-def compared(code: ControllerCode, values: Values) -> tuple[list[str], list[str]]:
+def compared(code: ControllerCode, values: Values) -> tuple[list[Variable], list[str]]:
     """Constants and checks of all numbers of `Table`."""
-    constants, numbers, body = [], [], []
+    constants: list[Variable] = []
+    numbers: list[str] = []
+    body: list[str] = []
     for name, member in code.table.members.items():
         array = np.atleast_1d(np.asarray(values[name])).ravel()
         # With a word behind it, because Step and Limit alone are words of the language.
@@ -100,8 +89,8 @@ def compared(code: ControllerCode, values: Values) -> tuple[list[str], list[str]
         for ending, start, count in pieces(len(array)):
             constants.append(member_array(f"{twin}{ending}", member, array[start : start + count]))
             if member.axes:
-                differs = f"Table.{st_name(name)}[{place_of(start)}] <> {twin}{ending}[Index]"
+                differs = f"#Table.{st_name(name)}[{place_of(start)}] <> #{twin}{ending}[#Index]"
                 body += loop(count, check(differs))
         if not member.axes:
-            numbers.append(f"(Table.{st_name(name)} <> {twin}[0])")
+            numbers.append(f"(#Table.{st_name(name)} <> #{twin}[0])")
     return constants, [*check("\n    OR ".join(numbers)), *body]

@@ -1,4 +1,4 @@
-"""Records, comments and numbers as Structured Text writes them."""
+"""Comments and numbers as Structured Text writes them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import textwrap
 
 import numpy as np
 
-from tuning_tables.language.records import SizedRecord, st_name
+from tuning_tables.language.records import st_name
 
 WIDTH = 110
 
@@ -31,22 +31,3 @@ def st_comment(text: str, pad: str = "") -> list[str]:
     lines = textwrap.wrap(text.replace("*)", "* )").replace("(*", "( *"), WIDTH - 6 - len(pad))
     rows = [f"{pad}{'  ' if place else '(*'} {line}" for place, line in enumerate(lines)]
     return [*rows[:-1], f"{rows[-1]} *)"]
-
-
-def st_declared(name: str, kind: str, note: str, depth: int = 1) -> list[str]:
-    """A declaration with what it means beside it, or above it where there is no room."""
-    pad = " " * 4 * depth
-    beside = f"{pad}{name} : {kind};" + (f" (* {note} *)" if note else "")
-    return [beside] if len(beside) <= WIDTH or not note else [*st_comment(note, pad), f"{pad}{name} : {kind};"]
-
-
-def st_type(record: SizedRecord, name: str) -> str:
-    """The declaration of a record."""
-    rows = []
-    for member, declared in record.members.items():
-        kind = declared.kind.st
-        if declared.axes:
-            kind = f"ARRAY[0..{record.length(member) - 1}] OF {kind}"
-        rows += st_declared(st_name(member), kind, declared.meaning, 2)
-    note = st_comment(record.record.meaning, "    ")
-    return "\n".join(["TYPE", *note, f"    {name} : STRUCT", *rows, "    END_STRUCT;", "END_TYPE", ""])

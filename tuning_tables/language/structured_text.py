@@ -7,11 +7,12 @@ VAR CONSTANT; arrays of one axis; no RETURN, no EXIT, no index that only the oth
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from tuning_tables.language.records import Kind, SizedRecord, st_name
-from tuning_tables.language.st_data import WIDTH, of_tables, real, st_comment, st_declared
+from tuning_tables.language.st_data import WIDTH, of_tables, real, st_comment
+from tuning_tables.language.st_unit import MARK, ArrayOf, Block, Declared, Structure, Variable, local, plain
 from tuning_tables.language.tree import (
     Ask,
     Assign,
@@ -39,23 +40,36 @@ COMPARISONS: Mapping[str, str] = {"==": "=", "!=": "<>"}
 class StNames:
     """What an export calls things: types by record, function blocks by program.
 
-    Where no block is told its name is `prefix` and that of the program. `arrays`: by parameter, the declarations of
-    constant arrays, `CategoryOf` for its member `category`, so that it is no parameter here.
+    Where no block is told its name is `prefix` and that of the program. `arrays`: by parameter, constant arrays,
+    `CategoryOf` for its member `category`, so that it is no parameter here.
     """
 
     types: Mapping[str, str]
     blocks: Mapping[str, str]
     prefix: str
-    arrays: Mapping[str, Sequence[str]]
+    arrays: Mapping[str, tuple[Variable, ...]]
 
     def block(self, program: Program) -> str:
         """The name of the function block."""
         return self.blocks.get(program.name, f"{self.prefix}{program.name.upper()}")
 
 
-def st_block(program: Program, names: StNames, sized: Mapping[str, SizedRecord]) -> str:
+HELD = local("Held_")
+"""How variables begin for what is not finished."""
+
+
+def st_block(program: Program, names: StNames, sized: Mapping[str, SizedRecord]) -> Block:
     """The program as a function block."""
-    return _Printer(program, names, sized).text()
+    return _Printer(program, names, sized).printed()
+
+
+def st_structure(record: SizedRecord, name: str) -> Structure:
+    """The declaration of a record."""
+    members = []
+    for member, declared in record.members.items():
+        kind = ArrayOf(declared.kind, record.length(member)) if declared.axes else declared.kind
+        members.append(Variable(st_name(member), kind, declared.meaning))
+    return Structure(name, record.record.meaning, tuple(members))
 
 
 class _Printer:
@@ -69,7 +83,7 @@ class _Printer:
         self.parts = 0
         self.most_parts = 0
 
-    def text(self) -> str:
+    def printed(self) -> Block:
         """The whole block."""
         program = self.program
         self.block(program.body, 0)
@@ -80,36 +94,31 @@ class _Printer:
         }
         inputs = [each for each in program.parameters if each.kind is not None]
         shared = [each for each in program.parameters if each.record and each.name not in self.names.arrays]
-        held = [line for name in program.records for line in self.names.arrays.get(name, ())]
-        rows = [
-            *_section("VAR_INPUT", [line for each in inputs if each.kind
-                                    for line in st_declared(st_name(each.name), each.kind.st, each.meaning)]),
-            *_section("VAR_IN_OUT", [f"    {st_name(each.name)} : {self.names.types[each.record.name]};"
-                                     for each in shared if each.record]),
-            *_section("VAR_OUTPUT", [f"    {st_name(name)} : {kind.st};" for name, kind in answers.items()]),
-            *_section("VAR", [*(f"    {name} : {self.names.block(each)};" for name, each in asked.items()),
-                              *(f"    {st_name(name)} : {kind.st};" for name, kind in own.items()),
-                              *(f"    Held_{place + 1} : REAL;" for place in range(self.most_parts))]),
-            *_section("VAR CONSTANT", [f"    {st_name(name.lower())} : REAL := {real(value)};"
-                                       for name, value in self.constants().items()] + held),
-        ]  # fmt: skip
-        self.require_distinct(
-            [*(each.name for each in program.parameters), *answers, *own, *map(str.lower, self.constants())]
-        )
-        note = st_comment(program.note.split("\n\n")[0].replace("\n", " "))
-        head = f"FUNCTION_BLOCK {self.names.block(program)}"
-        return "\n".join([head, *note, *rows, "", *self.lines, "END_FUNCTION_BLOCK", ""])
+        held = [each for name in program.records for each in self.names.arrays.get(name, ())]
+        return Block(
+            self.names.block(program),
+            program.note.split("\n\n")[0].replace("\n", " "),
+            tuple(self.lines),
+            inputs=tuple(Variable(st_name(each.name), each.kind, each.meaning) for each in inputs if each.kind),
+            in_outs=tuple(Variable(st_name(each.name), Declared(self.names.types[each.record.name]))
+                          for each in shared if each.record),
+            outputs=tuple(Variable(st_name(name), kind) for name, kind in answers.items()),
+            own=(
+                *(Variable(name, Declared(self.names.block(each))) for name, each in asked.items()),
+                *(Variable(st_name(name), kind) for name, kind in own.items()),
+                *(Variable(f"{plain(HELD)}{place + 1}", Kind.REAL) for place in range(self.most_parts)),
+            ),
+            constants=(
+                *(Variable(st_name(name.lower()), Kind.REAL, values=(real(value),))
+                  for name, value in self.constants().items()),
+                *held,
+            ),
+        )  # fmt: skip
 
     def constants(self) -> Mapping[str, float]:
         """The named constants of this program alone."""
         found = (each for each in expressions_in(self.program.body) if isinstance(each, Number))
         return {each.name: each.value for each in found if each.name}
-
-    def require_distinct(self, names: list[str]) -> None:
-        """Names that differ in Python must differ here, where capitals count for nothing."""
-        printed = [st_name(name).upper() for name in names]
-        if len(set(printed)) < len(printed):
-            raise ValueError(f"{self.program.name}: two names are one in Structured Text: {sorted(printed)}")
 
     def instance(self, program: Program) -> str:
         """The instance of another program's block."""
@@ -118,7 +127,7 @@ class _Printer:
     def put(self, depth: int, text: str) -> None:
         """A line, broken where it is too long."""
         pad = "    " * depth
-        if len(pad) + len(text) <= WIDTH:
+        if len(pad) + len(plain(text)) <= WIDTH:
             self.lines.append(pad + text)
         else:
             self.lines += broken(text, pad)
@@ -127,6 +136,8 @@ class _Printer:
         """Statements one after the other."""
         for statement in body:
             if statement.comment:
+                if MARK in statement.comment:
+                    raise ValueError(f"{self.program.name}: no {MARK} may stand in a comment: {statement.comment}")
                 self.lines += st_comment(statement.comment, "    " * depth)
             self.parts = 0
             match statement:
@@ -158,14 +169,14 @@ class _Printer:
 
     def ask(self, statement: Ask, depth: int) -> None:
         """A call of another block, and its answers."""
-        instance = self.instance(statement.program)
+        instance = local(self.instance(statement.program))
         given = []
         for each, parameter in zip(statement.arguments, statement.program.parameters, strict=True):
-            value = st_name(each) if isinstance(each, str) else self.atom_of(each, depth)
+            value = local(st_name(each)) if isinstance(each, str) else self.atom_of(each, depth)
             given.append(f"{st_name(parameter.name)} := {value}")
         self.put(depth, f"{instance}({', '.join(given)});")
         for target, answer in zip(statement.targets, statement.program.answers, strict=bool(statement.targets)):
-            self.put(depth, f"{st_name(target.name)} := {instance}.{st_name(answer.name)};")
+            self.put(depth, f"{local(st_name(target.name))} := {instance}.{st_name(answer.name)};")
 
     def assign(self, text: str, target: Name | Item, value: Expression, depth: int) -> None:
         """target := value, one REAL operation a statement; the target holds what is not finished, if it may."""
@@ -206,7 +217,7 @@ class _Printer:
         """A variable for what is not finished."""
         self.parts += 1
         self.most_parts = max(self.most_parts, self.parts)
-        return f"Held_{self.parts}"
+        return f"{HELD}{self.parts}"
 
     def bare(self, value: Expression, depth: int) -> str:
         """A whole expression: an operand, or a condition, or what calculates with whole numbers."""
@@ -228,21 +239,21 @@ class _Printer:
         """An operand that needs no calculation with REAL."""
         match value:
             case Number(value=number, kind=Kind.REAL, name=name):
-                return st_name(name.lower()) if name else f"{number:.1f}"
+                return local(st_name(name.lower())) if name else f"{number:.1f}"
             case Number(value=number, kind=Kind.BOOL):
                 return "TRUE" if number else "FALSE"
             case Number(value=number):
                 return f"{int(number)}"
             case Name(name=name):
-                return name if name.startswith("Held_") else st_name(name)
+                return name if name.startswith(HELD) else local(st_name(name))
             case Convert(value=inner, kind=kind):
                 return f"{'INT_TO_REAL' if kind is Kind.REAL else 'REAL_TO_INT'}({self.atom(inner)})"
             case Binary(sign=sign, left=left, right=right):
                 return f"({self.atom(left)} {sign} {self.atom(right)})"
             case Item(record=record, member=member, indices=(number,)) if record in self.names.arrays:
-                return f"{of_tables(member)}[{self.atom(number)}]"
+                return f"{local(of_tables(member))}[{self.atom(number)}]"
             case Item(record=record, member=member, indices=indices):
-                text = f"{st_name(record)}.{st_name(member)}"
+                text = f"{local(st_name(record))}.{st_name(member)}"
                 return text if not indices else f"{text}[{self.index(record, member, indices)}]"
         raise ValueError(f"{self.program.name}: {value} is no operand")
 
@@ -269,17 +280,12 @@ def _calculates(value: Expression) -> bool:
     return isinstance(value, Binary | Extreme) and value.kind is Kind.REAL
 
 
-def _section(head: str, rows: list[str]) -> Iterator[str]:
-    if rows:
-        yield from (head, *rows, "END_VAR")
-
-
 def broken(text: str, pad: str = "") -> Iterator[str]:
     """A statement in as many lines as it needs, broken before AND and OR and behind commas."""
     parts = re.sub(r", | (?=AND |OR )", lambda found: found[0].rstrip() + "\n", text).split("\n")
     line = pad + parts[0]
     for part in parts[1:]:
-        if len(line) + 1 + len(part) <= WIDTH:
+        if len(plain(f"{line} {part}")) <= WIDTH:
             line += f" {part}"
         else:
             yield line

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
-from synth.retarder.forms.code_options import PLAIN, CodeOptions
+from synth.retarder.forms.code_options import PLAIN, PLC_NAMES, CodeOptions
 from synth.retarder.forms.table_forms import Files, one_each
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.aim_tables import AimTables
@@ -31,15 +32,23 @@ def aim_c_form(tables: Sequence[AimTable], options: CodeOptions = PLAIN) -> File
     return aim_c_files(in_order(tables), options.prefix, options.self_test.aims)
 
 
-def aim_st_form(tables: Sequence[AimTable], options: CodeOptions = PLAIN) -> Files:
-    """Structured Text of all tables together and its self-test; `InvalidTable` if they make no set."""
-    from tuning_tables.aim.st_source import aim_st_files, aim_st_unit_files
+def aim_plc_form(name: str, tables: Sequence[AimTable], options: CodeOptions = PLAIN) -> Files:
+    """Structured Text of all tables together and its self-test, in a form of `PLC_FORMS`.
 
-    write = aim_st_unit_files if options.split else aim_st_files
-    return write(in_order(tables), options.prefix, options.self_test.aims)
+    `InvalidTable` if they make no set.
+    """
+    from synth.retarder.forms.plc_forms import PLC_FORMS
+    from tuning_tables.aim.st_source import aim_export
+
+    return PLC_FORMS[name].files(aim_export(in_order(tables), options.prefix, options.self_test.aims), options)
 
 
-AIM_FORMS: Mapping[str, AimForm] = {"json": aim_json_form, "csv": aim_csv_form, "c": aim_c_form, "st": aim_st_form}
+AIM_FORMS: Mapping[str, AimForm] = {
+    "json": aim_json_form,
+    "csv": aim_csv_form,
+    "c": aim_c_form,
+    **{name: partial(aim_plc_form, name) for name in PLC_NAMES},
+}
 
 
 def in_order(tables: Sequence[AimTable]) -> AimTables:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 from synth.frame.input_error import InputError
 from tuning_tables.correction import LARGEST_LIMIT_M_S, LEAST_LIMIT_M_S
@@ -11,11 +12,17 @@ from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
 SELF_TESTS: Mapping[str, SelfTestSize] = {"full": FULL, "small": SMALL}
+PLC_NAMES: Final = ("st", "plcopen", "twincat", "scl")
+"""The forms of Structured Text."""
+CODE_NAMES: Final = ("c", *PLC_NAMES)
+"""The forms of code."""
 OPTIONS: Mapping[str, tuple[str, ...]] = {
-    "c": ("--prefix", "--self-test", "--correction"),
-    "st": ("--prefix", "--self-test", "--split", "--correction"),
+    "--prefix": CODE_NAMES,
+    "--self-test": CODE_NAMES,
+    "--split": ("st",),
+    "--correction": CODE_NAMES,
 }
-"""Of the forms that have any."""
+"""The forms that have each option."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +52,8 @@ def code_options(
         "--correction": correction_m_s is not None,
     }
     for name in given:
-        if given[name] and name not in OPTIONS.get(form, ()):
-            takers = " and ".join(each for each, options in OPTIONS.items() if name in options)
-            raise InputError(f"{name} is for --format {takers}, not for {form}; leave it out")
+        if given[name] and form not in OPTIONS[name]:
+            raise InputError(f"{name} is for --format {', '.join(OPTIONS[name])}, not for {form}; leave it out")
     if self_test is not None and self_test not in SELF_TESTS:
         raise InputError(f"--self-test {self_test}: there is no such self-test; give {', '.join(SELF_TESTS)}")
     try:

@@ -18,7 +18,7 @@ EXIT_READING_STD_M_S: Final = 0.05
 
 
 def correction_files(form: str, tables: Sequence[ControllerTable], options: CodeOptions) -> Files:
-    """The code in `form` ("c" or "st") of a correction up to `options.correction_m_s`; no file where none is asked for.
+    """The code in `form` of a correction up to `options.correction_m_s`; no file where none is asked for.
 
     The spread of exits is the median of what the tables predict of theirs, with that of a reading. `InputError` without
     tables with lines: aim tables regulate nothing, and a passage over sensors has no samples to judge it by.
@@ -34,10 +34,12 @@ def correction_files(form: str, tables: Sequence[ControllerTable], options: Code
         from tuning_tables.c_correction import correction_c_files
 
         return correction_c_files(correction, options.prefix)
-    from tuning_tables.st_correction import correction_st_files, correction_st_unit_files
+    from synth.retarder.forms.plc_forms import PLC_FORMS
+    from tuning_tables.st_correction import correction_export, correction_st_unit_files
 
-    write = correction_st_unit_files if options.split else correction_st_files
-    return write(correction, options.prefix)
+    if options.split:
+        return correction_st_unit_files(correction, options.prefix)
+    return PLC_FORMS[form].files(correction_export(correction, options.prefix), options)
 
 
 def correction_of(tables: Sequence[ControllerTable], limit_m_s: float) -> Correction:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
-from synth.retarder.forms.code_options import PLAIN, CodeOptions
+from synth.retarder.forms.code_options import PLAIN, PLC_NAMES, CodeOptions
 from synth.retarder.forms.table_forms import Files, one_each
 from tuning_tables.csv_file import to_csv
 from tuning_tables.json_file import to_json
@@ -31,18 +32,22 @@ def passage_c_form(tables: Sequence[PassageTable], options: CodeOptions = PLAIN)
     return passage_c_files(PassageBook(tuple(tables)), options.prefix, options.self_test.passages)
 
 
-def passage_st_form(tables: Sequence[PassageTable], options: CodeOptions = PLAIN) -> Files:
-    """Structured Text of all tables together and its self-test; `InvalidTable` if they make no book."""
-    from tuning_tables.passages.passage_book import PassageBook
-    from tuning_tables.passages.st_source import passage_st_files, passage_st_unit_files
+def passage_plc_form(name: str, tables: Sequence[PassageTable], options: CodeOptions = PLAIN) -> Files:
+    """Structured Text of all tables together and its self-test, in a form of `PLC_FORMS`.
 
-    write = passage_st_unit_files if options.split else passage_st_files
-    return write(PassageBook(tuple(tables)), options.prefix, options.self_test.passages)
+    `InvalidTable` if they make no book.
+    """
+    from synth.retarder.forms.plc_forms import PLC_FORMS
+    from tuning_tables.passages.passage_book import PassageBook
+    from tuning_tables.passages.st_source import passage_export
+
+    export = passage_export(PassageBook(tuple(tables)), options.prefix, options.self_test.passages)
+    return PLC_FORMS[name].files(export, options)
 
 
 PASSAGE_FORMS: Mapping[str, PassageForm] = {
     "json": passage_json_form,
     "csv": passage_csv_form,
     "c": passage_c_form,
-    "st": passage_st_form,
+    **{name: partial(passage_plc_form, name) for name in PLC_NAMES},
 }

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import TypeVar
 
 from synth.frame.input_error import InputError
-from synth.retarder.forms.code_options import PLAIN, CodeOptions
+from synth.retarder.forms.code_options import PLAIN, PLC_NAMES, CodeOptions
 from synth.retarder.forms.table_file import file_stem
 from tuning_tables import ControllerTable, to_csv, to_json
 from tuning_tables.aim.aim_table import AimTable
@@ -35,16 +36,24 @@ def c_form(tables: Sequence[ControllerTable], options: CodeOptions = PLAIN) -> F
     return c_files(TableBook(tuple(tables)), options.prefix, options.self_test)
 
 
-def st_form(tables: Sequence[ControllerTable], options: CodeOptions = PLAIN) -> Files:
-    """Structured Text of all tables together and its self-test; `InvalidTable` if they make no book."""
-    from tuning_tables.st_source import st_files, st_unit_files
+def plc_form(name: str, tables: Sequence[ControllerTable], options: CodeOptions = PLAIN) -> Files:
+    """Structured Text of all tables together and its self-test, in a form of `PLC_FORMS`.
+
+    `InvalidTable` if they make no book.
+    """
+    from synth.retarder.forms.plc_forms import PLC_FORMS
+    from tuning_tables.st_source import line_export
     from tuning_tables.table_book import TableBook
 
-    write = st_unit_files if options.split else st_files
-    return write(TableBook(tuple(tables)), options.prefix, options.self_test)
+    return PLC_FORMS[name].files(line_export(TableBook(tuple(tables)), options.prefix, options.self_test), options)
 
 
-FORMS: Mapping[str, Form] = {"json": json_form, "csv": csv_form, "c": c_form, "st": st_form}
+FORMS: Mapping[str, Form] = {
+    "json": json_form,
+    "csv": csv_form,
+    "c": c_form,
+    **{name: partial(plc_form, name) for name in PLC_NAMES},
+}
 
 
 def one_each(tables: Sequence[_Table], write: Callable[[_Table], bytes], suffix: str) -> Files:
