@@ -16,9 +16,13 @@ from synth.checker.code_records import (
     st_records,
 )
 from synth.checker.code_records import differences as record_differences
+from synth.checker.float32 import rounded
 from synth.checker.table_reading import Table
 
 CATEGORY: Final = re.compile(r"#define RETARDER_CATEGORY_(\w+) (\d{1,6}) /\* (.*?) \*/")
+
+OF_LINES: Final = ("targetms", "coefficient", "slope")
+"""In these two tables of one family may differ."""
 
 Differences = Iterator[tuple[str, str]]
 
@@ -31,13 +35,11 @@ def c_differences(source: str, header: str, tables: Sequence[Table]) -> Differen
     if len(blocks) != len(tables):
         yield "", f"it holds {len(blocks)} tables, but there are {len(tables)}"
         return
-    for number, (block, table) in enumerate(zip(blocks, tables, strict=True)):
+    for number, (block, table, due) in enumerate(zip(blocks, tables, held_of(tables), strict=True)):
         fault = checksum_fault(number, block)
         if fault is not None:
             yield table.id, fault
-        yield from (
-            (table.id, each) for each in record_differences(number, c_numbers(members, block), held(table, tables))
-        )
+        yield from ((table.id, each) for each in record_differences(number, c_numbers(members, block), due))
 
 
 def st_differences(text: str, tables: Sequence[Table]) -> Differences:
@@ -47,12 +49,22 @@ def st_differences(text: str, tables: Sequence[Table]) -> Differences:
     if len(records.tables) != len(tables):
         yield "", f"it holds {len(records.tables)} tables, but there are {len(tables)}"
         return
-    for number, (numbers, table) in enumerate(zip(records.tables, tables, strict=True)):
-        yield from ((table.id, each) for each in record_differences(number, numbers, held(table, tables)))
+    for number, (numbers, table, due) in enumerate(zip(records.tables, tables, held_of(tables), strict=True)):
+        yield from ((table.id, each) for each in record_differences(number, numbers, due))
+
+
+def held_of(tables: Sequence[Table]) -> list[Numbers]:
+    """What a controller holds of each table: `held`, and its family.
+
+    That is the number of the first table that differs in nothing but target and lines.
+    """
+    numbers = [held(table, tables) for table in tables]
+    rest = [{name: [*map(rounded, each[name])] for name in each if name not in OF_LINES} for each in numbers]
+    return [{**each, "family": [rest.index(of_family)]} for each, of_family in zip(numbers, rest, strict=True)]
 
 
 def held(table: Table, tables: Sequence[Table]) -> Numbers:
-    """What a controller holds of a table, with room for all of its book; what it has not is 0."""
+    """What a controller holds of a table by itself, with room for all of its book; what it has not is 0."""
     stages, powers = max(len(each.lines) for each in tables), max(each.degree for each in tables) + 1
     found: dict[str, Sequence[float]] = {
         "category": [table.category_number or 0],

@@ -30,7 +30,8 @@ BEGIN: Final = Rule(begin_cut, "begin")
 OBSERVE: Final = Rule(observe, "observe", "-1.0f")
 DECIDE: Final = Rule(decide, "decide", "stage")
 ALARMS: Final = Rule(alarms, "alarms", "0")
-CHOOSES: Final = (Rule(choose, "choose"), Rule(blend, "blend"))
+CHOOSE: Final = Rule(choose, "choose")
+BLEND: Final = Rule(blend, "blend")
 
 HEAD: Final = (
     "The first axle is at `s_m`, 0 at the entrance of the first retarder, negative before it. The interlock is "
@@ -76,7 +77,7 @@ def line_code(book: TableBook, self_test: SelfTestSize) -> ControllerCode:
         room=room,
         tables=held,
         rules=(BEGIN, OBSERVE, DECIDE, ALARMS),
-        chooses=CHOOSES,
+        chooses=(CHOOSE, BLEND) if book.has_pairs else (CHOOSE,),
         questions=(decisions(book, self_test), estimates(book)),
         commands=tuple(commands(book, record)),
         named=NAMED,
@@ -101,6 +102,7 @@ def held_values(book: TableBook, number: int, record: SizedRecord, lines: Active
     held = (lines or active(source)).held._replace(
         category=book.number_of(source.cut.category),
         axles=len(source.cut.axle_offsets_m),
+        family=book.families[number],
         mass_t=np.float32(source.cut.mass_t),
     )
     if held.has_gauge == 0:  # a difference of pressures that nobody looks at must not keep two tables apart

@@ -11,7 +11,6 @@ import numpy as np
 
 from tuning_tables.category_names import comment_text
 from tuning_tables.controller_code.code import ControllerCode
-from tuning_tables.language.alike import alike_program
 from tuning_tables.language.records import Kind, Member, st_name
 from tuning_tables.language.st_data import of_tables, st_type
 from tuning_tables.language.structured_text import StNames, st_block
@@ -63,21 +62,16 @@ END_IF;
 END_FUNCTION_BLOCK
 """
 
-BLENDED_NOTE: Final = (
-    "Between two targets: what lies between the two tables, where they differ in nothing but target and lines. "
-    "Otherwise"
-)
+BLENDED_NOTE: Final = "Between two targets: what lies between the two tables, where they are of one family. Otherwise"
 BLENDED: Final = """\
     Loader(TableNo := Chooser.Faster, Table := Faster);
-    Comparer(Slower := Table, Faster := Faster);
-    IF Comparer.Same THEN
-        Blender(Table := Table, Faster := Faster, Commanded_m_s := Commanded_m_s);
+    Blender(Table := Table, Faster := Faster, Commanded_m_s := Commanded_m_s);
+    IF Blender.IsBetween THEN
         Table.Target_m_s := Commanded_m_s;
     ELSE
         Status := 2;
     END_IF;"""
 BLENDERS: Final = """\
-    Comparer : {prefix}ALIKE;
     Blender : {prefix}BLEND;
     Faster : {type};
 """
@@ -148,11 +142,10 @@ def st_units(code: ControllerCode) -> list[str]:
     names = st_names(code)
     programs = [st_block(program, names, code.sized) for program in code.programs]
     types = [st_type(record, names.types[record.record.name]) for record in (code.table, *code.states)]
-    alike = [st_block(alike_program(code.table), names, code.sized)] if code.blends else []
     choice = [select_block(code)] if code.chooses else []
     # Tables with lines alone have it, so that others fit into the same controller.
     categories = [categories_block(code)] if code.stem == "table" else []
-    return [named(code, text) for text in (*types, *categories, load_block(code), *programs, *alike, *choice)]
+    return [named(code, text) for text in (*types, *categories, load_block(code), *programs, *choice)]
 
 
 def select_block(code: ControllerCode) -> str:

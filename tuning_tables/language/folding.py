@@ -1,7 +1,7 @@
 """A program as one export needs it: what it has no room for is left out, with all that only that was for.
 
-A member that an export has not reads as 0. Conditions that are then known go, branches that are never taken go, and so
-do variables that nobody reads.
+A member that an export has not reads as 0, and is not written. Conditions that are then known go, branches that are
+never taken go, and so do variables that nobody reads.
 """
 
 from __future__ import annotations
@@ -62,6 +62,8 @@ class _Folder:
 
     def statement(self, statement: Statement) -> Iterator[Statement]:
         match statement:
+            case Assign(target=Item(record=record, member=member)) if member not in self.sized[record].members:
+                return
             case Assign(target=Item() as target, value=value):
                 indices = tuple(map(self.expression, target.indices))
                 yield replace(statement, target=replace(target, indices=indices), value=self.expression(value))
