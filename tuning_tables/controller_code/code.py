@@ -16,7 +16,7 @@ from tuning_tables.language.folding import folded
 from tuning_tables.language.reading import program_of
 from tuning_tables.language.records import Kind, Record, SizedRecord
 from tuning_tables.language.tree import Ask, Program
-from tuning_tables.language.walking import names_read, statements_in
+from tuning_tables.language.walking import looked_at, statements_in
 
 BEFORE: Final = "before_"
 """How the name of a field begins that sets a member of the state before its question."""
@@ -176,7 +176,8 @@ class ControllerCode:
         found: dict[str, Program] = {}
         for rule in (*self.chooses, *self.rules):
             for program in with_asked(folded(program_of(rule.function), self.sized)):
-                found.setdefault(program.name, program)
+                if found.setdefault(program.name, program) != program:
+                    raise ValueError(f"{program.name} is a rule, and is asked with other parameters.")
         return tuple(found.values())
 
     def beginning(self, state: str) -> Rule:
@@ -243,10 +244,3 @@ def kinds_of(code: ControllerCode, questions: Questions) -> Mapping[str, Kind]:
 
 KINDS: Final = {"f": Kind.REAL, "b": Kind.BOOL}
 """By the kind of a numpy type; all others are whole."""
-
-
-def looked_at(program: Program) -> set[str]:
-    """The parameters that a folded program reads."""
-    return {name for statement in program.body for name in names_read(statement)} | {
-        each.name for each in program.answers
-    }

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import textwrap
 
-from tuning_tables.controller_code.code import ControllerCode, looked_at
+import numpy as np
+
+from tuning_tables.controller_code.code import ControllerCode
 from tuning_tables.controller_code.st_code import WIDTH, st_names
 from tuning_tables.controller_code.st_test_block import TestBlock, block_text, check, test_name
 from tuning_tables.language.records import Kind, SizedRecord, st_name
 from tuning_tables.language.st_data import real
+from tuning_tables.language.walking import looked_at
+from tuning_tables.st_literals import is_portable
 
 
 def odd_test(code: ControllerCode) -> TestBlock:
@@ -25,6 +29,8 @@ def odd_test(code: ControllerCode) -> TestBlock:
     for each in code.odd:
         program = code.program(each.rule)
         body += [changed(code.table, *change) for change in each.changes]
+        if not is_portable(np.array([*each.given.values(), each.wanted], np.float32)).all():
+            continue
         given = []
         for taken in program.parameters:
             if taken.record is not None:

@@ -29,7 +29,7 @@ from tuning_tables.language.tree import (
     Statement,
     While,
 )
-from tuning_tables.language.walking import names_read
+from tuning_tables.language.walking import looked_at, names_read
 
 Records = Mapping[str, SizedRecord]
 """The sized records of an export by the name of the record."""
@@ -46,7 +46,7 @@ COMPARED = {
 
 
 def folded(program: Program, records: Records) -> Program:
-    """The program for an export that has these records."""
+    """The program for an export that has these records; a program that it asks takes only numbers that it reads."""
     folder = _Folder({name: records[each.name] for name, each in program.records.items()}, records)
     body = _used(folder.block(program.body), {answer.name for answer in program.answers})
     return replace(program, body=body)
@@ -70,8 +70,12 @@ class _Folder:
             case Assign(value=value):
                 yield replace(statement, value=self.expression(value))
             case Ask(program=program, arguments=arguments):
-                given = tuple(each if isinstance(each, str) else self.expression(each) for each in arguments)
-                yield replace(statement, program=folded(program, self.all_records), arguments=given)
+                asked = folded(program, self.all_records)
+                read = {*asked.records, *looked_at(asked)}
+                pairs = [pair for pair in zip(asked.parameters, arguments, strict=True) if pair[0].name in read]
+                given = tuple(each if isinstance(each, str) else self.expression(each) for _, each in pairs)
+                taken = tuple(each for each, _ in pairs)
+                yield replace(statement, program=replace(asked, parameters=taken), arguments=given)
             case While(condition=condition, body=body):
                 found = self.expression(condition)
                 if found != FALSE:
