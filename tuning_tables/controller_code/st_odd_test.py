@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Callable, Mapping
+from typing import Final
 
 import numpy as np
 
@@ -12,7 +14,12 @@ from tuning_tables.controller_code.st_test_block import TestBlock, block_text, c
 from tuning_tables.language.records import Kind, SizedRecord, st_name
 from tuning_tables.language.st_data import real
 from tuning_tables.language.walking import looked_at
-from tuning_tables.st_literals import is_portable
+from tuning_tables.st_literals import is_portable, real_array
+
+LITERALS: Final[Mapping[Kind, Callable[[float], str]]] = {
+    Kind.REAL: real, Kind.INT: lambda number: str(int(number)), Kind.BOOL: lambda number: "TRUE" if number else "FALSE",
+}  # fmt: skip
+"""How a number is written that is handed over."""
 
 
 def odd_test(code: ControllerCode) -> TestBlock:
@@ -21,7 +28,8 @@ def odd_test(code: ControllerCode) -> TestBlock:
     rules = {each.rule.name: each.rule for each in code.odd}
     begun = [each for each in code.states if any(each.record.name in code.program(r).records for r in rules.values())]
     variables = [f"{st_name(rule.name)}Block : {names.block(code.program(rule))}" for rule in rules.values()]
-    body, constants = [], ["    Zero : INT := 0;"]
+    body: list[str] = []
+    due: list[float] = []
     for state in begun:
         rule = code.beginning(state.record.name)
         variables += [f"{st_name(rule.name)}Block : {names.block(code.program(rule))}",
@@ -40,12 +48,16 @@ def odd_test(code: ControllerCode) -> TestBlock:
                     body.append(f"{begin}({st_name(taken.name)} := {st_name(taken.name)});")
             elif taken.name in looked_at(program):
                 number = each.given[taken.name]
-                given.append(f"{st_name(taken.name)} := {real(number) if taken.kind is Kind.REAL else int(number)}")
+                given.append(f"{st_name(taken.name)} := {LITERALS[taken.kind or Kind.INT](number)}")
         block = f"{st_name(each.rule.name)}Block"
         (answer,) = program.answers
-        wanted = real(each.wanted) if answer.kind is Kind.REAL else str(int(each.wanted))
+        wanted = str(int(each.wanted))
+        if answer.kind is Kind.REAL:  # a bare literal is LREAL for many compilers
+            wanted = f"Due[{len(due)}]"
+            due.append(each.wanted)
         body += textwrap.wrap(f"{block}({', '.join(given)});", WIDTH, subsequent_indent="    ")
         body += [*check(f"{block}.{st_name(answer.name)} <> {wanted}")]
+    constants = [real_array("Due", due)] if due else ["    Zero : INT := 0;"]
     note = "Table 0, changed into one in which every condition counts, then damaged."
     return TestBlock(name, block_text(code, name, note, True, variables, constants, body), 0)
 
