@@ -12,7 +12,7 @@ from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.aim_tables import AimTables
 from tuning_tables.aim.golden_aims import GoldenAims, golden_selections
 from tuning_tables.category_names import category_names, comment_text
-from tuning_tables.controller_code.code import ControllerCode, HeldTable, Questions, Rule, Values, padded
+from tuning_tables.controller_code.code import ControllerCode, HeldTable, Questions, Rule, Values, made_by, padded
 from tuning_tables.controller_code.odd_aims import odd_aims
 from tuning_tables.language.records import SizedRecord, record_of
 from tuning_tables.programs.aim_speed import exit_speed
@@ -98,7 +98,4 @@ def origin_lines(aims: AimTables) -> Iterator[str]:
     """What the tables are for and where they come from, in ASCII."""
     position = aims.tables[0].position
     yield f"position   {comment_text(position.name)}, left at {position.exit_at_m:g} m from the crest"
-    yield f"tables     {len(aims.tables)}"
-    for generator, created in dict.fromkeys((table.generator, table.created) for table in aims.tables):
-        yield f"made by    {comment_text(generator.name)} {comment_text(generator.version)}, {created}"
-        yield f"           configuration {generator.config_sha256}"
+    yield from made_by(aims.tables)

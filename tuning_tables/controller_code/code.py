@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.category_names import CategoryName
+from tuning_tables.category_names import CategoryName, comment_text
 from tuning_tables.language.folding import folded
 from tuning_tables.language.reading import program_of
 from tuning_tables.language.records import Kind, Record, SizedRecord
 from tuning_tables.language.tree import Ask, Program
 from tuning_tables.language.walking import looked_at, statements_in
+from tuning_tables.provenance import Generator
 
 BEFORE: Final = "before_"
 """How the name of a field begins that sets a member of the state before its question."""
@@ -88,6 +89,20 @@ class Commanded:
     commanded_m_s: np.float32
     status: int
     chosen: Values | None
+
+
+class Made(Protocol):
+    """A table of any kind, as far as it tells what made it."""
+
+    @property
+    def generator(self) -> Generator:
+        """What made it."""
+        ...
+
+    @property
+    def created(self) -> str:
+        """When."""
+        ...
 
 
 Place = tuple[int, ...]
@@ -223,6 +238,14 @@ def words_of(record: SizedRecord, values: Values) -> npt.NDArray[np.uint32]:
 def crc32_of(words: npt.NDArray[np.uint32]) -> int:
     """The checksum of words, each from its lowest byte to its highest."""
     return zlib.crc32(words.astype("<u4").tobytes())
+
+
+def made_by(tables: Sequence[Made]) -> Iterator[str]:
+    """How many tables there are, and what made them, in ASCII."""
+    yield f"tables     {len(tables)}"
+    for generator, created in dict.fromkeys((table.generator, table.created) for table in tables):
+        yield f"made by    {comment_text(generator.name)} {comment_text(generator.version)}, {created}"
+        yield f"           configuration {generator.config_sha256}"
 
 
 def padded(array: npt.NDArray[Any], shape: Sequence[int]) -> npt.NDArray[Any]:

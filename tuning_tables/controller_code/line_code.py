@@ -10,7 +10,16 @@ import numpy.typing as npt
 
 from tuning_tables.active_table import ActiveTable, active
 from tuning_tables.category_names import category_names, comment_text
-from tuning_tables.controller_code.code import Commanded, ControllerCode, HeldTable, Questions, Rule, Values, padded
+from tuning_tables.controller_code.code import (
+    Commanded,
+    ControllerCode,
+    HeldTable,
+    Questions,
+    Rule,
+    Values,
+    made_by,
+    padded,
+)
 from tuning_tables.controller_code.odd_tables import odd_questions
 from tuning_tables.golden_choices import golden_choices
 from tuning_tables.golden_tracks import golden_tracks
@@ -162,9 +171,5 @@ def commands(book: TableBook, record: SizedRecord) -> Iterator[Commanded]:
 
 def origin_lines(book: TableBook) -> Iterator[str]:
     """What the book is for and where it comes from, in ASCII."""
-    made = dict.fromkeys((table.generator, table.created) for table in book.tables)
     yield f"retarder   {comment_text(book.tables[0].retarder.name)}"
-    yield f"tables     {len(book.tables)}"
-    for generator, created in made:
-        yield f"made by    {comment_text(generator.name)} {comment_text(generator.version)}, {created}"
-        yield f"           configuration {generator.config_sha256}"
+    yield from made_by(book.tables)

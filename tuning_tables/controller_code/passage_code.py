@@ -17,6 +17,7 @@ from tuning_tables.controller_code.code import (
     Questions,
     Rule,
     Values,
+    made_by,
     padded,
 )
 from tuning_tables.controller_code.odd_passages import odd_passages
@@ -123,7 +124,4 @@ def origin_lines(book: PassageBook) -> Iterator[str]:
     places = ", ".join(f"{place:g}" for place in first.sensors.path_m)
     yield f"retarder   {comment_text(first.retarder.name)}"
     yield f"sensors    0 to {len(first.sensors.path_m) - 1}, middle of their bases at {places} m from the entrance"
-    yield f"tables     {len(book.tables)}"
-    for generator, created in dict.fromkeys((table.generator, table.created) for table in book.tables):
-        yield f"made by    {comment_text(generator.name)} {comment_text(generator.version)}, {created}"
-        yield f"           configuration {generator.config_sha256}"
+    yield from made_by(book.tables)
