@@ -34,7 +34,9 @@ STEP: Final = np.dtype([("credible", np.bool_), *((name, np.float32) for name in
 PASS: Final = np.dtype([*((name, np.int16) for name in ("samples", "missing", "at_top")),
                         *((name, np.bool_) for name in ("ends_at_top", "by_hand", "stalled")),
                         ("error_m_s", np.float32), ("usable", np.bool_)])  # fmt: skip
-"""Questions to `learn_exit` and `corrected_speed`, and to `usable_exit`, by the names of what they take and answer."""
+SPEED: Final = np.dtype([(name, np.float32) for name in (*BEFORE_FIELDS, "v_m_s", "corrected")])
+"""Questions to `learn_exit` and `corrected_speed`, to `usable_exit`, and to `corrected_speed` alone, by the names of
+what they take and answer."""
 
 SEQUENCE: Final = 60
 SMALLEST: Final = float(np.finfo(np.float32).smallest_subnormal)
@@ -57,6 +59,15 @@ def golden_exits(correction: Correction) -> npt.NDArray[np.void]:
     rows = [row for exits in _sequences(correction) for row in _run(correction, exits)]
     rows += [_row(state, reading) for state in _states(correction) for reading in _readings(correction)]
     return answered(correction, np.array(rows, dtype=STEP))
+
+
+def golden_speeds(correction: Correction) -> npt.NDArray[np.void]:
+    """A speed in every state that `golden_exits` begins with, of type `SPEED`: before an exit has mended it."""
+    rows = np.array([(*state, 3.0, 0.0) for state in _states(correction)], dtype=SPEED)
+    for row in rows:
+        state = np.array([row[name] for name in BEFORE_FIELDS], dtype=np.float32)
+        row["corrected"] = corrected_speed(correction.setting, state, row["v_m_s"])
+    return rows
 
 
 def _row(state: Iterable[float], reading: Exit) -> tuple[float | bool, ...]:

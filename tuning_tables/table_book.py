@@ -7,8 +7,8 @@ The choice knows what the yard knows of a cut: its weight category, its number o
 2. No number, not above 0, or below the lowest target: no table, for every one would let the cut out too fast.
 3. Equal to a target: that table.
 4. Above the highest target: the table of the highest target. The cut leaves slower than asked.
-5. Between two neighbouring targets: the lines between the two (`active_table.between`), or, where the two differ in
-   more than their coefficients and slopes (`active_table.interpolable`), the table of the lower target.
+5. Between two neighbouring targets: the lines between the two (`active_table.between`), or, where the two are not of
+   one family (`book_families`), the table of the lower target.
 
 So no choice aims at more than the commanded speed, and a cut that the book does not know is left to whoever commands.
 Speeds and masses are compared as float32 numbers; of equal tables the first in the book counts.
@@ -31,9 +31,10 @@ from typing import Final
 
 import numpy as np
 
-from tuning_tables.active_table import ActiveTable, active, between, interpolable
+from tuning_tables.active_table import ActiveTable, active, between
 from tuning_tables.book_categories import category_numbers, exported_number
 from tuning_tables.book_classes import tables_by_class
+from tuning_tables.book_families import families_of
 from tuning_tables.errors import InvalidTable
 from tuning_tables.line_order import UNIT_ROUNDOFF
 from tuning_tables.programs import choose
@@ -128,6 +129,20 @@ class TableBook:
         return tables_by_class(self.tables)
 
     @cached_property
+    def families(self) -> tuple[int, ...]:
+        """Of each table its family: the number of the first table that differs in nothing but target and lines."""
+        return families_of(self.tables)
+
+    def are_family(self, one: int, other: int) -> bool:
+        """Whether there is something between the tables of these numbers."""
+        return self.families[one] == self.families[other]
+
+    @cached_property
+    def has_pairs(self) -> bool:
+        """Whether there is something between any two tables."""
+        return len({*self.families}) < len(self.tables)
+
+    @cached_property
     def most_stages(self) -> int:
         """Stages of the table that has most."""
         return max(len(table.stages) for table in self.tables)
@@ -151,7 +166,7 @@ class TableBook:
         slower = self.tables[numbers[place]]
         if targets[place] == target:
             return Choice(Status.TUNED, active(slower), (numbers[place],))
-        if place + 1 == len(targets) or not interpolable(slower, self.tables[numbers[place + 1]]):
+        if place + 1 == len(targets) or not self.are_family(*numbers[place : place + 2]):
             return Choice(Status.SLOWER, active(slower), (numbers[place],))
         faster = self.tables[numbers[place + 1]]
         return Choice(Status.BETWEEN, between(slower, faster, target), (numbers[place], numbers[place + 1]))
@@ -160,7 +175,7 @@ class TableBook:
         """All pairs of tables that lines may be taken between."""
         for numbers in self.by_class.values():
             for slower, faster in pairwise(numbers):
-                if interpolable(self.tables[slower], self.tables[faster]):
+                if self.are_family(slower, faster):
                     yield self.tables[slower], self.tables[faster]
 
 

@@ -17,6 +17,10 @@ COMMENT: Final = {".st": r"\(\*.*?\*\)"}
 UNIT_FILE: Final = re.compile(r"\d{4}_(\w+)_LOAD\.st")
 """Of an export with a file each unit, the one with most of the tables."""
 
+LINE_UNITS: Final = "TABLE|CATEGORIES|LOAD|CHOOSE"
+AIM_UNITS: Final = "TABLE|LOAD|SELECT"
+"""The units that hold numbers of tables, with lines and of aims."""
+
 IS_AIM: Final = re.compile(r"(?:^|_)AIM$")
 """Whether what stands before _LOAD is of an aim table: no prefix may end so."""
 
@@ -43,9 +47,13 @@ class CodeFile:
         """The text of all units of the tables in Structured Text: one file, or several in the order of their names."""
         if not UNIT_FILE.fullmatch(self.path.name):
             return self.text()
-        names = "TABLE|CATEGORIES|LOAD|CHOOSE"
-        parts = re.compile(rf"\d{{4}}_{self.prefix}_({names})\.st")
-        return "\n".join(self.text(file) for file in sorted(self.path.parent.iterdir()) if parts.fullmatch(file.name))
+        return "\n".join(self.text(file) for file in unit_files(self.path.parent, self.prefix, LINE_UNITS))
+
+
+def unit_files(folder: Path, prefix: str, units: str) -> list[Path]:
+    """The files of an export with a file each unit, of these units alone, in the order of their names."""
+    parts = re.compile(rf"\d{{4}}_{re.escape(prefix)}_({units})\.st")
+    return [file for file in sorted(folder.iterdir()) if parts.fullmatch(file.name)]
 
 
 def c_files(folder: Path) -> Iterator[CodeFile]:

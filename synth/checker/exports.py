@@ -12,6 +12,7 @@ from typing import Final
 from synth.checker import csv_export, golden_export, line_export, track_export
 from synth.checker.aim.exports import check_aim_exports, is_aim_csv
 from synth.checker.book_categories import without_number
+from synth.checker.category_constants import ascii_comment
 from synth.checker.code_file import CodeFile, c_files, st_files
 from synth.checker.export_check import Check, Differences, findings_of
 from synth.checker.finding import Finding, Kind
@@ -90,7 +91,7 @@ def golden_differences(file: Path, source: Source) -> Differences:
     content = content_of(file)
     text = content.decode("utf-8", "replace")
     rows = dict.fromkeys(re.findall(r'^(\d{1,6}),"?([^",]*)"?,', text, re.MULTILINE))
-    order = "".join(f"/* {number}: {line_export.ascii_comment(name)} */" for number, name in rows)
+    order = "".join(f"/* {number}: {ascii_comment(name)} */" for number, name in rows)
     return golden_export.differences(content, in_order(source, order))
 
 
@@ -114,7 +115,7 @@ def in_order(source: Source, text: str) -> list[Table]:
     """The tables in the order of the book; without a book, in the order that the comments of `text` tell."""
     if source.has_book:
         return list(source.tables)
-    by_name = {line_export.ascii_comment(table.id): table for table in source.tables}
+    by_name = {ascii_comment(table.id): table for table in source.tables}
     names = [name for _, name in sorted((int(number), name) for number, name in PLACE.findall(text))]
     ordered = [by_name[name] for name in dict.fromkeys(names) if name in by_name]
     return ordered + [table for table in source.tables if table not in ordered]

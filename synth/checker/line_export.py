@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from synth.checker.category_number import YARD
+from synth.checker.category_constants import category_differences
 from synth.checker.code_records import (
     Numbers,
     c_members,
@@ -16,9 +15,11 @@ from synth.checker.code_records import (
     st_records,
 )
 from synth.checker.code_records import differences as record_differences
+from synth.checker.float32 import rounded
 from synth.checker.table_reading import Table
 
-CATEGORY: Final = re.compile(r"#define RETARDER_CATEGORY_(\w+) (\d{1,6}) /\* (.*?) \*/")
+OF_LINES: Final = ("targetms", "coefficient", "slope")
+"""In these two tables of one family may differ."""
 
 Differences = Iterator[tuple[str, str]]
 
@@ -27,17 +28,16 @@ def c_differences(source: str, header: str, tables: Sequence[Table]) -> Differen
     """(about, sentence) for each disagreement of `retarder_table.c`; `tables` in the order of the book, "" the code."""
     members = c_members(header, "retarder_table")
     blocks = c_records(source, members, "retarder_tables", "retarder_table_count")
-    yield from (("", sentence) for sentence in category_differences(tables, header))
+    numbers = {table.category: table.category_number or 0 for table in tables}
+    yield from (("", sentence) for sentence in category_differences("RETARDER", numbers, header))
     if len(blocks) != len(tables):
         yield "", f"it holds {len(blocks)} tables, but there are {len(tables)}"
         return
-    for number, (block, table) in enumerate(zip(blocks, tables, strict=True)):
+    for number, (block, table, due) in enumerate(zip(blocks, tables, held_of(tables), strict=True)):
         fault = checksum_fault(number, block)
         if fault is not None:
             yield table.id, fault
-        yield from (
-            (table.id, each) for each in record_differences(number, c_numbers(members, block), held(table, tables))
-        )
+        yield from ((table.id, each) for each in record_differences(number, c_numbers(members, block), due))
 
 
 def st_differences(text: str, tables: Sequence[Table]) -> Differences:
@@ -47,12 +47,22 @@ def st_differences(text: str, tables: Sequence[Table]) -> Differences:
     if len(records.tables) != len(tables):
         yield "", f"it holds {len(records.tables)} tables, but there are {len(tables)}"
         return
-    for number, (numbers, table) in enumerate(zip(records.tables, tables, strict=True)):
-        yield from ((table.id, each) for each in record_differences(number, numbers, held(table, tables)))
+    for number, (numbers, table, due) in enumerate(zip(records.tables, tables, held_of(tables), strict=True)):
+        yield from ((table.id, each) for each in record_differences(number, numbers, due))
+
+
+def held_of(tables: Sequence[Table]) -> list[Numbers]:
+    """What a controller holds of each table: `held`, and its family.
+
+    That is the number of the first table that differs in nothing but target and lines.
+    """
+    numbers = [held(table, tables) for table in tables]
+    rest = [{name: [*map(rounded, each[name])] for name in each if name not in OF_LINES} for each in numbers]
+    return [{**each, "family": [rest.index(of_family)]} for each, of_family in zip(numbers, rest, strict=True)]
 
 
 def held(table: Table, tables: Sequence[Table]) -> Numbers:
-    """What a controller holds of a table, with room for all of its book; what it has not is 0."""
+    """What a controller holds of a table by itself, with room for all of its book; what it has not is 0."""
     stages, powers = max(len(each.lines) for each in tables), max(each.degree for each in tables) + 1
     found: dict[str, Sequence[float]] = {
         "category": [table.category_number or 0],
@@ -109,21 +119,3 @@ def estimator(table: Table, breaks: int) -> dict[str, Sequence[float]]:
         name: [*row, *[0.0] * (breaks - len(row))] for name, row in zip(("placem", "drive", "brake"), rows, strict=True)
     }
     return {"breaks": [len(table.estimator.s_m)], **numbers, **work}
-
-
-def category_differences(tables: Sequence[Table], header: str) -> Iterator[str]:
-    """What is wrong with the constants of the weight categories: those of the yard are always there."""
-    found = [(number, comment) for _, number, comment in CATEGORY.findall(header)]
-    numbers = YARD | {table.category: table.category_number or 0 for table in tables}
-    by_number = sorted(numbers.items(), key=lambda each: each[1])
-    wanted = [(str(number), ascii_comment(name)) for name, number in by_number]
-    if found != wanted:
-        yield f"its header defines the categories {found}, but the tables have {wanted}"
-    if len({name for name, _, _ in CATEGORY.findall(header)}) < len(found):
-        yield "its header gives two categories one name"
-
-
-def ascii_comment(text: str) -> str:
-    """A name as the export writes it into comments."""
-    plain = "".join(x if x.isascii() and (x.isalnum() or x in " ._+,()-") else f"<U+{ord(x):04X}>" for x in text)
-    return plain.replace("RETARDER_", "RETARDER<U+005F>").replace("retarder_", "retarder<U+005F>")

@@ -12,7 +12,8 @@ from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.aim_tables import AimTables
 from tuning_tables.aim.golden_aims import GoldenAims, golden_selections
 from tuning_tables.category_names import category_names, comment_text
-from tuning_tables.controller_code.code import ControllerCode, HeldTable, Questions, Rule, Values, padded
+from tuning_tables.controller_code.code import ControllerCode, HeldTable, Questions, Rule, Values, made_by, padded
+from tuning_tables.controller_code.odd_aims import odd_aims
 from tuning_tables.language.records import SizedRecord, record_of
 from tuning_tables.programs.aim_speed import exit_speed
 from tuning_tables.programs.aim_table import AIM_GRID, Tables, select
@@ -33,6 +34,7 @@ def aim_code(aims: AimTables, ask: Ask) -> ControllerCode:
     """The export of a set; its names begin with AIM, which `ExportPrefix.of_kind` sees to."""
     room = room_of(aims)
     record = AIM_GRID.sized(room)
+    held = tuple(HeldTable(table.id, held_values(table, record)) for table in aims.tables)
     return ControllerCode(
         stem="table",
         title="Aim tables of a park position, and the rule by which they are asked.",
@@ -42,7 +44,7 @@ def aim_code(aims: AimTables, ask: Ask) -> ControllerCode:
         records={AIM_GRID.name: "table"},
         declared=(AIM_GRID, record_of(Tables)),
         room=room,
-        tables=tuple(HeldTable(table.id, held_values(table, record)) for table in aims.tables),
+        tables=held,
         rules=(SELECT, EXIT_SPEED),
         chooses=(),
         questions=(
@@ -50,6 +52,7 @@ def aim_code(aims: AimTables, ask: Ask) -> ControllerCode:
             Questions("selections", (SELECT,), selection_rows(aims)),
         ),
         commands=(),
+        odd=tuple(odd_aims(record, held[0].values, EXIT_SPEED)),
         empty="listed",
     )
 
@@ -95,7 +98,4 @@ def origin_lines(aims: AimTables) -> Iterator[str]:
     """What the tables are for and where they come from, in ASCII."""
     position = aims.tables[0].position
     yield f"position   {comment_text(position.name)}, left at {position.exit_at_m:g} m from the crest"
-    yield f"tables     {len(aims.tables)}"
-    for generator, created in dict.fromkeys((table.generator, table.created) for table in aims.tables):
-        yield f"made by    {comment_text(generator.name)} {comment_text(generator.version)}, {created}"
-        yield f"           configuration {generator.config_sha256}"
+    yield from made_by(aims.tables)

@@ -23,8 +23,8 @@ is below 0, or chosen is null, chosen is left as it was: then whoever commands m
 to be safe."""
 
 BLENDED_NOTE: Final = (
-    "Between two targets it is what lies between the two tables, where they differ in nothing but target and lines; "
-    "else, and above the highest target,"
+    "Between two targets it is what lies between the two tables, where they are of one family; else, and above the "
+    "highest target,"
 )
 SLOWER_NOTE: Final = "Between two targets, and above the highest, it is"
 
@@ -49,8 +49,7 @@ int32_t {select}(int32_t category, int32_t axles, float commanded_m_s, {type} *c
 """
 
 BLENDED: Final = """\
-        if (alike(&{tables}[slower], &{tables}[faster])) {{
-            blend(chosen, &{tables}[faster], commanded_m_s);
+        if (blend(chosen, &{tables}[faster], commanded_m_s)) {{
             chosen->target_m_s = commanded_m_s;
             chosen->crc32 = table_crc32(chosen);
         }} else {{

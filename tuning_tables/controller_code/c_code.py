@@ -18,7 +18,6 @@ from tuning_tables.controller_code.c_choice import (
     tables_of,
 )
 from tuning_tables.controller_code.code import ControllerCode, HeldTable, Rule, crc32_of, words_of
-from tuning_tables.language.alike import alike_program
 from tuning_tables.language.c99 import CNames, c_function, c_prototype
 from tuning_tables.language.c99_data import c_comment, c_constants, c_content, c_type
 from tuning_tables.language.tree import Program
@@ -189,10 +188,7 @@ def note_lines(program: Program, without: str) -> Iterator[str]:
 def c_source(code: ControllerCode) -> str:
     """The text of retarder_STEM.c."""
     names = c_names(code)
-    programs = list(code.programs)
-    if code.blends:
-        programs.append(alike_program(code.table))
-    functions = [c_function(program, names) for program in programs]
+    functions = [c_function(program, names) for program in code.programs]
     text = named(code, "\n".join(functions))
     words = code.table.words() + 1
     return "\n".join(
@@ -208,7 +204,7 @@ def c_source(code: ControllerCode) -> str:
             f"#define TABLE_WORDS {words}u",
             f"typedef char {table_type(code)}_has_no_gaps[(sizeof({table_type(code)}) == 4u * TABLE_WORDS) ? 1 : -1];",
             "",
-            c_constants(constants_of(tuple(programs))),
+            c_constants(constants_of(code.programs)),
             "",
             f"const int32_t {table_type(code)}_count = {len(code.tables)};",
             "",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from tuning_tables.controller_code.c_choice import table_type, tables_of
 from tuning_tables.controller_code.c_code import c_names
 from tuning_tables.controller_code.code import ControllerCode, OddQuestion
@@ -47,8 +49,13 @@ def question(code: ControllerCode, odd: OddQuestion) -> str:
             given.append(f"&{taken.name}")
         else:
             number = odd.given[taken.name]
-            given.append(hex_float(number) if taken.kind is Kind.REAL else str(int(number)))
+            given.append(real(number) if taken.kind is Kind.REAL else str(int(number)))
     call = f"{c_names(code).function(program)}({', '.join(given)})"
     if program.answers[0].kind is Kind.REAL:
-        return f"bits_of({call}) == bits_of({hex_float(odd.wanted)})"
+        return f"bits_of({call}) == bits_of({real(odd.wanted)})"
     return f"{call} == {int(odd.wanted)}"
+
+
+def real(number: float) -> str:
+    """A number, by its bits where no constant tells it."""
+    return hex_float(number) if np.isfinite(number) else f"float_of(0x{int(np.float32(number).view(np.uint32)):08x}u)"

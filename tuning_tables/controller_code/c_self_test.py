@@ -224,34 +224,57 @@ def asking(code: ControllerCode, place: int, questions: Questions) -> Iterator[s
 def nothing_is_safe(code: ControllerCode) -> str:
     """The function that asks every rule without one of its records, and the choice and checksum without a table."""
     tests = [test for rule in code.rules for test in without_records(code, rule)]
-    tests.append(f"{table_type(code)}_intact(0) == 0")
+    tests += [f"{table_type(code)}_intact(0) == 0", f"{table_type(code)}_intact(&changed) == 0"]
     if code.chooses:
         tests.append(f"{select_of(code)}(0, 0, 1.0f, 0) < 0")
     states = [f"    retarder_{code.records[each.record.name]} {each.record.name} = {{{filling(each.record.members)}}};"
               for each in code.states]  # fmt: skip
     joined = "\n        && ".join(tests)
     table = f"    const {table_type(code)} *const table = &{tables_of(code)}[0];"
-    uses = [table] if "(table" in joined else []
-    begun = [f"    retarder_{code.beginning(each.record.name).name}(0);" for each in code.states]
+    asked = [
+        f"    {call};" for rule in code.rules if not code.program(rule).answers for call in without_each(code, rule)
+    ]
+    uses = [table] if "(table" in joined + "".join(asked) else []
+    changed = [f"    {table_type(code)} changed = {tables_of(code)}[0];", *states, "    changed.crc32 ^= 1u;"]
     return "\n".join(
-        ["static int nothing_is_safe(void)", "{", *uses, *states, *begun, f"    return {joined};", "}", ""]
+        ["static int nothing_is_safe(void)", "{", *uses, *changed, *asked, f"    return {joined};", "}", ""]
     )
 
 
 def without_records(code: ControllerCode, rule: Rule) -> Iterator[str]:
     """What a rule must answer where one of its records is missing."""
     program = code.program(rule)
+    if not program.answers:
+        yield from kept_without(code, rule)
     if not rule.without:
         return
-    kinds = {each.name: each.kind for each in program.parameters if each.record is None}
-    value = {name: "1.0f" if kind is Kind.REAL else "1" for name, kind in kinds.items()}
-    safe = value.get(rule.without, rule.without)
+    safe = numbers_of(program).get(rule.without, rule.without)
+    is_real = program.answers[0].kind is Kind.REAL
+    for call in without_each(code, rule):
+        yield f"bits_of({call}) == bits_of({safe})" if is_real else f"{call} == {safe}"
+
+
+def kept_without(code: ControllerCode, rule: Rule) -> Iterator[str]:
+    """Of a rule that changes a state and needs another record: the state is as it was filled."""
+    program = code.program(rule)
+    for state in (each.record for each in code.states if each.record.name in program.records):
+        for place, name in enumerate(state.members, start=1) if len(program.records) > 1 else ():
+            yield f"bits_of({state.name}.{name}) == bits_of({place}.0f)"
+
+
+def without_each(code: ControllerCode, rule: Rule) -> Iterator[str]:
+    """The calls of a rule without one of its records."""
+    program, value = code.program(rule), numbers_of(code.program(rule))
     for missing in program.records:
         given = [
             value.get(each.name)
             or ("0" if each.name == missing else f"&{each.name}" if each.record and each.record.is_state else "table")
             for each in program.parameters
         ]
-        call = f"retarder_{rule.name}({', '.join(given)})"
-        is_real = program.answers[0].kind is Kind.REAL
-        yield f"bits_of({call}) == bits_of({safe})" if is_real else f"{call} == {safe}"
+        yield f"retarder_{rule.name}({', '.join(given)})"
+
+
+def numbers_of(program: Program) -> Mapping[str, str]:
+    """The numbers that a rule is given where a record is missing: 1 each."""
+    kinds = {each.name: each.kind for each in program.parameters if each.record is None}
+    return {name: "1.0f" if kind is Kind.REAL else "1" for name, kind in kinds.items()}

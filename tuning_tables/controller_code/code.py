@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,8 @@ from tuning_tables.language.folding import folded
 from tuning_tables.language.reading import program_of
 from tuning_tables.language.records import Kind, Record, SizedRecord
 from tuning_tables.language.tree import Ask, Program
-from tuning_tables.language.walking import names_read, statements_in
+from tuning_tables.language.walking import looked_at, statements_in
+from tuning_tables.provenance import Generator
 
 BEFORE: Final = "before_"
 """How the name of a field begins that sets a member of the state before its question."""
@@ -88,6 +89,20 @@ class Commanded:
     commanded_m_s: np.float32
     status: int
     chosen: Values | None
+
+
+class Made(Protocol):
+    """A table of any kind, as far as it tells what made it."""
+
+    @property
+    def generator(self) -> Generator:
+        """What made it."""
+        ...
+
+    @property
+    def created(self) -> str:
+        """When."""
+        ...
 
 
 Place = tuple[int, ...]
@@ -176,7 +191,8 @@ class ControllerCode:
         found: dict[str, Program] = {}
         for rule in (*self.chooses, *self.rules):
             for program in with_asked(folded(program_of(rule.function), self.sized)):
-                found.setdefault(program.name, program)
+                if found.setdefault(program.name, program) != program:
+                    raise ValueError(f"{program.name} is a rule, and is asked with other parameters.")
         return tuple(found.values())
 
     def beginning(self, state: str) -> Rule:
@@ -236,6 +252,14 @@ def crc32_of(words: npt.NDArray[np.uint32]) -> int:
     return zlib.crc32(words.astype("<u4").tobytes())
 
 
+def made_by(tables: Sequence[Made]) -> Iterator[str]:
+    """How many tables there are, and what made them, in ASCII."""
+    yield f"tables     {len(tables)}"
+    for generator, created in dict.fromkeys((table.generator, table.created) for table in tables):
+        yield f"made by    {comment_text(generator.name)} {comment_text(generator.version)}, {created}"
+        yield f"           configuration {generator.config_sha256}"
+
+
 def padded(array: npt.NDArray[Any], shape: Sequence[int]) -> npt.NDArray[Any]:
     """The array with zeros up to this shape."""
     found = np.zeros(shape, dtype=array.dtype)
@@ -255,10 +279,3 @@ def kinds_of(code: ControllerCode, questions: Questions) -> Mapping[str, Kind]:
 
 KINDS: Final = {"f": Kind.REAL, "b": Kind.BOOL}
 """By the kind of a numpy type; all others are whole."""
-
-
-def looked_at(program: Program) -> set[str]:
-    """The parameters that a folded program reads."""
-    return {name for statement in program.body for name in names_read(statement)} | {
-        each.name for each in program.answers
-    }

@@ -7,7 +7,7 @@ from typing import Final
 
 from tuning_tables.controller_code.code import ControllerCode, HeldTable, Questions, Rule
 from tuning_tables.correction import Correction
-from tuning_tables.golden_exits import golden_exits, golden_passes
+from tuning_tables.golden_exits import golden_exits, golden_passes, golden_speeds
 from tuning_tables.programs.correct import (
     CORRECTION,
     SETTING,
@@ -46,6 +46,7 @@ def correction_code(correction: Correction) -> ControllerCode:
         questions=(
             Questions("exits", (LEARN, SPEED), golden_exits(correction)),
             Questions("passes", (USABLE,), golden_passes()),
+            Questions("speeds", (SPEED,), golden_speeds(correction)),
         ),
         commands=(),
         empty="limit_m_s",

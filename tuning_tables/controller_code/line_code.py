@@ -10,7 +10,16 @@ import numpy.typing as npt
 
 from tuning_tables.active_table import ActiveTable, active
 from tuning_tables.category_names import category_names, comment_text
-from tuning_tables.controller_code.code import Commanded, ControllerCode, HeldTable, Questions, Rule, Values, padded
+from tuning_tables.controller_code.code import (
+    Commanded,
+    ControllerCode,
+    HeldTable,
+    Questions,
+    Rule,
+    Values,
+    made_by,
+    padded,
+)
 from tuning_tables.controller_code.odd_tables import odd_questions
 from tuning_tables.golden_choices import golden_choices
 from tuning_tables.golden_tracks import golden_tracks
@@ -30,7 +39,8 @@ BEGIN: Final = Rule(begin_cut, "begin")
 OBSERVE: Final = Rule(observe, "observe", "-1.0f")
 DECIDE: Final = Rule(decide, "decide", "stage")
 ALARMS: Final = Rule(alarms, "alarms", "0")
-CHOOSES: Final = (Rule(choose, "choose"), Rule(blend, "blend"))
+CHOOSE: Final = Rule(choose, "choose")
+BLEND: Final = Rule(blend, "blend")
 
 HEAD: Final = (
     "The first axle is at `s_m`, 0 at the entrance of the first retarder, negative before it. The interlock is "
@@ -76,7 +86,7 @@ def line_code(book: TableBook, self_test: SelfTestSize) -> ControllerCode:
         room=room,
         tables=held,
         rules=(BEGIN, OBSERVE, DECIDE, ALARMS),
-        chooses=CHOOSES,
+        chooses=(CHOOSE, BLEND) if book.has_pairs else (CHOOSE,),
         questions=(decisions(book, self_test), estimates(book)),
         commands=tuple(commands(book, record)),
         named=NAMED,
@@ -101,6 +111,7 @@ def held_values(book: TableBook, number: int, record: SizedRecord, lines: Active
     held = (lines or active(source)).held._replace(
         category=book.number_of(source.cut.category),
         axles=len(source.cut.axle_offsets_m),
+        family=book.families[number],
         mass_t=np.float32(source.cut.mass_t),
     )
     if held.has_gauge == 0:  # a difference of pressures that nobody looks at must not keep two tables apart
@@ -160,9 +171,5 @@ def commands(book: TableBook, record: SizedRecord) -> Iterator[Commanded]:
 
 def origin_lines(book: TableBook) -> Iterator[str]:
     """What the book is for and where it comes from, in ASCII."""
-    made = dict.fromkeys((table.generator, table.created) for table in book.tables)
     yield f"retarder   {comment_text(book.tables[0].retarder.name)}"
-    yield f"tables     {len(book.tables)}"
-    for generator, created in made:
-        yield f"made by    {comment_text(generator.name)} {comment_text(generator.version)}, {created}"
-        yield f"           configuration {generator.config_sha256}"
+    yield from made_by(book.tables)

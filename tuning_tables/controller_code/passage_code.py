@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Final, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -14,12 +14,13 @@ from tuning_tables.controller_code.code import (
     Commanded,
     ControllerCode,
     HeldTable,
-    OddQuestion,
     Questions,
     Rule,
     Values,
+    made_by,
     padded,
 )
+from tuning_tables.controller_code.odd_passages import odd_passages
 from tuning_tables.language.records import SizedRecord, record_of
 from tuning_tables.passages.golden_passages import GoldenPassages
 from tuning_tables.passages.golden_selections import golden_selections
@@ -28,7 +29,7 @@ from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
 from tuning_tables.programs.choose import Tables, choose
-from tuning_tables.programs.passage_table import HELD_PASSAGES, HeldPassages
+from tuning_tables.programs.passage_table import HELD_PASSAGES
 from tuning_tables.programs.tracker import TRACKER, begin_cut, believed_passage
 
 Ask: TypeAlias = Callable[[PassageTable], GoldenPassages]
@@ -75,7 +76,7 @@ def passage_code(book: PassageBook, ask: Ask) -> ControllerCode:
             Questions("pulses", (AT_PULSE,), numbered([each.pulses for each in golden])),
         ),
         commands=tuple(commands(book, record)),
-        odd=tuple(odd_questions(record, held[0].values)),
+        odd=tuple(odd_passages(record, held[0].values, (BELIEVED, WANTED, AT_PULSE))),
     )
 
 
@@ -117,35 +118,10 @@ def commands(book: PassageBook, record: SizedRecord) -> Iterator[Commanded]:
         yield Commanded(each.category, each.axles, each.commanded_m_s, int(each.status), chosen)
 
 
-def odd_questions(record: SizedRecord, first: Values) -> Iterator[OddQuestion]:
-    """Questions to table 0 as it is, and with numbers of passages and stages for which there is no room."""
-    held, sensor = HeldPassages(**first), int(first["sensor"][0])
-    speed_m_s = np.ceil(8.0 * held.least_m_s) / 8.0
-    pair = {"sensor": sensor, "since_s": 1.0, "reading_m_s": speed_m_s}
-    reading = {"passage": 0, "stage": 0, "reading_m_s": 100.0}
-    room = record.room
-    for rule, given, member, numbers in (
-        (BELIEVED, pair, "heard", (held.heard, 0, room["heard"] + 1)),
-        (WANTED, reading, "passages", (held.passages, room["passages"] + 1, held.passages)),
-        (WANTED, reading, "stages", (room["stages"] + 1,)),
-    ):
-        for number in numbers:
-            change: Mapping[str, Any] = {member: number}
-            held = held._replace(**change)
-            state = [np.zeros(len(TRACKER.members), np.float32)] if rule is BELIEVED else []
-            for each in state:
-                begin_cut(each)
-            answer = rule.function(held, *state, *given.values())
-            yield OddQuestion(((member, (), float(number)),), rule, given, float(answer))
-
-
 def origin_lines(book: PassageBook) -> Iterator[str]:
     """For which retarder the tables are, where its sensors stand, and what made them, in ASCII."""
     first = book.tables[0]
     places = ", ".join(f"{place:g}" for place in first.sensors.path_m)
     yield f"retarder   {comment_text(first.retarder.name)}"
     yield f"sensors    0 to {len(first.sensors.path_m) - 1}, middle of their bases at {places} m from the entrance"
-    yield f"tables     {len(book.tables)}"
-    for generator, created in dict.fromkeys((table.generator, table.created) for table in book.tables):
-        yield f"made by    {comment_text(generator.name)} {comment_text(generator.version)}, {created}"
-        yield f"           configuration {generator.config_sha256}"
+    yield from made_by(book.tables)

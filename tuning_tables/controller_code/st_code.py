@@ -13,7 +13,6 @@ import numpy as np
 
 from tuning_tables.category_names import comment_text
 from tuning_tables.controller_code.code import ControllerCode
-from tuning_tables.language.alike import alike_program
 from tuning_tables.language.records import Kind, Member, st_name
 from tuning_tables.language.st_data import of_tables
 from tuning_tables.language.st_unit import Block, Declared, Unit, Variable, local, retold
@@ -48,15 +47,11 @@ IF #Status = 1 THEN
 {between}
 END_IF;"""
 
-BLENDED_NOTE: Final = (
-    "Between two targets: what lies between the two tables, where they differ in nothing but target and lines. "
-    "Otherwise"
-)
+BLENDED_NOTE: Final = "Between two targets: what lies between the two tables, where they are of one family. Otherwise"
 BLENDED: Final = """\
     #Loader(TableNo := #Chooser.Faster, Table := #Faster);
-    #Comparer(Slower := #Table, Faster := #Faster);
-    IF #Comparer.Same THEN
-        #Blender(Table := #Table, Faster := #Faster, Commanded_m_s := #Commanded_m_s);
+    #Blender(Table := #Table, Faster := #Faster, Commanded_m_s := #Commanded_m_s);
+    IF #Blender.IsBetween THEN
         #Table.Target_m_s := #Commanded_m_s;
     ELSE
         #Status := 2;
@@ -98,11 +93,10 @@ def st_units(code: ControllerCode) -> list[Unit]:
     names = st_names(code)
     programs = [st_block(program, names, code.sized) for program in code.programs]
     types = [st_structure(record, names.types[record.record.name]) for record in (code.table, *code.states)]
-    alike = [st_block(alike_program(code.table), names, code.sized)] if code.blends else []
     choice = [select_block(code)] if code.chooses else []
     # Tables with lines alone have it, so that others fit into the same controller.
     categories = [categories_block(code)] if code.stem == "table" else []
-    units: list[Unit] = [*types, *categories, load_block(code), *programs, *alike, *choice]
+    units: list[Unit] = [*types, *categories, load_block(code), *programs, *choice]
     return [retold(unit, partial(named, code)) for unit in units]
 
 
@@ -111,7 +105,7 @@ def select_block(code: ControllerCode) -> Block:
     prefix, table = st_names(code).prefix, Declared(table_type(code))
     own = [Variable("Chooser", Declared(f"{prefix}CHOOSE")), Variable("Loader", Declared(load_of(code)))]
     if code.blends:
-        blenders = {"Comparer": f"{prefix}ALIKE", "Blender": f"{prefix}BLEND", "Faster": table.name}
+        blenders = {"Blender": f"{prefix}BLEND", "Faster": table.name}
         own += [Variable(name, Declared(kind)) for name, kind in blenders.items()]
     statuses = "0 tuned, 1 between two tables, 2 slower; no table: -1 no such class, -2 none slow enough"
     return Block(

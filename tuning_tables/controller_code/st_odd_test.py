@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Callable, Mapping
+from typing import Final
 
-from tuning_tables.controller_code.code import ControllerCode, looked_at
+import numpy as np
+
+from tuning_tables.controller_code.code import ControllerCode
 from tuning_tables.controller_code.st_code import WIDTH, st_names, table_type
 from tuning_tables.controller_code.st_test_block import TestBlock, check, test_block, test_name
 from tuning_tables.language.records import Kind, SizedRecord, st_name
 from tuning_tables.language.st_data import real
 from tuning_tables.language.st_unit import Declared, Variable
+from tuning_tables.language.walking import looked_at
+from tuning_tables.st_literals import is_portable, real_array
+
+LITERALS: Final[Mapping[Kind, Callable[[float], str]]] = {
+    Kind.REAL: real, Kind.INT: lambda number: str(int(number)), Kind.BOOL: lambda number: "TRUE" if number else "FALSE",
+}  # fmt: skip
+"""How a number is written that is handed over."""
 
 
 def odd_test(code: ControllerCode) -> TestBlock:
@@ -21,6 +32,7 @@ def odd_test(code: ControllerCode) -> TestBlock:
         Variable(f"{st_name(rule.name)}Block", Declared(names.block(code.program(rule)))) for rule in rules.values()
     ]
     body: list[str] = []
+    due: list[float] = []
     for state in begun:
         rule = code.beginning(state.record.name)
         variables += [Variable(f"{st_name(rule.name)}Block", Declared(names.block(code.program(rule)))),
@@ -28,6 +40,8 @@ def odd_test(code: ControllerCode) -> TestBlock:
     for each in code.odd:
         program = code.program(each.rule)
         body += [changed(code.table, *change) for change in each.changes]
+        if not is_portable(np.array([*each.given.values(), each.wanted], np.float32)).all():
+            continue
         given = []
         for taken in program.parameters:
             if taken.record is not None:
@@ -37,14 +51,18 @@ def odd_test(code: ControllerCode) -> TestBlock:
                     body.append(f"{begin}({st_name(taken.name)} := #{st_name(taken.name)});")
             elif taken.name in looked_at(program):
                 number = each.given[taken.name]
-                given.append(f"{st_name(taken.name)} := {real(number) if taken.kind is Kind.REAL else int(number)}")
+                given.append(f"{st_name(taken.name)} := {LITERALS[taken.kind or Kind.INT](number)}")
         block = f"#{st_name(each.rule.name)}Block"
         (answer,) = program.answers
-        wanted = real(each.wanted) if answer.kind is Kind.REAL else str(int(each.wanted))
+        wanted = str(int(each.wanted))
+        if answer.kind is Kind.REAL:  # a bare literal is LREAL for many compilers
+            wanted = f"#Due[{len(due)}]"
+            due.append(each.wanted)
         body += textwrap.wrap(f"{block}({', '.join(given)});", WIDTH, subsequent_indent="    ")
         body += [*check(f"{block}.{st_name(answer.name)} <> {wanted}")]
+    constants = [real_array("Due", due)] if due else []
     note = "Table 0, changed into one in which every condition counts, then damaged."
-    return TestBlock(test_block(name, note, table_type(code), variables, [], body), 0)
+    return TestBlock(test_block(name, note, table_type(code), variables, constants, body), 0)
 
 
 def changed(record: SizedRecord, member: str, place: tuple[int, ...], number: float) -> str:

@@ -1,7 +1,7 @@
 """A program as one export needs it: what it has no room for is left out, with all that only that was for.
 
-A member that an export has not reads as 0. Conditions that are then known go, branches that are never taken go, and so
-do variables that nobody reads.
+A member that an export has not reads as 0, and is not written. Conditions that are then known go, branches that are
+never taken go, and so do variables that nobody reads.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from tuning_tables.language.tree import (
     Statement,
     While,
 )
-from tuning_tables.language.walking import names_read
+from tuning_tables.language.walking import looked_at, names_read
 
 Records = Mapping[str, SizedRecord]
 """The sized records of an export by the name of the record."""
@@ -46,7 +46,7 @@ COMPARED = {
 
 
 def folded(program: Program, records: Records) -> Program:
-    """The program for an export that has these records."""
+    """The program for an export that has these records; a program that it asks takes only numbers that it reads."""
     folder = _Folder({name: records[each.name] for name, each in program.records.items()}, records)
     body = _used(folder.block(program.body), {answer.name for answer in program.answers})
     return replace(program, body=body)
@@ -62,14 +62,20 @@ class _Folder:
 
     def statement(self, statement: Statement) -> Iterator[Statement]:
         match statement:
+            case Assign(target=Item(record=record, member=member)) if member not in self.sized[record].members:
+                return
             case Assign(target=Item() as target, value=value):
                 indices = tuple(map(self.expression, target.indices))
                 yield replace(statement, target=replace(target, indices=indices), value=self.expression(value))
             case Assign(value=value):
                 yield replace(statement, value=self.expression(value))
             case Ask(program=program, arguments=arguments):
-                given = tuple(each if isinstance(each, str) else self.expression(each) for each in arguments)
-                yield replace(statement, program=folded(program, self.all_records), arguments=given)
+                asked = folded(program, self.all_records)
+                read = {*asked.records, *looked_at(asked)}
+                pairs = [pair for pair in zip(asked.parameters, arguments, strict=True) if pair[0].name in read]
+                given = tuple(each if isinstance(each, str) else self.expression(each) for _, each in pairs)
+                taken = tuple(each for each, _ in pairs)
+                yield replace(statement, program=replace(asked, parameters=taken), arguments=given)
             case While(condition=condition, body=body):
                 found = self.expression(condition)
                 if found != FALSE:

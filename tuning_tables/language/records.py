@@ -47,7 +47,6 @@ class Member:
 
     `axes`: names of sizes, such as "stages", or whole numbers. `part`: the size without which an export has no such
     member, "" for one that every export has. `is_reading`: a parameter that Python may give in any width.
-    `is_own`: a member in which two tables may differ that are blended.
     """
 
     kind: Kind
@@ -55,12 +54,11 @@ class Member:
     axes: tuple[str | int, ...] = ()
     part: str = ""
     is_reading: bool = False
-    is_own: bool = False
 
 
-def real(meaning: str, *axes: str | int, part: str = "", is_own: bool = False) -> Member:
+def real(meaning: str, *axes: str | int, part: str = "") -> Member:
     """A member that is a REAL, or an array of them."""
-    return Member(Kind.REAL, meaning, axes, part, is_own=is_own)
+    return Member(Kind.REAL, meaning, axes, part)
 
 
 def reading(meaning: str) -> Member:

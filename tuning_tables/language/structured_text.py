@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import takewhile
+from typing import NamedTuple
 
 from tuning_tables.language.records import Kind, SizedRecord, st_name
 from tuning_tables.language.st_data import WIDTH, of_tables, real, st_comment
@@ -31,7 +33,7 @@ from tuning_tables.language.tree import (
     Statement,
     While,
 )
-from tuning_tables.language.walking import expressions_in, names_in, statements_in, variables_of
+from tuning_tables.language.walking import expressions_in, names_in, statements_in, targets_in, variables_of
 
 COMPARISONS: Mapping[str, str] = {"==": "=", "!=": "<>"}
 
@@ -58,6 +60,13 @@ HELD = local("Held_")
 """How variables begin for what is not finished."""
 
 
+class Row(NamedTuple):
+    """A variable that holds where a row of an array begins, and the variables that this is calculated from."""
+
+    name: str
+    names: frozenset[str]
+
+
 def st_block(program: Program, names: StNames, sized: Mapping[str, SizedRecord]) -> Block:
     """The program as a function block."""
     return _Printer(program, names, sized).printed()
@@ -82,6 +91,8 @@ class _Printer:
         self.lines: list[str] = []
         self.parts = 0
         self.most_parts = 0
+        self.rows: dict[str, Row] = {}
+        self.all_rows = 0
 
     def printed(self) -> Block:
         """The whole block."""
@@ -106,6 +117,7 @@ class _Printer:
             own=(
                 *(Variable(name, Declared(self.names.block(each))) for name, each in asked.items()),
                 *(Variable(st_name(name), kind) for name, kind in own.items()),
+                *(Variable(f"Row_{place + 1}", Kind.INT) for place in range(self.all_rows)),
                 *(Variable(f"{plain(HELD)}{place + 1}", Kind.REAL) for place in range(self.most_parts)),
             ),
             constants=(
@@ -134,7 +146,9 @@ class _Printer:
 
     def block(self, body: tuple[Statement, ...], depth: int) -> None:
         """Statements one after the other."""
-        for statement in body:
+        outside = self.rows
+        for place, statement in enumerate(body):
+            self.hold_rows(body[place:], depth)
             if statement.comment:
                 if MARK in statement.comment:
                     raise ValueError(f"{self.program.name}: no {MARK} may stand in a comment: {statement.comment}")
@@ -155,6 +169,30 @@ class _Printer:
                     self.put(depth, "END_WHILE;")
                 case If():
                     self.branches(statement, depth)
+        self.rows = outside
+
+    def hold_rows(self, body: tuple[Statement, ...], depth: int) -> None:
+        """Put into variables, before the first statement, where rows begin that a loop asks for again and again."""
+        first, assigned = body[0], {*targets_in(body[:1])}
+        self.rows = {text: row for text, row in self.rows.items() if not row.names & assigned}
+        for text, names in self.rows_in(body[:1]).items() if not isinstance(first, If) else ():
+            same = [*takewhile(lambda each, names=names: not names & {*targets_in((each,))}, body)]  # type: ignore[misc]
+            if text not in self.rows and any(
+                isinstance(each, While) and text in self.rows_in((each,)) for each in same
+            ):
+                self.all_rows += 1
+                row = local(f"Row_{self.all_rows}")
+                self.rows = {**self.rows, text: Row(row, names)}
+                self.put(depth, f"{row} := {text};")
+
+    def rows_in(self, body: tuple[Statement, ...]) -> dict[str, frozenset[str]]:
+        """The beginnings of rows that must be calculated, each with its variables."""
+        items = [each for each in expressions_in(body) if isinstance(each, Item) and len(each.indices) > 1]
+        return {
+            text: frozenset(name for index in each.indices[:-1] for name in names_in(index))
+            for each in items
+            if " " in (text := self.row(each))
+        }
 
     def branches(self, statement: If, depth: int) -> None:
         """IF, ELSIF, ELSE; what the conditions calculate stands before them."""
@@ -254,30 +292,35 @@ class _Printer:
                 return f"{local(of_tables(member))}[{self.atom(number)}]"
             case Item(record=record, member=member, indices=indices):
                 text = f"{local(st_name(record))}.{st_name(member)}"
-                return text if not indices else f"{text}[{self.index(record, member, indices)}]"
+                return text if not indices else f"{text}[{self.index(value)}]"
         raise ValueError(f"{self.program.name}: {value} is no operand")
 
-    def index(self, record: str, member: str, indices: tuple[Expression, ...]) -> str:
+    def index(self, item: Item) -> str:
         """The place in an array of one axis."""
-        shape = self.sized[record].shape(member)
-        text = self.atom(indices[0])
-        for place, each in enumerate(indices[1:], start=1):
-            if text.isdigit():
-                text = f"{int(text) * shape[place]}"
-            elif shape[place] > 1:
-                text = f"{text} * {shape[place]}"
-            more = self.atom(each)
-            text = f"{text} + {more}" if more != "0" else text
-            if text.startswith("0 + "):
-                text = text[4:]
-            if place < len(indices) - 1:
-                text = f"({text})"
+        row = self.row(item)
+        text = _sum(self.rows[row].name if row in self.rows else row, self.atom(item.indices[-1]))
         return text[1:-1] if text.startswith("(") and text.endswith(")") and text.count("(") == 1 else text
+
+    def row(self, item: Item) -> str:
+        """Where in an array of one axis the row of an element begins, of which the last index tells the place."""
+        text, shape = "0", self.sized[item.record].shape(item.member)
+        for length, each in zip(shape[1:], item.indices[:-1], strict=True):
+            text = _sum(text, self.atom(each))
+            if text.isdigit():
+                text = f"{int(text) * length}"
+            elif length > 1:
+                text = f"{f'({text})' if ' + ' in text and not text.endswith(')') else text} * {length}"
+        return text
 
 
 def _calculates(value: Expression) -> bool:
     """Whether an expression is an operation on REAL."""
     return isinstance(value, Binary | Extreme) and value.kind is Kind.REAL
+
+
+def _sum(one: str, other: str) -> str:
+    """The sum of two, without a 0."""
+    return other if one == "0" else one if other == "0" else f"{one} + {other}"
 
 
 def broken(text: str, pad: str = "") -> Iterator[str]:

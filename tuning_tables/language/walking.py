@@ -48,6 +48,12 @@ def names_read(statement: Statement) -> Iterator[str]:
                 yield from names_read(inner)
 
 
+def looked_at(program: Program) -> set[str]:
+    """The variables and parameters that a program reads or answers."""
+    read = {name for statement in program.body for name in names_read(statement)}
+    return read | {each.name for each in program.answers}
+
+
 def names_in(value: Expression) -> Iterator[str]:
     """The variables and parameters of an expression."""
     match value:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Final, TypeAlias
 
 import numpy as np
@@ -211,8 +211,8 @@ def _odd_pairs(table: PassageTable) -> Iterator[tuple[State, int, float, float]]
         for value in wrong[place % 3]:
             yield (*sound[:place], value, *sound[place + 1 :]), sensor, 0.25, middle
     yield sound, sensor, LONGEST_S, _beside(greatest, np.inf)
-    for place in (0, 3):
-        yield (*sound[:place], 0.5, *sound[place + 1 :]), sensor, 0.25, middle
+    for place, value in product((0, 3), (0.5, -0.5)):
+        yield (*sound[:place], value, *sound[place + 1 :]), sensor, 0.25, middle
 
 
 def _beside(value: float, towards: float) -> float:

@@ -1,8 +1,8 @@
 """Which table of a book serves a cut, and what lies between two tables.
 
 Candidates are the tables of the cut's category and number of axles; of several masses the largest. The command equal to
-a target: that table. Between two targets: what lies between the two tables, if they differ in nothing but their lines,
-else the table of the next target below the command: the cut never leaves faster than commanded. Below all targets, or
+a target: that table. Between two targets: what lies between the two tables, if they are of one family, else the table
+of the next target below the command: the cut never leaves faster than commanded. Below all targets, or
 no number: no table.
 """
 
@@ -79,27 +79,30 @@ def choose(
 
 def blend(
     table: LineTable, faster: LineTable, commanded_m_s: Annotated[Any, reading("exit speed wanted, m/s")]
-) -> None:
-    """The lines between two tables, in place of those of the slower one.
+) -> Answer:
+    """The lines between two tables, in place of those of the slower one, and whether there are any: there are none, and
+    the table stays as it is, unless both tables are of one family and the speed is between their targets.
 
     Every coefficient is low + w (high - low), w the part of the way from one target to the other: each line lies
     between its neighbours everywhere, and the lower below the upper.
     """
-    span = faster.target_m_s - table.target_m_s
-    weight = (f32(commanded_m_s) - table.target_m_s) / span
-    stage = 0
-    while stage < table.coefficient.shape[0]:
-        side = 0
-        while side < 2:
-            power = 0
-            while power < table.coefficient.shape[2]:
-                low = table.coefficient[stage, side, power]
-                rise = weight * (faster.coefficient[stage, side, power] - low)
-                table.coefficient[stage, side, power] = low + rise
-                power = power + 1
-            if table.has_gauge == 1:
-                low = table.slope[stage, side]
-                rise = weight * (faster.slope[stage, side] - low)
-                table.slope[stage, side] = low + rise
-            side = side + 1
-        stage = stage + 1
+    is_between = table.family == faster.family and table.target_m_s < commanded_m_s < faster.target_m_s
+    if is_between:
+        span = faster.target_m_s - table.target_m_s
+        weight = (f32(commanded_m_s) - table.target_m_s) / span
+        stage = 0
+        while stage < table.coefficient.shape[0]:
+            side = 0
+            while side < 2:
+                power = 0
+                while power < table.coefficient.shape[2]:
+                    low = table.coefficient[stage, side, power]
+                    rise = weight * (faster.coefficient[stage, side, power] - low)
+                    table.coefficient[stage, side, power] = low + rise
+                    power = power + 1
+                slope = table.slope[stage, side]
+                steeper = weight * (faster.slope[stage, side] - slope)
+                table.slope[stage, side] = slope + steeper
+                side = side + 1
+            stage = stage + 1
+    return is_between

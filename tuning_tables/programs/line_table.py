@@ -24,26 +24,25 @@ class LineTable(NamedTuple):
 
     category: Annotated[int, whole("number of the weight category")]
     axles: Annotated[int, whole("of the cut")]
+    family: Annotated[int, whole("tables of one family of a book differ in nothing but target and lines")]
     stages: Annotated[int, whole("stages 0 to stages - 1; 0: no table")]
     powers: Annotated[int, whole("coefficients of a line: its degree + 1")]
     at_any_time: Annotated[int, whole("1: decides at every sample; 0: only at rest, the pressure of the stage reached")]
     entrance_stage: Annotated[int, whole("highest stage that may be commanded before the entrance")]
     mass_t: Annotated[np.float32, real("of the cut, t")]
-    target_m_s: Annotated[np.float32, real("exit speed aimed at, m/s", is_own=True)]
+    target_m_s: Annotated[np.float32, real("exit speed aimed at, m/s")]
     path_min_m: Annotated[np.float32, real("the path is clamped into this range, m")]
     path_max_m: Annotated[np.float32, real("m")]
     approach_m: Annotated[np.float32, real("acts from so far before the entrance, m; 0: from the entrance on")]
     touch_kpa: Annotated[np.float32, real("pressure above which cylinders brake, kPa; 0 without estimator")]
     has_line: Annotated[Whole, whole("1 where the stage has a lower, an upper line", "stages", 2)]
     coefficient: Annotated[
-        Floats, real("of lower and upper line, ascending powers, m/s per m^power", "stages", 2, "powers", is_own=True)
+        Floats, real("of lower and upper line, ascending powers, m/s per m^power", "stages", 2, "powers")
     ]
     has_gauge: Annotated[int, whole("1: the lines depend on the pressure", part="gauge")]
     highest_kpa: Annotated[np.float32, real("of the highest stage that the table raises to, kPa", part="gauge")]
     pressure_kpa: Annotated[Floats, real("of the stages, kPa", "stages", part="gauge")]
-    slope: Annotated[
-        Floats, real("of lower and upper line over the pressure, m/s per kPa", "stages", 2, part="gauge", is_own=True)
-    ]
+    slope: Annotated[Floats, real("of lower and upper line over the pressure, m/s per kPa", "stages", 2, part="gauge")]
     breaks: Annotated[int, whole("of the estimator's work; 0: no estimator", part="breaks")]
     speed_variance: Annotated[np.float32, real("of a measured speed, m2/s2", part="breaks")]
     factor_variance: Annotated[np.float32, real("of the friction factor of cuts", part="breaks")]

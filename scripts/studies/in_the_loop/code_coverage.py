@@ -12,18 +12,28 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from scripts.studies.in_the_loop.controller_process import TIMEOUT_S, compile_with, write_sources
+from scripts.studies.in_the_loop.controller_process import TIMEOUT_S, compile_with
 from tuning_tables import from_json, read_book
+from tuning_tables.c_source import c_files
 from tuning_tables.table_book import TableBook
 
 RELEASES: Final = range(25, 17, -1)
 SWITCHES: Final = ("-std=c99", "-O0", "-ffp-contract=off", "-fprofile-instr-generate", "-fcoverage-mapping",
                    "-fcoverage-mcdc")  # fmt: skip
-CODE: Final = "retarder_table.c"
+MAIN: Final = """\
+#include "{test}.h"
+
+int main(void)
+{{
+    uint32_t where;
+    return {function}(&where) != 0;
+}}
+"""
 
 
 @dataclass(frozen=True)
@@ -48,18 +58,21 @@ def mcdc_release() -> int | None:
     return None
 
 
-def coverage_of(book: TableBook, folder: Path, release: int) -> Coverage:
-    """What the self-test of `book`, which must find no fault, reaches of its code; compiled in `folder`."""
-    write_sources(book, folder)
+def coverage_of(export: Mapping[str, bytes], folder: Path, release: int) -> Coverage:
+    """What the self-test of an export in C reaches of the code; it must find no fault. Compiled in `folder`."""
+    (test,) = (name.removesuffix(".c") for name in export if name.endswith("_self_test.c"))
+    (code,) = (name for name in export if name.endswith(".c") and not name.startswith(test))
+    main = MAIN.format(test=test, function=test)
+    for name, content in {**export, "main.c": main.encode("ascii")}.items():
+        (folder / name).write_bytes(content)
     program, raw, profile = (str(folder / name) for name in ("covered", "covered.raw", "covered.profile"))
-    sources = [str(folder / name) for name in (CODE, "retarder_self_test.c", "controller_process.c")]
+    sources = [str(folder / name) for name in (code, f"{test}.c", "main.c")]
     compile_with([f"clang-{release}", *SWITCHES, *sources, "-o", program])
-    subprocess.run([program, "self-test"], env={"LLVM_PROFILE_FILE": raw}, check=True, timeout=TIMEOUT_S,
-                   capture_output=True)  # fmt: skip
+    subprocess.run([program], env={"LLVM_PROFILE_FILE": raw}, check=True, timeout=TIMEOUT_S, capture_output=True)
     compile_with([f"llvm-profdata-{release}", "merge", raw, "-o", profile])
-    told = compile_with([f"llvm-cov-{release}", "export", program, f"-instr-profile={profile}", str(folder / CODE)])
+    told = compile_with([f"llvm-cov-{release}", "export", program, f"-instr-profile={profile}", str(folder / code)])
     (file,) = json.loads(told)["data"][0]["files"]
-    text = (folder / CODE).read_text("ascii").splitlines()
+    text = (folder / code).read_text("ascii").splitlines()
     lines, branches, conditions = (reached(file["summary"][kind]) for kind in ("lines", "branches", "mcdc"))
     return Coverage(lines, branches, conditions, tuple(rest_of(file, text)))
 
@@ -99,7 +112,7 @@ def main(path: Path) -> None:
     files = sorted(path.glob("*.json"))
     tables = read_book(path) if path.is_file() else tuple(from_json(each.read_bytes()) for each in files)
     with tempfile.TemporaryDirectory() as folder:
-        found = coverage_of(TableBook(tables), Path(folder), release)
+        found = coverage_of(c_files(TableBook(tables)), Path(folder), release)
     print(found, *found.rest, sep="\n")
 
 

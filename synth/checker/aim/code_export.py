@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
-from typing import Final
 
 from synth.checker.aim.reading import Aim
-from synth.checker.category_number import YARD
+from synth.checker.category_constants import category_differences
 from synth.checker.code_records import (
     Numbers,
     c_members,
@@ -17,9 +15,7 @@ from synth.checker.code_records import (
     st_records,
 )
 from synth.checker.code_records import differences as record_differences
-from synth.checker.line_export import ascii_comment
 
-CATEGORY: Final = re.compile(r"#define AIM_CATEGORY_(\w+) (\d{1,6}) /\* (.*?) \*/")
 TYPE, LOAD, SELECT = "AIM_TABLE", "AIM_LOAD", "AIM_SELECT"
 
 Differences = Iterator[tuple[str, str]]
@@ -30,7 +26,8 @@ def c_differences(source: str, header: str, aims: Sequence[Aim]) -> Differences:
     members = c_members(header, "aim_table")
     blocks = c_records(source, members, "aim_tables", "aim_table_count")
     numbers = [c_numbers(members, block) for block in blocks]
-    yield from (("", sentence) for sentence in category_differences(aims, header))
+    categories = {aim.category_name: aim.category for aim in aims}
+    yield from (("", sentence) for sentence in category_differences("AIM", categories, header))
     for number, aim in enumerate(in_order(numbers, aims)):
         fault = checksum_fault(number, blocks[number])
         if fault is not None:
@@ -97,12 +94,3 @@ def held(aim: Aim, aims: Sequence[Aim]) -> Numbers:
 def padded(values: Sequence[float], length: int) -> list[float]:
     """`values` with zeros behind them."""
     return [*values, *[0.0] * (length - len(values))]
-
-
-def category_differences(aims: Sequence[Aim], header: str) -> Iterator[str]:
-    """What is wrong with the constants of the weight categories: those of the yard are always there."""
-    found = [(number, comment) for _, number, comment in CATEGORY.findall(header)]
-    numbers = YARD | {aim.category_name: aim.category for aim in aims}
-    wanted = [(str(number), ascii_comment(name)) for name, number in sorted(numbers.items(), key=lambda each: each[1])]
-    if found != wanted:
-        yield f"its header defines the categories {found}, but the tables have {wanted}"

@@ -11,13 +11,13 @@ from typing import Final
 
 from synth.checker.aim import code_export, csv_export
 from synth.checker.aim.reading import Aim
+from synth.checker.code_file import AIM_UNITS, unit_files
 from synth.checker.csv_export import read_rows
 from synth.checker.export_check import Check, Differences
 from synth.checker.finding import DamagedError
 from synth.checker.source_file import content_of, text_of
 
 FOLDERS: Final = ("", "c", "st")
-UNITS: Final = "TABLE|LOAD|SELECT"
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,8 @@ class AimCode:
         """The text of all units that hold tables: one file, or several in the order of their names."""
         if self.path.name.endswith("_table.st"):
             return self.text(self.path)
-        before = f"{self.prefix}_" if self.prefix else ""
-        parts = re.compile(rf"\d{{4}}_{re.escape(before)}AIM_({UNITS})\.st")
-        return "\n".join(self.text(file) for file in sorted(self.path.parent.iterdir()) if parts.fullmatch(file.name))
+        prefix = f"{self.prefix}_AIM" if self.prefix else "AIM"
+        return "\n".join(self.text(file) for file in unit_files(self.path.parent, prefix, AIM_UNITS))
 
 
 def check_aim_exports(aims: tuple[Aim, ...], folder: Path, check: Check) -> None:

@@ -54,9 +54,9 @@ def c_costs() -> CallCosts:
     return CallCosts(
         observe=791,
         decide=440,
-        select=34_842,
+        select=34_131,
         aim=451,
-        intact=32_778,
+        intact=33_059,
         source="instructions on x86-64, gcc 12 -Os, callgrind: study controller-cost; aim counted apart",
     )
 
@@ -70,8 +70,8 @@ def st_costs() -> CallCosts:
     """
     return CallCosts(
         observe=550,
-        decide=529,
-        select=2109 + 9 * 9 + 522 - 336,
+        decide=471,
+        select=1596 + 9 * 9 + 524 - 338,
         aim=178 + 2178 + 399,
         intact=None,
         source="operations of Structured Text as executed: docs/structured-text.md",
