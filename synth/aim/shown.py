@@ -17,7 +17,8 @@ from synth.frame.exhibits import Chart, Column, Exhibit, File, Row, Sentence, Ta
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, percent
 from synth.retarder.case_names import file_stem
-from synth.retarder.forms.aim_forms import aim_c_form, aim_csv_form, aim_json_form, aim_st_form
+from synth.retarder.forms.aim_forms import AIM_FORMS
+from synth.retarder.forms.code_options import PLAIN
 
 KNOWN: Final = {"category": "category alone", "measured": "resistance measured"}
 """What people call a kind of knowledge."""
@@ -207,11 +208,8 @@ def is_without(row: Row) -> bool:
 def files(book: AimBook) -> Iterator[Exhibit]:
     """What controllers load: the tables in every form."""
     tables = [made.table for made in book.tables]
-    for folder, contents in (
-        ("tables", aim_json_form(tables)), ("tables", aim_csv_form(tables)), ("c", aim_c_form(tables)),
-        ("st", aim_st_form(tables)),
-    ):  # fmt: skip
-        yield from (File(f"{folder}/{name}", content) for name, content in contents.items())
+    for folder, form in (("tables", "json"), ("tables", "csv"), ("c", "c"), ("st", "st")):
+        yield from (File(f"{folder}/{name}", content) for name, content in AIM_FORMS[form](tables, PLAIN).items())
 
 
 def charts(book: AimBook) -> Iterator[Exhibit]:

@@ -15,8 +15,8 @@ from tuning_tables.category_names import comment_text
 from tuning_tables.controller_code.code import ControllerCode
 from tuning_tables.language.records import Kind, Member, st_name
 from tuning_tables.language.st_data import of_tables
-from tuning_tables.language.st_unit import Block, Declared, Unit, Variable, local, retold
-from tuning_tables.language.structured_text import StNames, st_block, st_structure
+from tuning_tables.language.st_unit import Block, Declared, Unit, Variable, local, retold, st_structure
+from tuning_tables.language.structured_text import StNames, st_block
 from tuning_tables.st_literals import int_array, pieces, place_of, real_array
 
 WIDTH: Final = 110

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Final, TypeAlias
 
-from tuning_tables.language.records import Kind
+from tuning_tables.language.records import Kind, SizedRecord, st_name
 
 MARK: Final = "#"
 """Stands in statements before the name of each variable of the block, as SCL writes it; other forms leave it out."""
@@ -65,6 +65,15 @@ class Structure:
     def variables(self) -> tuple[Variable, ...]:
         """All that it declares."""
         return self.members
+
+
+def st_structure(record: SizedRecord, name: str) -> Structure:
+    """The declaration of a record."""
+    members = []
+    for member, declared in record.members.items():
+        kind = ArrayOf(declared.kind, record.length(member)) if declared.axes else declared.kind
+        members.append(Variable(st_name(member), kind, declared.meaning))
+    return Structure(name, record.record.meaning, tuple(members))
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import takewhile
-from typing import NamedTuple
 
 from tuning_tables.language.records import Kind, SizedRecord, st_name
 from tuning_tables.language.st_data import WIDTH, of_tables, real, st_comment
-from tuning_tables.language.st_unit import MARK, ArrayOf, Block, Declared, Structure, Variable, local, plain
+from tuning_tables.language.st_rows import ArrayPlaces, Row, sum_of
+from tuning_tables.language.st_unit import MARK, Block, Declared, Variable, local, plain
 from tuning_tables.language.tree import (
     Ask,
     Assign,
@@ -60,25 +59,9 @@ HELD = local("Held_")
 """How variables begin for what is not finished."""
 
 
-class Row(NamedTuple):
-    """A variable that holds where a row of an array begins, and the variables that this is calculated from."""
-
-    name: str
-    names: frozenset[str]
-
-
 def st_block(program: Program, names: StNames, sized: Mapping[str, SizedRecord]) -> Block:
     """The program as a function block."""
     return _Printer(program, names, sized).printed()
-
-
-def st_structure(record: SizedRecord, name: str) -> Structure:
-    """The declaration of a record."""
-    members = []
-    for member, declared in record.members.items():
-        kind = ArrayOf(declared.kind, record.length(member)) if declared.axes else declared.kind
-        members.append(Variable(st_name(member), kind, declared.meaning))
-    return Structure(name, record.record.meaning, tuple(members))
 
 
 class _Printer:
@@ -91,6 +74,7 @@ class _Printer:
         self.lines: list[str] = []
         self.parts = 0
         self.most_parts = 0
+        self.places = ArrayPlaces(self.atom, lambda item: self.sized[item.record].shape(item.member))
         self.rows: dict[str, Row] = {}
         self.all_rows = 0
 
@@ -173,26 +157,14 @@ class _Printer:
 
     def hold_rows(self, body: tuple[Statement, ...], depth: int) -> None:
         """Put into variables, before the first statement, where rows begin that a loop asks for again and again."""
-        first, assigned = body[0], {*targets_in(body[:1])}
+        assigned = {*targets_in(body[:1])}
         self.rows = {text: row for text, row in self.rows.items() if not row.names & assigned}
-        for text, names in self.rows_in(body[:1]).items() if not isinstance(first, If) else ():
-            same = [*takewhile(lambda each, names=names: not names & {*targets_in((each,))}, body)]  # type: ignore[misc]
-            if text not in self.rows and any(
-                isinstance(each, While) and text in self.rows_in((each,)) for each in same
-            ):
+        for text, names in self.places.asked_again(body).items():
+            if text not in self.rows:
                 self.all_rows += 1
                 row = local(f"Row_{self.all_rows}")
                 self.rows = {**self.rows, text: Row(row, names)}
                 self.put(depth, f"{row} := {text};")
-
-    def rows_in(self, body: tuple[Statement, ...]) -> dict[str, frozenset[str]]:
-        """The beginnings of rows that must be calculated, each with its variables."""
-        items = [each for each in expressions_in(body) if isinstance(each, Item) and len(each.indices) > 1]
-        return {
-            text: frozenset(name for index in each.indices[:-1] for name in names_in(index))
-            for each in items
-            if " " in (text := self.row(each))
-        }
 
     def branches(self, statement: If, depth: int) -> None:
         """IF, ELSIF, ELSE; what the conditions calculate stands before them."""
@@ -297,30 +269,14 @@ class _Printer:
 
     def index(self, item: Item) -> str:
         """The place in an array of one axis."""
-        row = self.row(item)
-        text = _sum(self.rows[row].name if row in self.rows else row, self.atom(item.indices[-1]))
+        row = self.places.row(item)
+        text = sum_of(self.rows[row].name if row in self.rows else row, self.atom(item.indices[-1]))
         return text[1:-1] if text.startswith("(") and text.endswith(")") and text.count("(") == 1 else text
-
-    def row(self, item: Item) -> str:
-        """Where in an array of one axis the row of an element begins, of which the last index tells the place."""
-        text, shape = "0", self.sized[item.record].shape(item.member)
-        for length, each in zip(shape[1:], item.indices[:-1], strict=True):
-            text = _sum(text, self.atom(each))
-            if text.isdigit():
-                text = f"{int(text) * length}"
-            elif length > 1:
-                text = f"{f'({text})' if ' + ' in text and not text.endswith(')') else text} * {length}"
-        return text
 
 
 def _calculates(value: Expression) -> bool:
     """Whether an expression is an operation on REAL."""
     return isinstance(value, Binary | Extreme) and value.kind is Kind.REAL
-
-
-def _sum(one: str, other: str) -> str:
-    """The sum of two, without a 0."""
-    return other if one == "0" else one if other == "0" else f"{one} + {other}"
 
 
 def broken(text: str, pad: str = "") -> Iterator[str]:
