@@ -95,7 +95,7 @@ class ControllerCounts:
     tracks: int
     cuts: int
     tables_a_book: int = 15
-    code_bytes: int = 4500
+    code_bytes: int = 3544
     table_bytes: int = 500
     aim_table_bytes: int = 1024
     estimate_bytes: int = 64
