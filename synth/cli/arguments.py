@@ -7,12 +7,11 @@ from typing import Annotated
 
 import typer
 
-Source = Annotated[Path, typer.Argument(metavar="TABLE|BOOK", help="A table (.json) or a book (.h5).")]
 SourceOrDirectory = Annotated[
     Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or what a tune left.")
 ]
 ExportSource = Annotated[
-    Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or a folder of aim tables.")
+    Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or a folder of tables.")
 ]
 Config = Annotated[
     Path | None, typer.Option("--config", metavar="C", help="Configuration with the plant; built-in unless given.")

@@ -36,7 +36,7 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
     from synth.retarder.forms.code_options import CODE_NAMES, code_options
     from synth.retarder.forms.configuration_beside import configuration_file
     from synth.retarder.forms.passage_file import read_passages
-    from synth.retarder.forms.table_file import files_at, read_tables
+    from synth.retarder.forms.table_file import files_at, tables_at
     from synth.retarder.forms.table_forms import FORMS
     from tuning_tables import InvalidTable
     from tuning_tables.aim.c_source import KIND
@@ -46,7 +46,7 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
     options = code_options(form, asked.prefix, asked.self_test, asked.split, asked.correction_m_s)
     aims = [file.table for file in read_aims(source)]
     passages = () if aims else read_passages(source)
-    tables = () if aims or passages else read_tables(source)[0].tables
+    tables = () if aims or passages else tables_at(source)
     try:
         files = exported_files(form, aims, passages, tables, options)
         if form in CODE_NAMES:

@@ -133,6 +133,18 @@ def test_a_second_tune_into_the_same_directory_is_refused(command: Command, one_
     assert "another tune is writing there" in ran.sentence
 
 
+def test_a_directory_is_exported_and_validated_in_the_order_of_its_book(
+    command: Command, two_classes: Path, tuned: Path, tmp_path: Path
+) -> None:
+    for source, name in ((tuned, "all"), (tuned / "book.h5", "book"), (tuned / "tables", "tables")):
+        assert command("export", source, "--format", "c", "-o", tmp_path / name).code == 0
+    whole, book, tables = (tmp_path / name / "retarder_table.c" for name in ("all", "book", "tables"))
+    assert whole.read_bytes() == book.read_bytes()
+    assert all(name in tables.read_text() for name in (ID, HEAVIER))
+    ran = command("validate", tuned, "--config", two_classes, "--passes", "1000", "--json", "-o", tmp_path / "one")
+    assert [row["id"] for row in json.loads(ran.out)["tables"]["tables"]] == [ID, HEAVIER]
+
+
 def test_validate_confirms_what_the_tables_say(
     command: Command, tuned: Path, two_classes: Path, tmp_path: Path
 ) -> None:

@@ -18,6 +18,8 @@ from tuning_tables.regular_file import first_bytes
 
 HDF5_SIGNATURE = b"\x89HDF"
 BOOK_SUFFIXES = (".h5", ".hdf5")
+BOOK = "book.h5"
+"""The book of a tune, in its directory."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,17 @@ def read_tables(path: Path, directory_allowed: bool = False) -> tuple[TableFile,
             raise InputError(f"{path}: there are neither tables (.json) nor books (.h5) in it; give what a tune left")
         return tuple(read_table_file(file) for file in files)
     return (read_table_file(path),)
+
+
+def tables_at(path: Path) -> tuple[ControllerTable, ...]:
+    """The tables with lines at `path`: of a table, a book, or a directory, in the order of its book where it has one.
+
+    Raises as `read_tables`.
+    """
+    book = path / BOOK
+    if path.is_dir() and book.is_file():
+        return read_table_file(book).tables
+    return tuple(table for file in read_tables(path, directory_allowed=True) for table in file.tables)
 
 
 def table_files(directory: Path) -> list[Path]:

@@ -75,11 +75,11 @@ def read(text: str, place: str) -> ResolvedConfig | None:
 def resolve(asked: Asked[ResolvedConfig | None, ValidateOptions]) -> AskedPasses:
     """The tables; refused where one fits no class of the configuration, or its passes cannot be logged."""
     from synth.retarder.forms.passage_file import read_passages
-    from synth.retarder.forms.table_file import is_infeasible, read_tables, summary_beside
+    from synth.retarder.forms.table_file import holds_tables, is_infeasible, summary_beside, tables_at
 
     path, options = asked.options.source, asked.options
-    passages = () if path.is_dir() else read_passages(path)
-    tables = () if passages else read_tables(path)[0].tables
+    passages = read_passages(path)
+    tables = () if passages and not holds_tables(path) else tables_at(path)
     config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, passages)
     if passages and options.log is not None:
         raise InputError(f"{path}: its tables are for point sensors, whose passes are not logged; leave out --log")
