@@ -130,7 +130,7 @@ ESTIMATOR_NUMBERS = (
 """The members of `LineTable` that are numbers of an estimator, as `Estimator.numbers` has them."""
 
 NO_TABLE = LineTable(
-    category=0, axles=0, family=0, stages=0, powers=1, at_any_time=0, entrance_stage=0, mass_t=np.float32(0.0),
+    category=0, axles=0, family_no=0, stages=0, powers=1, at_any_time=0, entrance_stage=0, mass_t=np.float32(0.0),
     target_m_s=np.float32(0.0), path_min_m=np.float32(0.0), path_max_m=np.float32(0.0), approach_m=np.float32(0.0),
     has_line=read_only(np.zeros((0, 2)), np.bool_), coefficient=read_only(np.zeros((0, 2, 1)), np.float32),
     has_gauge=0, highest_kpa=np.float32(0.0), pressure_kpa=read_only(np.zeros(0), np.float32),

@@ -58,7 +58,7 @@ def held_of(tables: Sequence[Table]) -> list[Numbers]:
     """
     numbers = [held(table, tables) for table in tables]
     rest = [{name: [*map(rounded, each[name])] for name in each if name not in OF_LINES} for each in numbers]
-    return [{**each, "family": [rest.index(of_family)]} for each, of_family in zip(numbers, rest, strict=True)]
+    return [{**each, "familyno": [rest.index(of_family)]} for each, of_family in zip(numbers, rest, strict=True)]
 
 
 def held(table: Table, tables: Sequence[Table]) -> Numbers:

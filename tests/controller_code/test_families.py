@@ -26,12 +26,12 @@ from tuning_tables.c_source import c_files
 from tuning_tables.self_test_size import SMALL
 from tuning_tables.st_source import TABLE_FILE, st_files
 
-OWN = {"family", "target_m_s", "coefficient", "slope"}
+OWN = {"family_no", "target_m_s", "coefficient", "slope"}
 """The number of the family, and the members in which two of its tables may differ."""
 
-FAMILY = re.compile(r"(\d+), /\* family \*/")
+FAMILY = re.compile(r"(\d+), /\* family_no \*/")
 CRC32 = re.compile(r"0x([0-9a-f]{8})u /\* crc32 \*/")
-FAMILIES = re.compile(r"FamilyOf : ARRAY\[\S+ OF INT := \[(.*?)\];", re.DOTALL)
+FAMILIES = re.compile(r"FamilyNoOf : ARRAY\[\S+ OF INT := \[(.*?)\];", re.DOTALL)
 
 
 @cache
@@ -94,7 +94,7 @@ def test_the_self_test_in_c_finds_every_wrong_family_whose_checksum_is_right(
     for case in CASES:
         number, family = wrong_family(case)
         words = held_words(pairs(), number)[:-1].copy()
-        words[where["family"]] = family
+        words[where["family_no"]] = family
         text = another(export.content, FAMILY, number, str(family))
         text = another(text, CRC32, number, f"{sealed(words)[-1]:08x}")
         (said,) = export.self_tests_of(text, tmp_path)
@@ -110,7 +110,7 @@ def another(text: str, pattern: re.Pattern[str], number: int, value: str) -> str
 
 def test_the_checker_finds_the_same_families_and_every_wrong_one() -> None:
     tables, files = read_pairs(), {**c_files(pairs(), self_test=SMALL), **st_files(pairs(), self_test=SMALL)}
-    assert [family for each in held_of(tables) for family in each["family"]] == [*pairs().families]
+    assert [family for each in held_of(tables) for family in each["familyno"]] == [*pairs().families]
     source, header, text = (files[name].decode() for name in ("retarder_table.c", "retarder_table.h", TABLE_FILE))
     (column,) = FAMILIES.finditer(text)
     for case in CASES:
@@ -119,7 +119,7 @@ def test_the_checker_finds_the_same_families_and_every_wrong_one() -> None:
         families[number] = str(family)
         st = text[: column.start(1)] + ",".join(families) + text[column.end(1) :]
         c = another(source, FAMILY, number, str(family))
-        told = f"family of table {number} is {family}, but the table says {float(pairs().families[number])}"
+        told = f"familyno of table {number} is {family}, but the table says {float(pairs().families[number])}"
         assert [each for _, each in st_differences(st, tables)] == [told], case
         assert told in [each for _, each in c_differences(c, header, tables)], case
 

@@ -111,7 +111,7 @@ def held_values(book: TableBook, number: int, record: SizedRecord, lines: Active
     held = (lines or active(source)).held._replace(
         category=book.number_of(source.cut.category),
         axles=len(source.cut.axle_offsets_m),
-        family=book.families[number],
+        family_no=book.families[number],
         mass_t=np.float32(source.cut.mass_t),
     )
     if held.has_gauge == 0:  # a difference of pressures that nobody looks at must not keep two tables apart

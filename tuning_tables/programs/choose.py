@@ -86,7 +86,7 @@ def blend(
     Every coefficient is low + w (high - low), w the part of the way from one target to the other: each line lies
     between its neighbours everywhere, and the lower below the upper.
     """
-    is_between = table.family == faster.family and table.target_m_s < commanded_m_s < faster.target_m_s
+    is_between = table.family_no == faster.family_no and table.target_m_s < commanded_m_s < faster.target_m_s
     if is_between:
         span = faster.target_m_s - table.target_m_s
         weight = (f32(commanded_m_s) - table.target_m_s) / span

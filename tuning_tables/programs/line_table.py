@@ -24,7 +24,7 @@ class LineTable(NamedTuple):
 
     category: Annotated[int, whole("number of the weight category")]
     axles: Annotated[int, whole("of the cut")]
-    family: Annotated[int, whole("tables of one family of a book differ in nothing but target and lines")]
+    family_no: Annotated[int, whole("tables of one family of a book differ in nothing but target and lines")]
     stages: Annotated[int, whole("stages 0 to stages - 1; 0: no table")]
     powers: Annotated[int, whole("coefficients of a line: its degree + 1")]
     at_any_time: Annotated[int, whole("1: decides at every sample; 0: only at rest, the pressure of the stage reached")]

@@ -139,7 +139,7 @@ def test_a_small_self_test_finds_every_changed_constant(small_book: TableBook, m
         ("(Path >= 0.0)", "(Path > 0.0)"),
         ("Above := Pressure - Table.Pressure_kpa[Stage];", "Above := Pressure;"),
         ("IF Table.AtAnyTime = 1 THEN", "IF FALSE THEN"),
-        ("Table.Family = Faster.Family", "Table.Axles = Faster.Axles"),
+        ("Table.FamilyNo = Faster.FamilyNo", "Table.Axles = Faster.Axles"),
         ("Weight := Weight / Span;", "Weight := 0.5;"),
         ("Gained := Gained - Held_1;", "Gained := Gained + Held_1;"),
         ("How := 2;", "How := 1;"),
