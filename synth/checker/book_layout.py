@@ -137,19 +137,28 @@ def require_filled_up(
 
     Also where the arrays are longer than the longest table, or there is nothing but what fills gaps.
     """
-    for name, stored in datasets.items():
-        if stored.dtype == "|S":
-            continue
-        rows = [cells_at(document, stored.keys) for document in documents]
-        if stored.keys[-1] == SWITCHING:
-            rows = [[with_infinities(speeds) for speeds in passages] for passages in rows]
-        lengths = depth(rows)[: len(stored.axes) - 1]
+    told = {name: rows_of(documents, stored) for name, stored in datasets.items() if stored.dtype != "|S"}
+    lengths: dict[str, int] = {}
+    for name, rows in told.items():
+        for axis, length in zip(datasets[name].axes[1:], depth(rows), strict=False):
+            lengths[axis] = max(lengths.get(axis, 1), length)
+    for name, rows in told.items():
+        stored = datasets[name]
         # As text, in which two NaN are alike and the zeros are not.
-        if repr(padded(rows, [len(rows), *lengths], stored.filler)) != repr(columns[name]):
+        own = [len(rows), *(lengths.get(axis, 1) for axis in stored.axes[1:])]
+        if repr(padded(rows, own, stored.filler)) != repr(columns[name]):
             raise DamagedError(f"{name} holds values beside those of the tables, or is longer than the longest table")
     for name, stored in datasets.items():
         if stored.keys[-1] == "#" and not any(columns[name]) and any(each.startswith(f"{name}_") for each in datasets):
             raise DamagedError(f"it holds columns of {name}, but none of its tables has one")
+
+
+def rows_of(documents: Sequence[Mapping[str, Any]], stored: Stored) -> list[Any]:
+    """What a dataset must hold of each document, before gaps are filled."""
+    rows = [cells_at(document, stored.keys) for document in documents]
+    if stored.keys[-1] == SWITCHING:
+        return [[with_infinities(speeds) for speeds in passages] for passages in rows]
+    return rows
 
 
 def cells_at(value: Any, keys: Sequence[str]) -> Any:

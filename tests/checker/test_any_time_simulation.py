@@ -177,16 +177,14 @@ def test_a_prediction_at_seven_tenths_contradicts_the_validation(gauged: Path) -
 
 
 def plain(document: Document) -> None:
-    """At rest, so of version 1."""
+    """At rest."""
     no_gauge(document)
-    del document["decisions"], document["pressure"]
-    document["version"] = 1
+    document["decisions"] = "at_rest"
 
 
 def no_gauge(document: Document) -> None:
-    document["pressure"] = "none"
     for stage in document["stages"]:
-        del stage["lower_slope_m_s_per_kpa"], stage["upper_slope_m_s_per_kpa"]
+        stage["lower_slope_m_s_per_kpa"] = stage["upper_slope_m_s_per_kpa"] = None
 
 
 @pytest.mark.parametrize(
@@ -205,7 +203,7 @@ def test_a_table_for_another_regulator_is_found(gauged: Path, change: Callable[[
 def test_a_table_at_any_time_of_a_tune_at_rest_is_found(tuned: Path) -> None:
     """Configurations of tunes at rest say nothing of commands."""
     file = alone(tuned)
-    rewrite(file, lambda document: document.update(version=5, decisions="at_any_time", pressure="none"))
+    rewrite(file, lambda document: document.update(decisions="at_any_time"))
     assert found(look(file), Kind.DISAGREES, "asks for commands 'at_rest', but it is for commands 'any_time'")
 
 

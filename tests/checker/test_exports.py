@@ -132,8 +132,8 @@ def test_columns_of_a_gauge_are_expected_only_where_there_is_one() -> None:
 
 def test_one_changed_digit_in_csv_is_found(tuned: Path) -> None:
     file = min((tuned / "tables").glob("*.csv"))
-    change_text(file, r"(upper,0,[-0-9.e]*)([0-8])([,\r])", r"\g<1>9\3")
-    assert found(look(tuned), Kind.DISAGREES, "the row upper,0 holds")
+    change_text(file, r"(number,stages.0.upper,[-0-9.e]*)([0-8])([,\r])", r"\g<1>9\3")
+    assert found(look(tuned), Kind.DISAGREES, "the row number,stages.0.upper holds")
 
 
 def test_a_flipped_bit_in_the_book_is_found(tuned: Path) -> None:
@@ -153,7 +153,7 @@ def seal_anew(book: Path) -> None:
 def test_a_changed_number_under_a_right_seal_is_found(tuned: Path) -> None:
     book = tuned / "book.h5"
     with h5py.File(book, "r+") as file:
-        file["coefficients"][0, 0, 1, 0] += 0.5
+        file["stage_upper"][0, 0, 0] += 0.5
     seal_anew(book)
     assert found(look(book), Kind.DAMAGED, "payload_sha256")
 
@@ -162,8 +162,8 @@ def test_a_book_that_points_elsewhere_is_not_followed(tuned: Path) -> None:
     book = tuned / "book.h5"
     other = Path(shutil.copy(book, tuned / "other.h5"))
     with h5py.File(book, "r+") as file:
-        del file["mass_t"]
-        file["mass_t"] = h5py.ExternalLink(str(other), "mass_t")
+        del file["cut_mass_t"]
+        file["cut_mass_t"] = h5py.ExternalLink(str(other), "cut_mass_t")
     seal_anew(book)
     assert found(look(book), Kind.DAMAGED, "mass_t is no dataset of its own")
 

@@ -80,8 +80,10 @@ def swept() -> Iterator[ControllerTable]:
 
 
 def coefficients_sha256(table: ControllerTable) -> str:
-    """Of the stages with their lines, as the file writes them."""
+    """Of the stages with their lines, as the file writes them; of a table without gauge less its slopes."""
     stages = json.loads(to_json(table))["stages"]
+    if not table.has_gauge:
+        stages = [{key: value for key, value in stage.items() if "slope" not in key} for stage in stages]
     return hashlib.sha256(json.dumps(stages, sort_keys=True).encode()).hexdigest()
 
 

@@ -259,7 +259,9 @@ def test_inspect_verify_and_export_take_what_aim_leaves(command: Command, aimed:
     assert "rnz-2m-park-L-measured" in ran.out
     assert command("verify", aimed).code == 0
     assert command("export", aimed, "--format", "c", "-o", tmp_path / "c").code == 0
-    assert files_in(tmp_path / "c") == files_in(aimed / "c")
+    exported = files_in(tmp_path / "c")
+    assert "[aim]" in exported.pop("aim_configuration.toml").decode("utf-8")
+    assert exported == files_in(aimed / "c")
     file = aimed / "tables" / "rnz-2m-park-L-category.csv"
     file.write_bytes(file.read_bytes().replace(b"1.3", b"1.4", 1))
     assert command("verify", aimed).code == 3

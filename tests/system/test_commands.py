@@ -279,7 +279,8 @@ def test_export_gives_the_correction_beside_unchanged_tables(command: Command, t
             "0001_RETARDER_CORRECTION_SETTING", "0002_RETARDER_CORRECTION", "0003_RETARDER_LOAD_CORRECTION",
             "0004_RETARDER_BEGIN_CORRECTION", "0005_RETARDER_USABLE_EXIT", "0006_RETARDER_LEARN_EXIT",
             "0007_RETARDER_CORRECTED_SPEED", "0008_RETARDER_CORRECTION_TEST_0", "0009_RETARDER_CORRECTION_EXITS_0",
-            "0010_RETARDER_CORRECTION_PASSES_0", "0011_RETARDER_CORRECTION_SELF_TEST")}),
+            "0010_RETARDER_CORRECTION_PASSES_0", "0011_RETARDER_CORRECTION_SPEEDS_0",
+            "0012_RETARDER_CORRECTION_SELF_TEST")}),
     ):  # fmt: skip
         folders = [tmp_path / f"{form}{len(options)}{name}" for name in ("plain", "corrected")]
         asked = ("export", tuned / "book.h5", "--format", form, *options)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Mapping
-from typing import Final
 
 import numpy as np
 
@@ -16,11 +14,6 @@ from tuning_tables.language.st_data import real
 from tuning_tables.language.st_unit import Declared, Variable
 from tuning_tables.language.walking import looked_at
 from tuning_tables.st_literals import is_portable, real_array
-
-LITERALS: Final[Mapping[Kind, Callable[[float], str]]] = {
-    Kind.REAL: real, Kind.INT: lambda number: str(int(number)), Kind.BOOL: lambda number: "TRUE" if number else "FALSE",
-}  # fmt: skip
-"""How a number is written that is handed over."""
 
 
 def odd_test(code: ControllerCode) -> TestBlock:
@@ -51,7 +44,7 @@ def odd_test(code: ControllerCode) -> TestBlock:
                     body.append(f"{begin}({st_name(taken.name)} := #{st_name(taken.name)});")
             elif taken.name in looked_at(program):
                 number = each.given[taken.name]
-                given.append(f"{st_name(taken.name)} := {LITERALS[taken.kind or Kind.INT](number)}")
+                given.append(f"{st_name(taken.name)} := {handed_over(taken.kind or Kind.INT, number, due)}")
         block = f"#{st_name(each.rule.name)}Block"
         (answer,) = program.answers
         wanted = str(int(each.wanted))
@@ -63,6 +56,14 @@ def odd_test(code: ControllerCode) -> TestBlock:
     constants = [real_array("Due", due)] if due else []
     note = "Table 0, changed into one in which every condition counts, then damaged."
     return TestBlock(test_block(name, note, table_type(code), variables, constants, body), 0)
+
+
+def handed_over(kind: Kind, number: float, due: list[float]) -> str:
+    """How a number is written that is handed over; a bare literal of REAL is LREAL for many compilers."""
+    if kind is Kind.REAL:
+        due.append(number)
+        return f"#Due[{len(due) - 1}]"
+    return str(int(number)) if kind is Kind.INT else "TRUE" if number else "FALSE"
 
 
 def changed(record: SizedRecord, member: str, place: tuple[int, ...], number: float) -> str:

@@ -68,15 +68,25 @@ def row_value(declared: type, cells: Mapping[str, Any], prefix: str = "") -> Any
     return declared(**given)
 
 
-def stacked(column: Column, tables: Sequence[Any]) -> npt.NDArray[Any]:
-    """The array of `column` in a book of `tables`."""
+def axis_lengths(columns: Sequence[Column], tables: Sequence[Any]) -> Mapping[str, int]:
+    """How long each axis is in a book of `tables`: as the longest content along it, and 1 where there is none."""
+    found: dict[str, int] = {}
+    for column in columns:
+        axes = column.axes[1:] if column.dtype != "S" else ()
+        longest = _longest([column.content(table) for table in tables], len(axes))
+        for axis, length in zip(axes, longest, strict=True):
+            found[axis] = max(found.get(axis, 1), length)
+    return found
+
+
+def stacked(column: Column, tables: Sequence[Any], lengths: Mapping[str, int]) -> npt.NDArray[Any]:
+    """The array of `column` in a book of `tables` whose axes are so long."""
     contents = [column.content(table) for table in tables]
     if column.dtype == "S":
         return np.array([b"" if content is None else content for content in contents])
-    depth = len(column.axes) - 1
     filler = np.nan if column.dtype in ("<f4", "<f8") else 0
-    array = np.full((len(tables), *_longest(contents, depth)), filler, dtype=column.dtype)
-    _fill(array, contents, depth + 1)
+    array = np.full((len(tables), *(lengths[axis] for axis in column.axes[1:])), filler, dtype=column.dtype)
+    _fill(array, contents, len(column.axes))
     return array
 
 
@@ -168,6 +178,7 @@ def _longest(contents: Sequence[Any], depth: int) -> tuple[int, ...]:
 
 
 def _fill(array: npt.NDArray[Any], contents: Sequence[Any], depth: int) -> None:
+    """Put the contents, in rows of rows, to the beginnings of the rows of the array."""
     for index, content in enumerate(contents):
         if content is not None:
             if depth > 1:

@@ -27,7 +27,9 @@ def _words(*texts: str) -> frozenset[str]:
     return frozenset(word for text in texts for word in text.split())
 
 
-IEC: Final = Tool("IEC 61131-3", _words(IEC_WORDS), 32)
+LATCH_INPUTS: Final = " ".join(f"{letter}1" for letter in "RS")
+"""Of the standard's blocks SR and RS."""
+IEC: Final = Tool("IEC 61131-3", _words(IEC_WORDS, LATCH_INPUTS), 32)
 """The standard sets no length; compilers are known that keep 32 characters."""
 CODESYS: Final = Tool("CODESYS", _words(IEC_WORDS, CODESYS_WORDS), 255)
 MATIEC: Final = Tool("MATIEC (Beremiz, OpenPLC)", _words(IEC_WORDS, MATIEC_WORDS), 255)

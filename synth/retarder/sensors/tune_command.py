@@ -106,6 +106,7 @@ def compute(asked: AskedSensors, work: Work) -> FoundPassages:
 def stored(table: PassageTable, directory: ResultsDirectory) -> PassageTable:
     """Write `table` as JSON; the table as a controller will load it."""
     from tuning_tables.json_file import read_json, to_json
+    from tuning_tables.passages.passage_table import PassageTable
 
     return read_json(directory.write(f"tables/{table.id}.json", to_json(table)), PassageTable)
 
