@@ -296,7 +296,7 @@ def test_export_gives_the_correction_beside_unchanged_tables(command: Command, t
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (("--format", "csv", "--correction", "0.1"), "--correction is for --format c and st, not for csv"),
+        (("--format", "csv", "--correction", "0.1"), "is for --format c, st, plcopen, twincat, scl, not for csv"),
         (("--format", "c", "--correction", "0.6"), "must lie between 0.01 and 0.5 m/s"),
         (("--format", "st", "--correction", "nan"), "must lie between 0.01 and 0.5 m/s"),
     ],

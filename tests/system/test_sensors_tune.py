@@ -226,7 +226,7 @@ def test_what_needs_lines_refuses_the_table_in_one_sentence(
     table = tuned_points / "tables" / f"{TABLE}.json"
     ran = command("sensitivity", "--table", table, "-o", tmp_path / "out")
     assert ran.code == 2
-    assert "a table that decides at sensor passages and has no lines over the path" in ran.sentence
+    assert "its kind is passages (switching speeds at passages over point sensors)" in ran.sentence
 
 
 REFUSED = {

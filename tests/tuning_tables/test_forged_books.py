@@ -345,7 +345,7 @@ BESIDE = {
         ("validated", 0, 2, "validated holds values beside"),
         ("validated_passes", 0, 2**60, "validated.passes"),
         ("approach", 0, 1, "position_clear"),
-        ("approach", 1, 0, "valid.s_m"),
+        ("approach", 1, 0, "but no table has anything there"),
         ("approach_entrance_stage", 0, 1, "approach_entrance_stage holds values beside"),
         ("approach_entrance_stage", 1, 2, "approach.entrance_stage"),
         ("approach_length_m", 1, 3.5, "valid.s_m"),

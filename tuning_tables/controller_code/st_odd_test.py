@@ -10,7 +10,6 @@ from tuning_tables.controller_code.code import ControllerCode
 from tuning_tables.controller_code.st_code import WIDTH, st_names, table_type
 from tuning_tables.controller_code.st_test_block import TestBlock, check, test_block, test_name
 from tuning_tables.language.records import Kind, SizedRecord, st_name
-from tuning_tables.language.st_data import real
 from tuning_tables.language.st_unit import Declared, Variable
 from tuning_tables.language.walking import looked_at
 from tuning_tables.st_literals import is_portable, real_array
@@ -32,7 +31,7 @@ def odd_test(code: ControllerCode) -> TestBlock:
                       Variable(st_name(state.record.name), Declared(names.types[state.record.name]))]  # fmt: skip
     for each in code.odd:
         program = code.program(each.rule)
-        body += [changed(code.table, *change) for change in each.changes]
+        body += [changed(code.table, change, due) for change in each.changes]
         if not is_portable(np.array([*each.given.values(), each.wanted], np.float32)).all():
             continue
         given = []
@@ -66,10 +65,11 @@ def handed_over(kind: Kind, number: float, due: list[float]) -> str:
     return str(int(number)) if kind is Kind.INT else "TRUE" if number else "FALSE"
 
 
-def changed(record: SizedRecord, member: str, place: tuple[int, ...], number: float) -> str:
+def changed(record: SizedRecord, change: tuple[str, tuple[int, ...], float], due: list[float]) -> str:
     """The statement that changes a member; an array is one row of numbers."""
-    value = real(number) if record.members[member].kind is Kind.REAL else str(int(number))
+    member, place, number = change
     index = 0
     for length, at in zip(record.shape(member), place, strict=True):
         index = index * length + at
+    value = handed_over(record.members[member].kind, number, due)
     return f"#Table.{st_name(member)}{f'[{index}]' if place else ''} := {value};"
