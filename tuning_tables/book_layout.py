@@ -14,7 +14,6 @@ from tuning_tables.book_categories import category_numbers
 from tuning_tables.declared.columns import (
     Column,
     Columns,
-    axis_lengths,
     columns_of,
     row_value,
     stacked,
@@ -67,8 +66,7 @@ class Layout:
         if times > 1:
             raise InvalidTable(f"{times} tables of the book have the id {name!r}, but ids must differ within a book.")
         category_numbers(tables)
-        lengths = axis_lengths(self.columns, tables)
-        return {column.name: stacked(column, tables, lengths) for column in self.columns}
+        return stacked(self.columns, tables)
 
 
 def book_layout(tables: Sequence[StageTable]) -> Layout:

@@ -27,7 +27,6 @@ class NodeNumbers:
     unit: str = ""
     axes: None = None
     dtype: str = "<f8"
-    absent: Any = None
 
     @property
     def allowed(self) -> str:

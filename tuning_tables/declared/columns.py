@@ -68,24 +68,22 @@ def row_value(declared: type, cells: Mapping[str, Any], prefix: str = "") -> Any
     return declared(**given)
 
 
-def axis_lengths(columns: Sequence[Column], tables: Sequence[Any]) -> Mapping[str, int]:
-    """How long each axis is in a book of `tables`: as the longest content along it, and 1 where there is none."""
-    found: dict[str, int] = {}
+def stacked(columns: Sequence[Column], tables: Sequence[Any]) -> dict[str, npt.NDArray[Any]]:
+    """The arrays of a book of `tables`, by name; an axis along which there is nothing has the length 1."""
+    contents = {column.name: [column.content(table) for table in tables] for column in columns}
+    lengths: dict[str, int] = {}
     for column in columns:
-        axes = column.axes[1:] if column.dtype != "S" else ()
-        longest = _longest([column.content(table) for table in tables], len(axes))
-        for axis, length in zip(axes, longest, strict=True):
-            found[axis] = max(found.get(axis, 1), length)
-    return found
+        axes = column.axes[1:]
+        for axis, length in zip(axes, _longest(contents[column.name], len(axes)), strict=True):
+            lengths[axis] = max(lengths.get(axis, 1), length)
+    return {column.name: _array(column, contents[column.name], lengths) for column in columns}
 
 
-def stacked(column: Column, tables: Sequence[Any], lengths: Mapping[str, int]) -> npt.NDArray[Any]:
-    """The array of `column` in a book of `tables` whose axes are so long."""
-    contents = [column.content(table) for table in tables]
+def _array(column: Column, contents: Sequence[Any], lengths: Mapping[str, int]) -> npt.NDArray[Any]:
     if column.dtype == "S":
         return np.array([b"" if content is None else content for content in contents])
     filler = np.nan if column.dtype in ("<f4", "<f8") else 0
-    array = np.full((len(tables), *(lengths[axis] for axis in column.axes[1:])), filler, dtype=column.dtype)
+    array = np.full((len(contents), *(lengths[axis] for axis in column.axes[1:])), filler, dtype=column.dtype)
     _fill(array, contents, len(column.axes))
     return array
 

@@ -12,8 +12,7 @@ Json = dict[str, Any]
 class Leaf(Protocol):
     """What stands at a key without further keys below it.
 
-    `dtype` and `axes` tell how a book holds it: a numpy type, "S" for text, and the axes beside those of its section;
-    `absent` is the cell of a member that is None.
+    `dtype` and `axes` tell how a book holds it: a numpy type, "S" for text, and the axes beside those of its section.
     """
 
     @property
@@ -39,11 +38,6 @@ class Leaf(Protocol):
     @property
     def dtype(self) -> str:
         """Its type in a book."""
-        ...
-
-    @property
-    def absent(self) -> Any:
-        """What a book holds where there is none."""
         ...
 
     def check(self, value: Any, key: str) -> None:

@@ -42,7 +42,6 @@ class Number:
     is_single: bool = False
     unit: str = ""
     axes: tuple[str, ...] = ()
-    absent: Any = math.nan
 
     @property
     def dtype(self) -> str:
@@ -111,7 +110,6 @@ class Count:
     unit: str = "1"
     axes: tuple[str, ...] = ()
     dtype: str = "<i8"
-    absent: Any = 0
 
     @property
     def allowed(self) -> str:
@@ -183,11 +181,6 @@ class Row:
     def dtype(self) -> str:
         """That of its numbers."""
         return self.of.dtype
-
-    @property
-    def absent(self) -> Any:
-        """No numbers."""
-        return ()
 
     def check(self, value: Any, key: str) -> None:
         """It is a tuple of so many numbers, each within the limits."""

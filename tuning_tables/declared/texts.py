@@ -23,7 +23,6 @@ class Text:
     unit: str = "1"
     axes: tuple[str, ...] = ()
     dtype: str = "S"
-    absent: Any = b""
 
     @property
     def allowed(self) -> str:
@@ -72,7 +71,6 @@ class Word(Generic[_Word]):
     unit: str = "1"
     axes: tuple[str, ...] = ()
     dtype: str = "S"
-    absent: Any = b""
 
     @property
     def allowed(self) -> str:

@@ -34,7 +34,6 @@ class SwitchingSpeeds:
     unit: str = ""
     axes: tuple[str, ...] = ("stage", "threshold")
     dtype: str = "<f4"
-    absent: Any = ()
     allowed: str = "float32, 0 or more, not falling in a row; null: never"
 
     def check(self, value: Any, key: str) -> None:

@@ -6,23 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from synth.retarder.forms.code_options import PLAIN, PLC_NAMES, CodeOptions
-from synth.retarder.forms.table_forms import Files, one_each
+from synth.retarder.forms.table_forms import Files, csv_form, json_form
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.aim_tables import AimTables
-from tuning_tables.csv_file import to_csv
-from tuning_tables.json_file import to_json
 
 AimForm = Callable[[Sequence[AimTable], CodeOptions], Files]
-
-
-def aim_json_form(tables: Sequence[AimTable], _options: CodeOptions = PLAIN) -> Files:
-    """One JSON file a table."""
-    return one_each(tables, to_json, ".json")
-
-
-def aim_csv_form(tables: Sequence[AimTable], _options: CodeOptions = PLAIN) -> Files:
-    """One CSV file a table."""
-    return one_each(tables, to_csv, ".csv")
 
 
 def aim_c_form(tables: Sequence[AimTable], options: CodeOptions = PLAIN) -> Files:
@@ -44,8 +32,8 @@ def aim_plc_form(name: str, tables: Sequence[AimTable], options: CodeOptions = P
 
 
 AIM_FORMS: Mapping[str, AimForm] = {
-    "json": aim_json_form,
-    "csv": aim_csv_form,
+    "json": json_form,
+    "csv": csv_form,
     "c": aim_c_form,
     **{name: partial(aim_plc_form, name) for name in PLC_NAMES},
 }

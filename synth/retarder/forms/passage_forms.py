@@ -6,22 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from synth.retarder.forms.code_options import PLAIN, PLC_NAMES, CodeOptions
-from synth.retarder.forms.table_forms import Files, one_each
-from tuning_tables.csv_file import to_csv
-from tuning_tables.json_file import to_json
+from synth.retarder.forms.table_forms import Files, csv_form, json_form
 from tuning_tables.passages.passage_table import PassageTable
 
 PassageForm = Callable[[Sequence[PassageTable], CodeOptions], Files]
-
-
-def passage_json_form(tables: Sequence[PassageTable], _options: CodeOptions = PLAIN) -> Files:
-    """One JSON file a table."""
-    return one_each(tables, to_json, ".json")
-
-
-def passage_csv_form(tables: Sequence[PassageTable], _options: CodeOptions = PLAIN) -> Files:
-    """One CSV file a table."""
-    return one_each(tables, to_csv, ".csv")
 
 
 def passage_c_form(tables: Sequence[PassageTable], options: CodeOptions = PLAIN) -> Files:
@@ -46,8 +34,8 @@ def passage_plc_form(name: str, tables: Sequence[PassageTable], options: CodeOpt
 
 
 PASSAGE_FORMS: Mapping[str, PassageForm] = {
-    "json": passage_json_form,
-    "csv": passage_csv_form,
+    "json": json_form,
+    "csv": csv_form,
     "c": passage_c_form,
     **{name: partial(passage_plc_form, name) for name in PLC_NAMES},
 }

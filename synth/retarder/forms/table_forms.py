@@ -18,12 +18,12 @@ Files = Mapping[str, bytes]
 Form = Callable[[Sequence[ControllerTable], CodeOptions], Files]
 
 
-def json_form(tables: Sequence[ControllerTable], _options: CodeOptions = PLAIN) -> Files:
+def json_form(tables: Sequence[_Table], _options: CodeOptions = PLAIN) -> Files:
     """One JSON file a table."""
     return one_each(tables, to_json, ".json")
 
 
-def csv_form(tables: Sequence[ControllerTable], _options: CodeOptions = PLAIN) -> Files:
+def csv_form(tables: Sequence[_Table], _options: CodeOptions = PLAIN) -> Files:
     """One CSV file a table."""
     return one_each(tables, to_csv, ".csv")
 
