@@ -10,6 +10,7 @@ import pytest
 from hypothesis import settings
 
 from tests.corpus import Corpus, shared_base
+from tests.effort import IS_LONG
 from tests.printed_page import Page, caught
 
 settings.register_profile("ci", derandomize=True, deadline=None)
@@ -28,6 +29,14 @@ def pages() -> Iterator[list[Page]]:
 def corpus(tmp_path_factory: pytest.TempPathFactory) -> Corpus:
     """What commands have left, made once for all processes of this run."""
     return Corpus(shared_base(tmp_path_factory))
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what is marked as long, unless it is wanted."""
+    if not IS_LONG:
+        left_out = [item for item in items if item.get_closest_marker("long")]
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in left_out]
 
 
 def pytest_collection_finish() -> None:

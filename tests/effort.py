@@ -1,0 +1,16 @@
+"""How much the tests do: what finds a fault in minutes, or all of it (`scripts/test --long`)."""
+
+from __future__ import annotations
+
+import os
+from typing import Final, TypeVar
+
+_T = TypeVar("_T")
+
+IS_LONG: Final = os.environ.get("RETARDER_SYNTH_TESTS") == "long"
+"""Whether the long tests run, and the others at their full size."""
+
+
+def sized(short: _T, long: _T) -> _T:
+    """How many questions, passes or trains a test takes: `short`, or `long` where there is time."""
+    return long if IS_LONG else short
