@@ -46,8 +46,8 @@ LANGUAGES: Final = {
     ".scl": "SCL",
 }
 """By the ending of the file that an export is listed by."""
-WHOLE: Final = re.compile(r"(\w+)_(table|passages)\.(?:c|st|xml|scl)")
-LOAD_UNIT: Final = re.compile(r"(?:\d{4}_)?(\w+)_(LOAD|LOAD_PASSAGES)\.(?:st|TcPOU)")
+WHOLE: Final = re.compile(r"([A-Za-z]\w*)_(table|passages)\.(?:c|st|xml|scl)")
+LOAD_UNIT: Final = re.compile(r"(?:\d{4}_)?([A-Za-z]\w*)_(LOAD|LOAD_PASSAGES)\.(?:st|TcPOU)")
 """Of an export with a file each unit, the one with most of the numbers."""
 IS_AIM: Final = re.compile(r"(?:^|_)AIM$")
 """Whether the first word of names is that of aim tables: no prefix may end so."""

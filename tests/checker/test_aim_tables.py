@@ -30,12 +30,13 @@ from tests.tuning_tables.aim.made_tables import category_table, measured_table
 from tuning_tables.aim import AimTables
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.aim.st_source import aim_st_files, aim_st_unit_files
+from tuning_tables.aim.st_source import aim_export, aim_st_files
 from tuning_tables.c_source import c_files
 from tuning_tables.canonical import canonical_json, document_checksum
 from tuning_tables.csv_file import to_csv
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.json_file import from_json, to_json
+from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.table_book import TableBook
 
 AIMS = AimTables((category_table(1.0), measured_table(), category_table(1.5, 4, "СТ")))
@@ -50,7 +51,7 @@ def write_all(folder: Path, aims: AimTables) -> Path:
         (folder / "tables" / f"{table.id}.json").write_bytes(to_json(table))
         (folder / "tables" / f"{table.id}.csv").write_bytes(to_csv(table))
     exports = {"c": aim_c_files(aims), "st": aim_st_files(aims), "": aim_c_files(aims, PARK)}
-    for place, files in (*exports.items(), ("st", aim_st_unit_files(aims, PARK))):
+    for place, files in (*exports.items(), ("st", unit_files(aim_export(aims, PARK)))):
         for name, content in files.items():
             (folder / place / name).write_bytes(content)
     return folder

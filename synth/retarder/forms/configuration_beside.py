@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
 from synth.frame.settings.toml_text import toml_text
 from synth.frame.summary import FORMAT
+from tuning_tables import AnyTable
+from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.canonical import canonical_json
-from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.export_prefix import AIM, ExportPrefix
 
 NAME: Final = "retarder_configuration.toml"
 
@@ -22,11 +24,13 @@ HEAD: Final = """\
 """
 
 
-def configuration_file(source: Path, sha256s: Collection[str], prefix: ExportPrefix) -> Mapping[str, bytes]:
-    """The file with the configuration whose hash is one of `sha256s`; none where no summary at `source` has it.
+def configuration_file(source: Path, tables: Sequence[AnyTable], prefix: ExportPrefix) -> Mapping[str, bytes]:
+    """The file with the configuration of the tables, all of one kind; none where no summary at `source` has it.
 
     `source`: a table, a book, or the directory of a command; the summary lies there, or in a folder above a file.
     """
+    sha256s = {table.generator.config_sha256 for table in tables}
+    named = prefix.of_kind(AIM) if isinstance(tables[0], AimTable) else prefix
     here = source if source.is_dir() else source.parent
     for folder in (here, here.parent):
         try:
@@ -37,5 +41,5 @@ def configuration_file(source: Path, sha256s: Collection[str], prefix: ExportPre
             continue
         if sha256 in sha256s:
             text = HEAD.format(sha256=sha256) + toml_text(config)
-            return {prefix.renamed(NAME): text.encode("utf-8")}
+            return {named.renamed(NAME): text.encode("utf-8")}
     return {}
