@@ -19,6 +19,7 @@ from synth.checker.code_export import Due
 from synth.checker.code_file import AIMS, FOLDERS, LINES, PASSAGES, CodeFile, CodeKind, code_files
 from synth.checker.export_check import Check, Differences, findings_of
 from synth.checker.finding import DamagedError, Finding, Kind
+from synth.checker.passages import golden_stages
 from synth.checker.passages import numbers as passage_numbers
 from synth.checker.passages.reading import PassageTable
 from synth.checker.plc_text import structured_text
@@ -97,6 +98,7 @@ def golden_check(file: Path, source: Source, kinds: Sequence[CodeKind]) -> Calla
         "golden_vectors": (LINES, partial(golden_differences, file, source)),
         "golden_tracks": (LINES, partial(track_differences, file, source)),
         "golden_aims": (AIMS, partial(golden_aim_differences, file, source)),
+        "golden_stages": (PASSAGES, partial(golden_stage_differences, file, source)),
     }
     for ending, (kind, compare) in checks.items():
         if file.stem.endswith(ending) and kind in kinds:
@@ -121,6 +123,11 @@ def track_differences(file: Path, source: Source) -> Differences:
 def golden_aim_differences(file: Path, source: Source) -> Differences:
     """The golden aims in `file`."""
     yield from aim_csv_export.golden_differences(content_of(file), source.aims)
+
+
+def golden_stage_differences(file: Path, source: Source) -> Differences:
+    """The golden stages in `file`."""
+    yield from golden_stages.differences(content_of(file), source.passages)
 
 
 def check_sheets(source: Source, folder: Path, check: Check) -> list[Finding]:
