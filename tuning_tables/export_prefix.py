@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 FORM: Final = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*")
+AIM: Final = "AIM"
+"""The kind of aim tables, as `ExportPrefix.kind` has it."""
 LONGEST: Final = 10
 """Then no name in Structured Text has more than 32 characters."""
 
@@ -28,8 +30,8 @@ class ExportPrefix:
                 f"the prefix is {self.text!r:.60}, but it must have at most {LONGEST} Latin letters, digits and single "
                 "underscores between them, a letter first, such as BUNCH or TRACK_2"
             )
-        if re.search(r"(^|_)AIM$", self.text, re.IGNORECASE):
-            raise ValueError(f"the prefix is {self.text!r}, but it must not end with AIM, which names aim tables")
+        if re.search(rf"(^|_){AIM}$", self.text, re.IGNORECASE):
+            raise ValueError(f"the prefix is {self.text!r}, but it must not end with {AIM}, which names aim tables")
 
     @property
     def is_default(self) -> bool:

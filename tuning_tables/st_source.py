@@ -13,7 +13,7 @@ from tuning_tables.controller_code.st_export import st_export
 from tuning_tables.errors import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.language.st_unit import Export
-from tuning_tables.plc_forms.iec import part_files, unit_files
+from tuning_tables.plc_forms.iec import part_files
 from tuning_tables.self_test_size import FULL, SelfTestSize
 from tuning_tables.table_book import TableBook
 
@@ -43,10 +43,3 @@ def st_files(book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTe
     Equal books give equal bytes. Raises as `line_export`.
     """
     return part_files(line_export(book, prefix, self_test))
-
-
-def st_unit_files(
-    book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL
-) -> Mapping[str, bytes]:
-    """The same units, a file each; by their names in the order in which they need each other. Raises as above."""
-    return unit_files(line_export(book, prefix, self_test))

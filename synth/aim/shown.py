@@ -17,8 +17,8 @@ from synth.frame.exhibits import Chart, Column, Exhibit, File, Row, Sentence, Ta
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, percent
 from synth.retarder.case_names import file_stem
-from synth.retarder.forms.aim_forms import AIM_FORMS
 from synth.retarder.forms.code_options import PLAIN
+from synth.retarder.forms.table_forms import FORMS
 
 KNOWN: Final = {"category": "category alone", "measured": "resistance measured"}
 """What people call a kind of knowledge."""
@@ -209,7 +209,7 @@ def files(book: AimBook) -> Iterator[Exhibit]:
     """What controllers load: the tables in every form."""
     tables = [made.table for made in book.tables]
     for folder, form in (("tables", "json"), ("tables", "csv"), ("c", "c"), ("st", "st")):
-        yield from (File(f"{folder}/{name}", content) for name, content in AIM_FORMS[form](tables, PLAIN).items())
+        yield from (File(f"{folder}/{name}", content) for name, content in FORMS[form](tables, PLAIN).items())
 
 
 def charts(book: AimBook) -> Iterator[Exhibit]:

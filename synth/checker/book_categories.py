@@ -8,7 +8,7 @@ from synth.checker.passages.reading import PassageTable
 from synth.checker.table_reading import Table
 
 
-def without_number(tables: Sequence[Table]) -> Iterator[tuple[str, str]]:
+def without_number(tables: Sequence[Table | PassageTable]) -> Iterator[tuple[str, str]]:
     """(id, sentence) for each table whose category no controller code can name."""
     for table in tables:
         if table.category_number is None:

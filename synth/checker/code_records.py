@@ -139,7 +139,7 @@ def checksum_fault(number: int, words: Sequence[int]) -> str | None:
 
 def st_members(text: str, record: str) -> list[Member]:
     """The members of a TYPE."""
-    found = re.search(rf"\b{record} : STRUCT(.*?)END_STRUCT", ST_COMMENT.sub(" ", text), re.DOTALL)
+    found = re.search(rf"\b{record} :\s*STRUCT(.*?)END_STRUCT", ST_COMMENT.sub(" ", text), re.DOTALL)
     if found is None:
         raise DamagedError(f"it has no type {record}")
     return [Member(plain(name), kind == "REAL", int(last or 0) + 1) for name, last, kind in ST_MEMBER.findall(found[1])]

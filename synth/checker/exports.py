@@ -1,29 +1,37 @@
-"""The other exports in the directory of a tune, each against the same tables."""
+"""The other exports in the directory of a command, each against the same tables."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeAlias, TypeVar
 
-from synth.checker import csv_export, golden_export, line_export, track_export
-from synth.checker.aim.exports import check_aim_exports, is_aim_csv
+from synth.checker import code_export, csv_export, golden_export, line_numbers, track_export
+from synth.checker.aim import csv_export as aim_csv_export
+from synth.checker.aim import numbers as aim_numbers
+from synth.checker.aim.reading import Aim
 from synth.checker.book_categories import without_number
 from synth.checker.category_constants import ascii_comment
-from synth.checker.code_file import CodeFile, c_files, st_files
+from synth.checker.code_export import Due
+from synth.checker.code_file import AIMS, FOLDERS, LINES, PASSAGES, CodeFile, CodeKind, code_files
 from synth.checker.export_check import Check, Differences, findings_of
-from synth.checker.finding import Finding, Kind
+from synth.checker.finding import DamagedError, Finding, Kind
+from synth.checker.passages import golden_stages
+from synth.checker.passages import numbers as passage_numbers
 from synth.checker.passages.reading import PassageTable
+from synth.checker.plc_text import structured_text
 from synth.checker.source import Source, named
-from synth.checker.source_file import content_of
+from synth.checker.source_file import content_of, text_of
 from synth.checker.table_reading import Table
 
-FOLDERS: Final = ("", "c", "st")
-PLACE: Final = re.compile(r"[/(]\* (\d{1,6}): (.*?) \*[/)]")
-"""How C and Structured Text name a table: its number in the book, and its id in ASCII."""
+PLACE: Final = re.compile(r"[/(]\*\s+(\d{1,6}): ([^*]*?) \*[/)]")
+"""How all forms name a table: its number in the export, and its id in ASCII, perhaps on several lines."""
+
+AnyTable: TypeAlias = Table | PassageTable | Aim
+Kept = TypeVar("Kept", Table, PassageTable, Aim)
 
 
 @dataclass(frozen=True)
@@ -43,47 +51,59 @@ def check_exports(source: Source, folder: Path) -> ExportReport:
         files.append(named(file, folder))
         findings.extend(findings_of(files[-1], compare))
 
-    if source.aims:
-        check_aim_exports(source.aims, folder, check)
-    if source.tables or not (source.aims or source.passages):
-        check_code(source, folder, check)
-    tables: dict[str, Table | PassageTable] = {table.id: table for table in source.tables}
-    tables |= {table.id: table for table in source.passages}
-    csv_files = [file for file in sorted((folder / "tables").glob("*.csv")) if not is_aim_csv(file)]
-    seen: set[str] = set()
-    for file in csv_files:
-        check(file, partial(csv_differences, file, tables, seen))
-    if csv_files:
-        missing = sorted(tables.keys() - seen)
-        findings += [Finding(Kind.DISAGREES, name, "other tables have a CSV file, it has none") for name in missing]
+    kinds = kinds_of(source)
+    for code in code_files(folder):
+        if code.kind in kinds:
+            check(code.path, partial(code_differences, code, source))
+    for place in FOLDERS:
+        for file in sorted((folder / place).glob("*golden_*.csv")):
+            compare = golden_check(file, source, kinds)
+            if compare is not None:
+                check(file, compare)
+    findings += check_sheets(source, folder, check)
     return ExportReport(tuple(files), tuple(findings))
 
 
-def check_code(source: Source, folder: Path, check: Check) -> None:
-    """Compare the controller code for tables with lines, and its golden vectors and tracks."""
-    for place in FOLDERS:
-        for code in c_files(folder / place):
-            check(code.path, partial(c_differences, code, source))
-        for file in sorted((folder / place).glob("*golden_vectors.csv")):
-            check(file, partial(golden_differences, file, source))
-        for file in sorted((folder / place).glob("*golden_tracks.csv")):
-            check(file, partial(track_differences, file, source))
-        for code in st_files(folder / place):
-            check(code.path, partial(st_differences, code, source))
+def kinds_of(source: Source) -> tuple[CodeKind, ...]:
+    """The kinds whose code is compared: those of the tables that are there; where there are none, those with lines."""
+    tables: Mapping[CodeKind, Sequence[AnyTable]] = {LINES: source.tables, AIMS: source.aims, PASSAGES: source.passages}
+    return tuple(kind for kind in tables if tables[kind]) or (LINES,)
 
 
-def c_differences(code: CodeFile, source: Source) -> Differences:
-    """The C export in a file, and the header beside it."""
-    text, header = code.text(), code.text(code.path.with_suffix(".h"))
-    yield from without_number(source.tables)
-    yield from line_export.c_differences(text, header, in_order(source, text))
+def code_differences(code: CodeFile, source: Source) -> Differences:
+    """The controller code of an export."""
+    if code.kind is not AIMS:
+        yield from without_number(source.tables if code.kind is LINES else source.passages)
+    if code.path.suffix == ".c":
+        text = text_of(code.path)
+        header = text_of(code.path.with_suffix(".h"))
+        yield from code_export.c_differences(text, header, code.word, code.kind, due(code.kind, source, text))
+        return
+    text = "\n".join(structured_text(file) for file in code.files())
+    yield from code_export.st_differences(text, code.word, code.kind, due(code.kind, source, text))
 
 
-def st_differences(code: CodeFile, source: Source) -> Differences:
-    """The Structured Text of an export."""
-    text = code.units()
-    yield from without_number(source.tables)
-    yield from line_export.st_differences(text, in_order(source, text))
+def due(kind: CodeKind, source: Source, text: str) -> Due:
+    """What code of a kind must hold of the tables that are there, if it is a `text` with such comments."""
+    if kind is AIMS:
+        return aim_numbers.due(as_told(source.aims, text))
+    if kind is PASSAGES:
+        return passage_numbers.due(in_order(source.passages, source, text))
+    return line_numbers.due(in_order(source.tables, source, text))
+
+
+def golden_check(file: Path, source: Source, kinds: Sequence[CodeKind]) -> Callable[[], Differences] | None:
+    """How the answers beside code are compared, by the name of their file; None for those of other kinds."""
+    checks: Mapping[str, tuple[CodeKind, Callable[[], Differences]]] = {
+        "golden_vectors": (LINES, partial(golden_differences, file, source)),
+        "golden_tracks": (LINES, partial(track_differences, file, source)),
+        "golden_aims": (AIMS, partial(golden_aim_differences, file, source)),
+        "golden_stages": (PASSAGES, partial(golden_stage_differences, file, source)),
+    }
+    for ending, (kind, compare) in checks.items():
+        if file.stem.endswith(ending) and kind in kinds:
+            return compare
+    return None
 
 
 def golden_differences(file: Path, source: Source) -> Differences:
@@ -92,30 +112,76 @@ def golden_differences(file: Path, source: Source) -> Differences:
     text = content.decode("utf-8", "replace")
     rows = dict.fromkeys(re.findall(r'^(\d{1,6}),"?([^",]*)"?,', text, re.MULTILINE))
     order = "".join(f"/* {number}: {ascii_comment(name)} */" for number, name in rows)
-    return golden_export.differences(content, in_order(source, order))
+    yield from golden_export.differences(content, in_order(source.tables, source, order))
 
 
 def track_differences(file: Path, source: Source) -> Differences:
     """The golden tracks in `file`."""
-    return track_export.differences(content_of(file), source.tables, source.has_book)
+    yield from track_export.differences(content_of(file), source.tables, source.has_book)
 
 
-def csv_differences(file: Path, tables: Mapping[str, Table | PassageTable], seen: set[str]) -> Differences:
+def golden_aim_differences(file: Path, source: Source) -> Differences:
+    """The golden aims in `file`."""
+    yield from aim_csv_export.golden_differences(content_of(file), source.aims)
+
+
+def golden_stage_differences(file: Path, source: Source) -> Differences:
+    """The golden stages in `file`."""
+    yield from golden_stages.differences(content_of(file), source.passages)
+
+
+def check_sheets(source: Source, folder: Path, check: Check) -> list[Finding]:
+    """Compare the CSV tables; what is found of tables without one, where others have one."""
+    with_sheets: tuple[AnyTable, ...] = (*source.tables, *source.passages)
+    tables = {each.id: each for each in (*with_sheets, *source.aims)}
+    seen: set[str] = set()
+    inside = folder / "tables"
+    for file in sorted((inside if inside.is_dir() else folder).glob("*.csv")):
+        if file.parent == inside or is_aim_csv(file):
+            check(file, partial(csv_differences, file, tables, seen))
+    names = {each.id for each in with_sheets}
+    missing = sorted(names - seen) if names & seen else []
+    return [Finding(Kind.DISAGREES, name, "other tables have a CSV file, it has none") for name in missing]
+
+
+def is_aim_csv(file: Path) -> bool:
+    """Whether a CSV file says that it is of an aim table."""
+    try:
+        return re.search(rb"^text,kind,aim,", content_of(file), re.MULTILINE) is not None
+    except DamagedError:
+        return False
+
+
+def csv_differences(file: Path, tables: Mapping[str, AnyTable], seen: set[str]) -> Differences:
     """The CSV table in `file`, whose id is added to `seen`."""
     rows = csv_export.read_rows(content_of(file))
     name = (rows.get(("text", "id")) or ("",))[0]
-    if name not in tables:
+    table = tables.get(name)
+    if table is None:
         yield "", f"it is of the table {name!r}, which no other file holds"
         return
     seen.add(name)
-    yield from ((name, sentence) for sentence in csv_export.differences(rows, tables[name].document))
+    found = (
+        aim_csv_export.differences(rows, table)
+        if isinstance(table, Aim)
+        else csv_export.differences(rows, table.document)
+    )
+    yield from ((name, sentence) for sentence in found)
 
 
-def in_order(source: Source, text: str) -> list[Table]:
+def in_order(tables: Sequence[Kept], source: Source, text: str) -> list[Kept]:
     """The tables in the order of the book; without a book, in the order that the comments of `text` tell."""
-    if source.has_book:
-        return list(source.tables)
-    by_name = {ascii_comment(table.id): table for table in source.tables}
-    names = [name for _, name in sorted((int(number), name) for number, name in PLACE.findall(text))]
+    return list(tables) if source.has_book else as_told(tables, text)
+
+
+def as_told(tables: Sequence[Kept], text: str) -> list[Kept]:
+    """The tables in the order that the comments of `text` tell; behind them those that it does not name."""
+    by_name = {unspaced(ascii_comment(table.id)): table for table in tables}
+    names = [unspaced(name) for _, name in sorted((int(number), name) for number, name in PLACE.findall(text))]
     ordered = [by_name[name] for name in dict.fromkeys(names) if name in by_name]
-    return ordered + [table for table in source.tables if table not in ordered]
+    return ordered + [table for table in tables if table not in ordered]
+
+
+def unspaced(text: str) -> str:
+    """A name without white space: a form may have broken a long one into lines."""
+    return re.sub(r"\s+", "", text)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from synth.cli.inspect_aim import aim_document, aim_page
+from synth.cli.inspect_code import code_at, code_document, code_sentence
 from synth.cli.inspect_passages import passage_document, passage_page
 from synth.frame.command import Limit, Verdict
 from synth.frame.printed_numbers import counted
@@ -18,7 +19,6 @@ from synth.frame.terminal.printed_page import Exhibit, print_page
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.retarder.forms.aim_file import read_aims
-from synth.retarder.forms.exported_code import exported_code
 from synth.retarder.forms.passage_file import read_passages
 from synth.retarder.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
 from tuning_tables import DamagedTable
@@ -33,7 +33,7 @@ SHOWN_POINTS = 5
 
 def inspect_command(source: Path, as_json: bool) -> int:
     """Print the contents of the tables in `source`, and what controller code is there; `TableError` for damage."""
-    code = exported_code(source)
+    code = code_at(source)
     aims, passages = read_aims(source), read_passages(source)
     nothing_else = bool(code or aims or passages) and not holds_tables(source)
     files = () if nothing_else else read_tables(source, directory_allowed=True)
@@ -41,7 +41,7 @@ def inspect_command(source: Path, as_json: bool) -> int:
     if as_json:
         found: dict[str, Any] = {"path": str(source), "files": [*map(file_document, files), *map(aim_document, aims)]}
         found |= {"passage_tables": [passage_document(table) for table in passages]} if passages else {}
-        found |= {"code": [each.document() for each in code]} if code else {}
+        found |= {"code": [code_document(each) for each in code]} if code else {}
         if summary is not None:
             found["summary"] = summary
         print(json.dumps(found, indent=1, ensure_ascii=False))
@@ -58,7 +58,7 @@ def inspect_command(source: Path, as_json: bool) -> int:
         page += passage_page(each)
     for aim in aims:
         page += aim_page(aim)
-    page += (f"{export.path}: {export.sentence}" for export in code)
+    page += map(code_sentence, code)
     if summary is not None:
         page.append(f"{source / 'summary.json'}: {summary['sentence']}")
     print_page(*page)

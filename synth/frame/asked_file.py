@@ -15,4 +15,4 @@ def asked_of(command: Command[S, O, P, R], options: O, init: str) -> Asked[S, O]
     """
     path = options.config
     text, place = ("", BUILT_IN) if path is None else (command.text(path, init), str(path))
-    return Asked(command.read(text, place), options, place, Path(place).parent)
+    return Asked(command.read(text, place), options, place, Path(place).parent, text)

@@ -47,13 +47,15 @@ R = TypeVar("R")
 class Asked(Generic[S, O]):
     """What a user asks for: the settings of the configuration, and the options of the command line.
 
-    `place`: what messages call the configuration. Paths in it begin at `folder`.
+    `place`: what messages call the configuration. Paths in it begin at `folder`. `text`: all of its file as the user
+    wrote it; "" without one.
     """
 
     settings: S
     options: O
     place: str
     folder: Path
+    text: str
 
 
 @dataclass(frozen=True)
@@ -130,10 +132,10 @@ class Command(Generic[S, O, P, R]):
     refused (`InputError`, `PlantError`); `compute` tells each finished step.
 
     `name`: as it is typed. `options`: a declared model of what is typed behind it. `limits_of_use`: what figures do not
-    say. `text`: the text of the configuration at a path, where that may be something else than a TOML file; its other
-    argument is the command that prints such a file. `inputs`: a folder of the results into which `compute` copies what
-    is read, before anything else; a later run may read it there. `drawing`: how many processes draw its charts,
-    which are pickled where there is more than one.
+    say. `text`: the text of the configuration at a path, where that may be something else than a TOML file, so that the
+    frame keeps no copy of it; its other argument is the command that prints such a file. `inputs`: a folder of the
+    results into which `compute` copies what is read, before anything else; a later run may read it there. `drawing`:
+    how many processes draw its charts, which are pickled where there is more than one.
     """
 
     name: str

@@ -14,6 +14,7 @@ from synth.frame.exhibits import Chapter, Chart, File, Table
 from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.printed_numbers import counted
 from synth.frame.results_directory import SUMMARY, ResultsDirectory, results_directory
+from synth.frame.settings.toml_file import read_text
 from synth.frame.terminal.interrupt import interruptible
 from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 from synth.frame.told import Told
@@ -34,6 +35,8 @@ def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_j
     head, steps = command.head(problem), command.steps(problem)
     reads = (*asked.options.reads, *head.reads)
     with results_directory(output, command.name, reads, inputs=command.inputs) as directory:
+        if asked.options.config is not None and command.text is read_text:
+            directory.keep_configuration(asked.options.config, asked.text)
         for warning in head.warnings:
             say(f"warning: {warning}")
         try:

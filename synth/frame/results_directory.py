@@ -26,6 +26,8 @@ from synth.frame.own_files import CHANGING, MARKER, OwnFiles, command_of, sha256
 from tuning_tables.atomic_file import faults_naming, replacing
 
 SUMMARY: Final = "summary.json"
+CONFIGURATION: Final = "configuration.toml"
+"""The user's configuration as it was; a run may begin from it, for it writes nothing there."""
 LEFTOVER: Final = re.compile(r"\.(.+)\.[0-9a-f]{16}\.part")
 """Name of an unfinished file, and in it the name that it would have got."""
 
@@ -120,6 +122,13 @@ class ResultsDirectory:
             content = self._own.content_of(name)
             if content is not None:
                 self._note(name, content)
+
+    def keep_configuration(self, source: Path, text: str) -> None:
+        """Keep the `text` of the user's file `source`, unless that is the very place where it would lie."""
+        if source.resolve() == (self.path / CONFIGURATION).resolve():
+            self.retain(CONFIGURATION)
+        else:
+            self.write(CONFIGURATION, text.encode("utf-8"))
 
     def remove(self, name: str) -> None:
         """Remove the file `name` of an earlier run, if it is there and as it was written."""
@@ -239,9 +248,10 @@ def require_as_written(path: Path, own: OwnFiles) -> None:
 
 
 def require_apart(path: Path, own: OwnFiles, reads: frozenset[Path], inputs: str) -> None:
-    """`InputError` if the command reads one of its own files in `path`, unless below the folder `inputs`."""
+    """`InputError` if the command reads one of its own files in `path`, unless that is a copy of what is read."""
     for name in own:
-        if (path / name).resolve() in reads and not (inputs and name.startswith(f"{inputs}/")):
+        is_copy = name == CONFIGURATION or (inputs and name.startswith(f"{inputs}/"))
+        if (path / name).resolve() in reads and not is_copy:
             raise InputError(read_and_written(path / name))
 
 

@@ -30,12 +30,13 @@ from tests.tuning_tables.aim.made_tables import category_table, measured_table
 from tuning_tables.aim import AimTables
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.aim.st_source import aim_st_files, aim_st_unit_files
+from tuning_tables.aim.st_source import aim_export, aim_st_files
 from tuning_tables.c_source import c_files
 from tuning_tables.canonical import canonical_json, document_checksum
 from tuning_tables.csv_file import to_csv
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.json_file import from_json, to_json
+from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.table_book import TableBook
 
 AIMS = AimTables((category_table(1.0), measured_table(), category_table(1.5, 4, "СТ")))
@@ -50,7 +51,7 @@ def write_all(folder: Path, aims: AimTables) -> Path:
         (folder / "tables" / f"{table.id}.json").write_bytes(to_json(table))
         (folder / "tables" / f"{table.id}.csv").write_bytes(to_csv(table))
     exports = {"c": aim_c_files(aims), "st": aim_st_files(aims), "": aim_c_files(aims, PARK)}
-    for place, files in (*exports.items(), ("st", aim_st_unit_files(aims, PARK))):
+    for place, files in (*exports.items(), ("st", unit_files(aim_export(aims, PARK)))):
         for name, content in files.items():
             (folder / place / name).write_bytes(content)
     return folder
@@ -94,7 +95,7 @@ def test_the_checkers_rule_is_the_rule_to_the_last_bit() -> None:
         ("c/aim_table.c", r"(0x1\.)([0-8])([0-9a-f]*p\+0f)", r"\g<1>9\3", "the crc32 of table 0"),
         ("c/aim_table.c", r"(0x1\.)([0-8])([0-9a-f]*p\+0f)", r"\g<1>9\3", "but the table says"),
         ("c/aim_table.c", r"aim_table_count = 3", "aim_table_count = 2", "aim_table_count is 2"),
-        ("c/aim_table.c", r"        4, /\* category \*/", "        5, /* category */", "is not among the tables"),
+        ("c/aim_table.c", r"        4, /\* category \*/", "        5, /* category */", "category of table 2 is 5"),
         ("c/aim_table.c", r"-0x1p\+0f", "0x1p+0f", r"aim-1-category: .*speedms\[\d+\] .* is 1.0, but .* -1.0"),
         ("c/aim_table.h", r"(CATEGORY_\w+) 1 ", r"\1 2 ", "defines the categories"),
         ("c/aim_table.h", r"distance_m\[7\]", "distance_m[8]", "its struct has"),
@@ -105,7 +106,7 @@ def test_the_checkers_rule_is_the_rule_to_the_last_bit() -> None:
         ("st/aim_table.st", r"(\d\.\d{8})\d(E[+-]\d\d)", r"\g<1>X\2", "something else than REAL"),
         ("st/aim_table.st", r"(Distance_1 : ARRAY.*?)2\.0", r"\g<1>2.1", r"distancem\[0\] of table 1"),
         ("st/aim_table.st", r"(Speed_0 : .*?:= \[\s*)\d", r"\g<1>9", r"aim-1-category: .*speedms\[0\]"),
-        ("st/aim_table.st", r"IsMeasuredOf : (.*?):= \[0", r"IsMeasuredOf : \1:= [1", "holds tables for the"),
+        ("st/aim_table.st", r"IsMeasuredOf : (.*?):= \[0", r"IsMeasuredOf : \1:= [1", "ismeasured of table 0 is 1"),
         ("st/aim_table.st", r"(AIM_SELECT.*IsMeasuredOf : .*?:= )\[0", r"\1[1", "stands there more than once"),
         ("st/aim_table.st", r"ListedOf : (.*?)\[5, 5", r"ListedOf : \1[5, 4", r"listed of table 1 is 4"),
         ("st/aim_table.st", r"TablePart : (.*?)\[0, 1", r"TablePart : \1[0, 2", r"of table 1 is"),
@@ -141,7 +142,7 @@ def test_a_table_more_or_less_is_found(exported: Path) -> None:
     moved.unlink()
     verdict = judged(exported)
     for words in (
-        "holds tables for the categories 1 measured 0, 1 measured 1, 4 measured 0",
+        "it holds 3 tables, but there are 2",
         "no other file holds",
         "no golden aim",
     ):

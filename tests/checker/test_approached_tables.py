@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.checker import golden_export, line_export, track_export
+from synth.checker import code_export, golden_export, line_numbers, track_export
+from synth.checker.code_file import LINES
 from synth.checker.finding import Kind
 from synth.checker.plant import UnusableConfigError, plant_of
 from synth.checker.source import read_source
@@ -144,10 +145,11 @@ def test_exports_of_many_shapes_are_those_of_the_exporter(estimators: bool, tmp_
     tables = [read_table(to_json(table)) for table in book.tables]
     files = c_files(book)
     code, header = (files[f"retarder_table.{suffix}"].decode("ascii") for suffix in ("c", "h"))
-    assert list(line_export.c_differences(code, header, tables)) == []
+    due = line_numbers.due(tables)
+    assert list(code_export.c_differences(code, header, "RETARDER", LINES, due)) == []
     assert list(golden_export.differences(files["golden_vectors.csv"], tables)) == []
     text = st_files(book)[TABLE_FILE].decode("ascii")
-    assert list(line_export.st_differences(text, tables)) == []
+    assert list(code_export.st_differences(text, "RETARDER", LINES, due)) == []
     if estimators:
         assert list(track_export.differences(files["golden_tracks.csv"], tables, True)) == []
     write_book(book.tables, tmp_path / "book.h5")

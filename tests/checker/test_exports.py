@@ -21,7 +21,8 @@ from tests.controller_code.unlike_pairs import at_rest
 from tuning_tables import ControllerTable, Decisions, to_json
 from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import ExportPrefix
-from tuning_tables.st_source import st_files, st_unit_files
+from tuning_tables.plc_forms.iec import unit_files
+from tuning_tables.st_source import line_export, st_files
 from tuning_tables.table_book import TableBook
 
 
@@ -80,9 +81,11 @@ def test_one_changed_digit_in_controller_code_is_found(
 def test_ids_that_look_like_names_of_the_code_are_compared_as_they_are(tmp_path: Path) -> None:
     made = [table_of(name, "BUNCH_X", 66.0, FOUR_AXLES, 2.0) for name in ("b", "BUNCH_SELECT", "retarder_load a")]
     tables = [replace(table, cut=replace(table.cut, category_number=16)) for table in made]
-    for form, prefix in ((c_files, "BUNCH"), (st_files, "BUNCH"), (st_unit_files, "bunch_2"), (c_files, "RETARDER")):
-        for name, content in form(TableBook(tuple(tables)), ExportPrefix(prefix)).items():
-            (tmp_path / name).write_bytes(content)
+    book = TableBook(tuple(tables))
+    exports = [form(book, ExportPrefix("BUNCH")) for form in (c_files, st_files)]
+    exports += [c_files(book), unit_files(line_export(book, ExportPrefix("bunch_2")))]
+    for name, content in (file for files in exports for file in files.items()):
+        (tmp_path / name).write_bytes(content)
     for table in tables:
         (tmp_path / f"{table.id}.json").write_bytes(to_json(table))
     verdict = judged(tmp_path)

@@ -8,9 +8,11 @@ from functools import cache
 
 import pytest
 
+from synth.checker.code_export import c_differences, st_differences
+from synth.checker.code_file import LINES
 from synth.checker.code_records import plain
 from synth.checker.finding import DamagedError
-from synth.checker.line_export import c_differences, st_differences
+from synth.checker.line_numbers import due
 from synth.checker.table_reading import Table, read_table
 from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
 from tuning_tables import to_json
@@ -37,8 +39,8 @@ def exported(tables: int = 3) -> tuple[dict[str, str], tuple[Table, ...]]:
 def sentences(texts: dict[str, str], tables: tuple[Table, ...]) -> list[str]:
     """All that is found in both languages."""
     found = [
-        *c_differences(texts["retarder_table.c"], texts["retarder_table.h"], tables),
-        *st_differences(texts[TABLE_FILE], tables),
+        *c_differences(texts["retarder_table.c"], texts["retarder_table.h"], "RETARDER", LINES, due(tables)),
+        *st_differences(texts[TABLE_FILE], "RETARDER", LINES, due(tables)),
     ]
     return [sentence for _, sentence in found]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
@@ -25,6 +26,8 @@ from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import held_by, wanted_stage
 from tuning_tables.csv_file import to_csv
 from tuning_tables.json_file import to_json
+from tuning_tables.passages.c_source import passage_c_files
+from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
 
@@ -200,6 +203,36 @@ def test_one_changed_cell_of_the_sheet_is_found(exported: Path, old: str, new: s
     place = text.index(old)
     file.write_bytes((text[:place] + new + text[place + len(old) :]).encode("utf-8"))
     assert found(look(exported), Kind.DISAGREES, words)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "replacement", "kind", "words"),
+    [
+        (
+            rb"(?m)^(0,.*),0,(\S+)\r$",
+            rb"\1,1,\2\r",
+            Kind.DISAGREES,
+            r"golden_stages.csv: row \d+ says 1, but the rule says 0",
+        ),
+        (rb"(?m)^0,.*\r\n", b"", Kind.DISAGREES, "golden_stages.csv: it has no golden stage"),
+        (rb"wanted", b"wished", Kind.DAMAGED, "its first line is not"),
+        (rb"(?m)^0,[^,]*", b'0,"else"', Kind.DAMAGED, "row 2 is no golden stage of a table"),
+    ],
+)
+def test_a_wrong_golden_stage_is_found(
+    tmp_path: Path, pattern: bytes, replacement: bytes, kind: Kind, words: str
+) -> None:
+    book = PassageBook(passage_book().tables[:2])
+    for table in book.tables:
+        (tmp_path / f"{table.id}.json").write_bytes(to_json(table))
+    (tmp_path / "c").mkdir()
+    golden = tmp_path / "c" / "golden_stages.csv"
+    golden.write_bytes(passage_c_files(book)[golden.name])
+    assert look(tmp_path).findings == ()
+    changed, count = re.subn(pattern, replacement, golden.read_bytes())
+    assert count > 0
+    golden.write_bytes(changed)
+    assert found(look(tmp_path), kind, words)
 
 
 def test_an_id_given_twice_is_found(exported: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -20,13 +20,13 @@ from tests.controller_code.test_export import FLOAT_H, PEDANTIC
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, random_table, reported_of
 from tuning_tables.aim import AimTables
-from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.aim.golden_aims import GoldenAims, few_golden_aims, golden_aims
+from tuning_tables.aim.golden_aims import few_golden_aims, golden_aims
 from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.aim_code import aim_code
 from tuning_tables.controller_code.code import crc32_of, words_of
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
 QUESTIONS = 200_000
 SOURCES = ("aim_table.c", "aim_self_test.c")
@@ -208,7 +208,7 @@ MUTANTS = (
 
 
 @cache
-def to_mutate(golden: Callable[[AimTable], GoldenAims]) -> Mapping[str, bytes]:
+def to_mutate(self_test: SelfTestSize) -> Mapping[str, bytes]:
     """An export that shows every fault of `MUTANTS`, and the program around it."""
     speeds = category_table().exit_speed_m_s.copy()
     speeds[0, 0] = np.float32(1.4)  # 0x1.666666p+0f
@@ -217,7 +217,7 @@ def to_mutate(golden: Callable[[AimTable], GoldenAims]) -> Mapping[str, bytes]:
     speeds[4, -2] = np.nan
     flat = replace(category_table(), exit_speed_m_s=speeds, reported=reported_of(speeds))
     aims = AimTables((flat, measured_table(), category_table(1.5, 4, "СТ")))
-    return {**aim_c_files(aims, RETARDER, golden), "main.c": PROGRAM.encode("ascii")}
+    return {**aim_c_files(aims, RETARDER, self_test), "main.c": PROGRAM.encode("ascii")}
 
 
 @pytest.mark.parametrize(
@@ -226,7 +226,7 @@ def to_mutate(golden: Callable[[AimTable], GoldenAims]) -> Mapping[str, bytes]:
 def test_the_self_test_finds_a_wrong_controller(
     before: str, after: str, fault: int | None, tmp_path: Path, to_change: ToChange
 ) -> None:
-    export = to_change([to_mutate(golden) for golden in (golden_aims, few_golden_aims)], SOURCES[0])
+    export = to_change([to_mutate(size) for size in (FULL, SMALL)], SOURCES[0])
     for said in export.self_tests(before, after, tmp_path):
         assert said.returncode == 0
         assert said.stdout.startswith(f"fault {fault} at") if fault else said.stdout == "fault 0 at 0\n"
@@ -237,7 +237,7 @@ def test_a_damaged_table_is_found_and_leads_nowhere(tmp_path: Path, tool: Tool) 
     tool("gcc")
     aims = AimTables((category_table(), measured_table()))
     command = built(aim_c_files(aims), tmp_path, Build("gcc", ("-O1", "-g", "-fsanitize=address,undefined")))
-    code = aim_code(aims, golden_aims)
+    code = aim_code(aims, FULL)
     words = words_of(code.table, code.tables[1].values)
     sound = np.append(words, np.uint32(crc32_of(words)))
     damaged = np.repeat(sound[None, :], 4 * len(sound), axis=0)

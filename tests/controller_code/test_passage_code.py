@@ -25,14 +25,14 @@ from tests.controller_code.test_export import FLOAT_H, PEDANTIC
 from tuning_tables.c_correction import correction_c_files
 from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.code import crc32_of, words_of
-from tuning_tables.controller_code.passage_code import Ask, passage_code
+from tuning_tables.controller_code.passage_code import passage_code
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.passages.c_source import passage_c_files
-from tuning_tables.passages.golden_passages import few_golden_passages, golden_passages
 from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.programs.at_pulse import wanted_stage
+from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
 QUESTIONS = 40_000
 SOURCES = ("retarder_passages.c", "retarder_passages_self_test.c")
@@ -102,14 +102,14 @@ def questions(book: PassageBook = BOOK) -> tuple[Rows, Rows]:
 
 
 @cache
-def exported(book: PassageBook, ask: Ask) -> Mapping[str, bytes]:
+def exported(book: PassageBook, self_test: SelfTestSize) -> Mapping[str, bytes]:
     """The exported files and the program around them."""
-    return {**passage_c_files(book, RETARDER, ask), "main.c": PROGRAM.encode("ascii")}
+    return {**passage_c_files(book, RETARDER, self_test), "main.c": PROGRAM.encode("ascii")}
 
 
-def write(folder: Path, book: PassageBook = BOOK, ask: Ask = golden_passages) -> None:
+def write(folder: Path, book: PassageBook = BOOK, self_test: SelfTestSize = FULL) -> None:
     """Write `exported` into the folder."""
-    for name, content in exported(book, ask).items():
+    for name, content in exported(book, self_test).items():
         (folder / name).write_bytes(content)
 
 
@@ -138,7 +138,7 @@ def differences(command: Sequence[str], build: Build, found: Rows, answers: Rows
 
 def blocks(book: PassageBook) -> list[npt.NDArray[np.uint32]]:
     """What C holds of each table, its checksum last."""
-    code = passage_code(book, few_golden_passages)
+    code = passage_code(book, SMALL)
     words = [words_of(code.table, table.values) for table in code.tables]
     return [np.append(each, np.uint32(crc32_of(each))) for each in words]
 
@@ -176,7 +176,7 @@ def test_the_questions_reach_much() -> None:
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang", "arm-linux-gnueabihf-gcc"])
 def test_compilers_and_checkers_have_nothing_to_say(compiler: str, tmp_path: Path, tool: Tool) -> None:
-    write(tmp_path, FEW_TABLES, few_golden_passages)
+    write(tmp_path, FEW_TABLES, SMALL)
     weak = ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage", "-Wno-unknown-warning-option",
             "-Wno-declaration-after-statement")  # fmt: skip
     switches = {"gcc": ("-fanalyzer",), "clang": weak}.get(compiler, ("-mcpu=cortex-m4", "-mthumb"))
@@ -206,7 +206,7 @@ def test_cxx_takes_the_headers_and_since_17_the_code(standard: str, tmp_path: Pa
 
 
 def test_it_links_beside_all_other_code_and_needs_nothing(tmp_path: Path, tool: Tool) -> None:
-    files = {**c_files(sample_book()), **correction_c_files(Correction()), **exported(BOOK, golden_passages)}
+    files = {**c_files(sample_book()), **correction_c_files(Correction()), **exported(BOOK, FULL)}
     del files["main.c"]
     sources = [name for name in files if name.endswith(".c")]
     for name, content in files.items():
@@ -246,13 +246,13 @@ def test_every_changed_byte_of_a_table_is_found(tmp_path: Path, tool: Tool) -> N
 
 def test_files_of_two_exports_are_not_compiled_together(tmp_path: Path, tool: Tool) -> None:
     write(tmp_path)
-    (tmp_path / SOURCES[0]).write_bytes(exported(FEW_TABLES, few_golden_passages)[SOURCES[0]])
+    (tmp_path / SOURCES[0]).write_bytes(exported(FEW_TABLES, SMALL)[SOURCES[0]])
     with pytest.raises(BuildError, match=r"retarder_passages\.h is of another export"):
         compile_with([tool("gcc"), *CONTRACT, "-c", str(tmp_path / SOURCES[0]), "-o", str(tmp_path / "o")])
 
 
 def test_golden_stages_as_csv_are_answered_as_they_say() -> None:
-    rows = list(csv.DictReader(io.StringIO(exported(BOOK, golden_passages)["golden_stages.csv"].decode(), newline="")))
+    rows = list(csv.DictReader(io.StringIO(exported(BOOK, FULL)["golden_stages.csv"].decode(), newline="")))
     assert len(rows) > 200 * len(TABLES)
     for row in rows:
         table = TABLES[int(row["table"])]

@@ -8,7 +8,7 @@ import pytest
 
 from tests.controller_code.conftest import ToChange
 from tests.controller_code.test_passage_code import BOOK, SOURCES, exported
-from tuning_tables.passages.golden_passages import few_golden_passages, golden_passages
+from tuning_tables.self_test_size import FULL, SMALL
 
 MUTANTS = (
     ("0xEDB88320u", "0xEDB88321u", 1),
@@ -92,7 +92,7 @@ MUTANTS = (
 def test_the_self_test_finds_a_wrong_controller(
     before: str, after: str, fault: int, tmp_path: Path, to_change: ToChange
 ) -> None:
-    export = to_change([exported(BOOK, ask) for ask in (golden_passages, few_golden_passages)], SOURCES[0])
+    export = to_change([exported(BOOK, size) for size in (FULL, SMALL)], SOURCES[0])
     # Questions that come first may be too few for it in the small one.
     for said in export.self_tests(before, after, tmp_path):
         assert said.returncode == 0

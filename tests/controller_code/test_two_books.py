@@ -17,9 +17,10 @@ from scripts.studies.in_the_loop.held_words import table_words
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimating_book, park_book, sample_book
 from tuning_tables.c_source import c_files
-from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.self_test_size import FULL, SMALL
-from tuning_tables.st_source import st_files, st_unit_files
+from tuning_tables.st_source import line_export, st_files
 from tuning_tables.table_book import TableBook
 
 POSITIONS = {"bunch": estimating_book(), "park": park_book()}
@@ -98,13 +99,18 @@ def test_every_name_that_the_linker_sees_has_the_prefix(compiled: Callable[[bool
         assert all(each.startswith(f"{name}_") for each in names)
 
 
-@pytest.mark.parametrize("export", [c_files, st_files, st_unit_files])
+def split_files(book: TableBook, prefix: ExportPrefix = RETARDER) -> Mapping[str, bytes]:
+    """Structured Text with a file each unit."""
+    return unit_files(line_export(book, prefix))
+
+
+@pytest.mark.parametrize("export", [c_files, st_files, split_files])
 def test_the_default_prefix_changes_no_byte(export: Callable[..., Mapping[str, bytes]]) -> None:
     for book in POSITIONS.values():
         assert export(book, ExportPrefix("retarder")) == export(book)
 
 
-@pytest.mark.parametrize("export", [c_files, st_files, st_unit_files])
+@pytest.mark.parametrize("export", [c_files, st_files, split_files])
 def test_every_name_has_the_prefix_and_no_comment_loses_an_id(export: Callable[..., Mapping[str, bytes]]) -> None:
     book = sample_book()
     odd = replace(book.tables[0], id="RETARDER_LOAD retarder_x")

@@ -121,7 +121,7 @@ def test_the_same_question_gives_the_same_bytes_and_options_count(app: typer.Typ
 def test_what_is_only_asked_is_written(app: typer.Typer, tmp_path: Path) -> None:
     (tmp_path / "c.toml").write_text("[output]\nplots = false\nreport = false\n", encoding="utf-8")
     assert run(app, str(tmp_path / "c.toml"), "-o", str(tmp_path / "out"))[0] == 0
-    assert set(summary(tmp_path / "out")["files"]) == {"coins.txt", "sheets/shares.csv"}
+    assert set(summary(tmp_path / "out")["files"]) == {"coins.txt", "configuration.toml", "sheets/shares.csv"}
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from synth.retarder.forms.code_options import CODE_NAMES
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
 from tests.frame.results import results_in
 from tests.system.conftest import Command
@@ -18,11 +19,12 @@ from tests.tuning_tables.aim.made_tables import category_table, measured_table, 
 from tuning_tables.aim import AimTable, ParkPosition
 from tuning_tables.aim.aim_tables import AimTables
 from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.aim.golden_aims import few_golden_aims
-from tuning_tables.aim.st_source import aim_st_files, aim_st_unit_files
+from tuning_tables.aim.st_source import aim_export, aim_st_files
 from tuning_tables.csv_file import to_csv
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.json_file import to_json, write_json
+from tuning_tables.plc_forms.iec import unit_files
+from tuning_tables.self_test_size import SMALL
 
 TABLES = (category_table(1.0), measured_table(), category_table(1.5, 4, "СТ"))
 IN_ORDER = AimTables(TABLES)
@@ -82,10 +84,10 @@ def test_inspect_and_verify_need_nothing_heavy(aims: Path) -> None:
     [
         (("--format", "c"), lambda: aim_c_files(IN_ORDER)),
         (("--format", "c", "--prefix", "Park", "--self-test", "small"),
-         lambda: aim_c_files(IN_ORDER, ExportPrefix("Park"), few_golden_aims)),
+         lambda: aim_c_files(IN_ORDER, ExportPrefix("Park"), SMALL)),
         (("--format", "st"), lambda: aim_st_files(IN_ORDER)),
         (("--format", "st", "--split", "--self-test", "small"),
-         lambda: aim_st_unit_files(IN_ORDER, RETARDER, few_golden_aims)),
+         lambda: unit_files(aim_export(IN_ORDER, RETARDER, SMALL))),
         (("--format", "json"), lambda: {f"{table.id}.json": to_json(table) for table in TABLES}),
         (("--format", "csv"), lambda: {f"{table.id}.csv": to_csv(table) for table in TABLES}),
     ],
@@ -106,17 +108,25 @@ def test_export_of_one_file(command: Command, aims: Path, tmp_path: Path) -> Non
 
 
 def test_verify_reads_what_export_writes(command: Command, aims: Path) -> None:
-    for form in ("c", "st"):
+    for form in CODE_NAMES:
         assert command("export", aims, "--format", form, "--prefix", "PARK", "-o", aims / form).code == 0
     assert command("export", aims, "--format", "csv", "-o", aims / "csv").code == 0
     for file in (aims / "csv").glob("*.csv"):
         file.rename(aims / "tables" / file.name)
     ran = command("verify", aims)
     assert (ran.code, ran.err) == (0, "")
-    assert ran.out.splitlines()[-1] == "3 tables, 9 files: nothing found"
+    assert ran.out.splitlines()[-1] == "3 tables, 12 files: nothing found"
     told = command("inspect", aims)
-    assert f"{aims / 'c' / 'park_aim_table.h'}: aim tables in C99; verify compares them" in told.out
-    assert f"{aims / 'st' / 'park_aim_table.st'}: aim tables in Structured Text" in told.out
+    named = (
+        ("c/park_aim_table.c", "C99"),
+        ("st/park_aim_table.st", "Structured Text"),
+        ("plcopen/park_aim_table.xml", "PLCopen XML"),
+        ("twincat/PARK_AIM_LOAD.TcPOU", "Structured Text for TwinCAT"),
+        ("scl/park_aim_table.scl", "SCL"),
+    )
+    code_lines = [line for line in told.out.splitlines() if "verify compares them" in line]
+    for line, (name, language) in zip(code_lines, named, strict=True):
+        assert line.startswith(f"{aims / name}: aim tables in {language}; verify compares them with those")
     assert command("inspect", aims / "c" / "park_aim_table.c").code == 0
     code = aims / "c" / "park_aim_table.c"
     code.write_text(code.read_text().replace("{1, 2, 3, 5, 8}", "{1, 2, 3, 5, 9}", 1))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-import tomllib
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -14,11 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.checker.plant import config_sha256
 from synth.frame.results_directory import results_directory
 from synth.retarder.configuration.config_file import parse_config
 from tests.frame.results import results_in
-from tests.system.conftest import CLASS, Command, changed
+from tests.system.conftest import CLASS, EPOCH, Command, changed
 from tuning_tables import from_json, read_book, read_json, to_csv, to_json, write_book
 from tuning_tables.canonical import canonical_json, document_checksum
 from tuning_tables.pass_log.log_files import read_logs
@@ -387,29 +385,39 @@ def test_export_for_the_tools_of_plc_engineers(command: Command, tuned: Path, tm
         assert form == "twincat" or told == names | {"park_configuration.toml"}
 
 
-def test_export_of_code_brings_the_configuration_where_it_is_at_hand(
-    command: Command, tuned: Path, tmp_path: Path
+def test_export_of_code_brings_the_configuration_that_tune_makes_the_same_tables_of(
+    command: Command, tuned: Path, two_classes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As an independent reader makes its hash, which is the one at the head of the code."""
-    table = tuned / "tables" / f"{ID}.json"
-    assert command("export", table, "--format", "c", "-o", tmp_path / "c").code == 0
-    config = tomllib.loads((tmp_path / "c" / "retarder_configuration.toml").read_text("utf-8"))
-    sha256 = config_sha256(config)
-    assert f"configuration {sha256}" in (tmp_path / "c" / "retarder_table.h").read_text("ascii")
-    assert sha256 == from_json(table.read_bytes()).generator.config_sha256
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+    assert command("export", tuned / "tables" / f"{ID}.json", "--format", "c", "-o", tmp_path / "c").code == 0
+    copy = tmp_path / "c" / "retarder_configuration.toml"
+    assert copy.read_bytes() == two_classes.read_bytes()
+    assert command("tune", copy, "-o", tmp_path / "again", "--workers", "1").code == 0
+    tables = sorted((tuned / "tables").iterdir())
+    assert len(tables) == 4
+    for file in (*tables, tuned / "book.h5", tuned / "c" / "retarder_table.c"):
+        assert (tmp_path / "again" / file.relative_to(tuned)).read_bytes() == file.read_bytes()
+
+
+def test_no_other_configuration_comes_with_an_export(command: Command, tuned: Path, tmp_path: Path) -> None:
+    """Only that of these tables, and only as it was kept; it may lie in the folder above."""
     alone = tmp_path / "alone" / "alone"
     alone.mkdir(parents=True)
-    shutil.copy(table, alone / "table.json")
-    assert command("export", alone / "table.json", "--format", "st", "-o", tmp_path / "st").code == 0
-    assert not (tmp_path / "st" / "retarder_configuration.toml").exists()
-    summary = (tuned / "summary.json").read_text("utf-8")
-    for text in (summary.replace('"degree":', '"degrees":'), "[]", "{", '{"format": "another"}'):
-        (alone / "summary.json").write_text(text, "utf-8")
+    shutil.copy(tuned / "tables" / f"{ID}.json", alone / "table.json")
+    kept, summary = (tuned / "configuration.toml").read_text("utf-8"), (tuned / "summary.json").read_text("utf-8")
+    sha256 = json.loads(summary)["generator"]["config_sha256"]
+
+    def is_exported(folder: Path, summary: str, config: str) -> bool:
+        (folder / "summary.json").write_text(summary, "utf-8")
+        (folder / "configuration.toml").write_text(config, "utf-8")
         assert command("export", alone / "table.json", "--format", "st", "-o", tmp_path / "st").code == 0
-        assert not (tmp_path / "st" / "retarder_configuration.toml").exists()
-    (alone.parent / "summary.json").write_text(summary, "utf-8")
-    assert command("export", alone / "table.json", "--format", "st", "-o", tmp_path / "st").code == 0
-    assert (tmp_path / "st" / "retarder_configuration.toml").exists()
+        (folder / "summary.json").unlink()
+        return (tmp_path / "st" / "retarder_configuration.toml").exists()
+
+    for text in (summary.replace(sha256, "0" * 64), "[]", "{", '{"format": "another"}'):
+        assert not is_exported(alone, text, kept)
+    assert not is_exported(alone, summary, f"{kept}# mine")
+    assert is_exported(alone.parent, summary, kept)
 
 
 def test_export_says_which_tables_a_controller_never_chooses(command: Command, tuned: Path, tmp_path: Path) -> None:

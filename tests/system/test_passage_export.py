@@ -19,9 +19,10 @@ from tuning_tables.csv_file import to_csv
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.json_file import to_json, write_json
 from tuning_tables.passages.c_source import passage_c_files
-from tuning_tables.passages.golden_passages import few_golden_passages
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_st_files, passage_st_unit_files
+from tuning_tables.passages.st_source import passage_export, passage_st_files
+from tuning_tables.plc_forms.iec import unit_files
+from tuning_tables.self_test_size import SMALL
 
 BOOK = PassageBook(passage_book().tables[:3])
 
@@ -40,10 +41,10 @@ def folder(tmp_path: Path) -> Path:
     [
         (("--format", "c"), lambda: passage_c_files(BOOK)),
         (("--format", "c", "--prefix", "Dumper", "--self-test", "small"),
-         lambda: passage_c_files(BOOK, ExportPrefix("Dumper"), few_golden_passages)),
+         lambda: passage_c_files(BOOK, ExportPrefix("Dumper"), SMALL)),
         (("--format", "st"), lambda: passage_st_files(BOOK)),
         (("--format", "st", "--split", "--self-test", "small"),
-         lambda: passage_st_unit_files(BOOK, RETARDER, few_golden_passages)),
+         lambda: unit_files(passage_export(BOOK, RETARDER, SMALL))),
         (("--format", "json"), lambda: {f"{table.id.replace(' ', '-')}.json": to_json(table)
                                         for table in BOOK.tables}),
         (("--format", "csv"), lambda: {f"{table.id.replace(' ', '-')}.csv": to_csv(table)
@@ -69,7 +70,7 @@ def test_export_of_one_table_needs_nothing_heavy(command: Command, folder: Path,
     alone = passage_c_files(PassageBook(BOOK.tables[:1]))
     assert (output / "retarder_passages.c").read_bytes() == alone["retarder_passages.c"]
     ran = command("inspect", output)
-    assert f"{output / 'retarder_passages.h'}: tables for point sensors in C99; their self-test tells" in ran.out
+    assert f"{output / 'retarder_passages.c'}: tables for point sensors in C99; verify compares them" in ran.out
     assert command("export", source, "--format", "st", "-o", tmp_path / "st").code == 0
     assert "tables for point sensors in Structured Text" in command("inspect", tmp_path / "st").out
 

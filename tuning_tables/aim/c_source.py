@@ -8,21 +8,22 @@ from typing import Final
 from tuning_tables.aim.aim_tables import AimTables
 from tuning_tables.aim.golden_aims import GoldenAims, golden_aims
 from tuning_tables.c_source import c_texts
-from tuning_tables.controller_code.aim_code import Ask, aim_code
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
-
-KIND: Final = "AIM"
-"""The word that names of this kind begin with."""
+from tuning_tables.controller_code.aim_code import aim_code
+from tuning_tables.export_prefix import AIM, RETARDER, ExportPrefix
+from tuning_tables.self_test_size import FULL, SelfTestSize
 
 VECTORS_FILE: Final = "golden_aims.csv"
 
 
-def aim_c_files(aims: AimTables, prefix: ExportPrefix = RETARDER, ask: Ask = golden_aims) -> Mapping[str, bytes]:
+def aim_c_files(
+    aims: AimTables, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL
+) -> Mapping[str, bytes]:
     """The files of the export by name: four of C99, ASCII, and all golden aims as CSV for other languages.
 
-    `ask`: what the self-test asks. Equal sets give equal bytes.
+    Equal sets give equal bytes.
     """
-    return {**c_texts(aim_code(aims, ask), prefix.of_kind(KIND)), prefix.data_file(VECTORS_FILE): aims_csv(aims)}
+    texts = c_texts(aim_code(aims, self_test), prefix.of_kind(AIM))
+    return {**texts, prefix.data_file(VECTORS_FILE): aims_csv(aims)}
 
 
 def aims_csv(aims: AimTables) -> bytes:

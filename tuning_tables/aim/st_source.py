@@ -5,31 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tuning_tables.aim.aim_tables import AimTables
-from tuning_tables.aim.c_source import KIND
-from tuning_tables.aim.golden_aims import golden_aims
-from tuning_tables.controller_code.aim_code import Ask, aim_code
+from tuning_tables.controller_code.aim_code import aim_code
 from tuning_tables.controller_code.st_export import st_export
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_prefix import AIM, RETARDER, ExportPrefix
 from tuning_tables.language.st_unit import Export
-from tuning_tables.plc_forms.iec import part_files, unit_files
+from tuning_tables.plc_forms.iec import part_files
+from tuning_tables.self_test_size import FULL, SelfTestSize
 
 
-def aim_export(aims: AimTables, prefix: ExportPrefix = RETARDER, ask: Ask = golden_aims) -> Export:
+def aim_export(aims: AimTables, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL) -> Export:
     """The tables with their blocks, and the self-test, to be laid out in any form.
 
     There are 490 tables at most, two for each number of a category.
     """
-    return st_export(aim_code(aims, ask), prefix.of_kind(KIND))
+    return st_export(aim_code(aims, self_test), prefix.of_kind(AIM))
 
 
-def aim_st_files(aims: AimTables, prefix: ExportPrefix = RETARDER, ask: Ask = golden_aims) -> Mapping[str, bytes]:
+def aim_st_files(
+    aims: AimTables, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL
+) -> Mapping[str, bytes]:
     """The files of the export by name, ASCII with LF: the tables with their blocks, and the self-test.
 
     Equal sets give equal bytes.
     """
-    return part_files(aim_export(aims, prefix, ask))
-
-
-def aim_st_unit_files(aims: AimTables, prefix: ExportPrefix = RETARDER, ask: Ask = golden_aims) -> Mapping[str, bytes]:
-    """The same units, a file each; by their names in the order in which they need each other. As `aim_st_files`."""
-    return unit_files(aim_export(aims, prefix, ask))
+    return part_files(aim_export(aims, prefix, self_test))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import Final, TypeAlias
+from collections.abc import Iterator, Mapping
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -17,9 +17,7 @@ from tuning_tables.controller_code.odd_aims import odd_aims
 from tuning_tables.language.records import SizedRecord, record_of
 from tuning_tables.programs.aim_speed import exit_speed
 from tuning_tables.programs.aim_table import AIM_GRID, Tables, select
-
-Ask: TypeAlias = Callable[[AimTable], GoldenAims]
-"""What a self-test asks of a table."""
+from tuning_tables.self_test_size import SelfTestSize
 
 SELECT: Final = Rule(select, "select")
 EXIT_SPEED: Final = Rule(exit_speed, "exit_speed", "-1.0f")
@@ -30,7 +28,7 @@ HEAD: Final = (
 )
 
 
-def aim_code(aims: AimTables, ask: Ask) -> ControllerCode:
+def aim_code(aims: AimTables, self_test: SelfTestSize) -> ControllerCode:
     """The export of a set; its names begin with AIM, which `ExportPrefix.of_kind` sees to."""
     room = room_of(aims)
     record = AIM_GRID.sized(room)
@@ -48,7 +46,7 @@ def aim_code(aims: AimTables, ask: Ask) -> ControllerCode:
         rules=(SELECT, EXIT_SPEED),
         chooses=(),
         questions=(
-            Questions("aims", (EXIT_SPEED,), aim_rows([ask(table) for table in aims.tables])),
+            Questions("aims", (EXIT_SPEED,), aim_rows([self_test.aims(table) for table in aims.tables])),
             Questions("selections", (SELECT,), selection_rows(aims)),
         ),
         commands=(),

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Final, TypeAlias
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,6 @@ from tuning_tables.controller_code.code import (
 )
 from tuning_tables.controller_code.odd_passages import odd_passages
 from tuning_tables.language.records import SizedRecord, record_of
-from tuning_tables.passages.golden_passages import GoldenPassages
 from tuning_tables.passages.golden_selections import golden_selections
 from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_book import PassageBook
@@ -31,9 +30,7 @@ from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
 from tuning_tables.programs.choose import Tables, choose
 from tuning_tables.programs.passage_table import HELD_PASSAGES
 from tuning_tables.programs.tracker import TRACKER, begin_cut, believed_passage
-
-Ask: TypeAlias = Callable[[PassageTable], GoldenPassages]
-"""What a self-test asks of a table."""
+from tuning_tables.self_test_size import SelfTestSize
 
 BEGIN_CUT: Final = Rule(begin_cut, "begin_cut")
 AT_PULSE: Final = Rule(at_pulse, "at_pulse", "stage")
@@ -52,12 +49,12 @@ HEAD: Final = (
 )
 
 
-def passage_code(book: PassageBook, ask: Ask) -> ControllerCode:
+def passage_code(book: PassageBook, self_test: SelfTestSize) -> ControllerCode:
     """The export of a book. Raises `InvalidTable` for a category without number."""
     room = room_of(book)
     record = HELD_PASSAGES.sized(room)
     held = tuple(HeldTable(table.id, held_values(table, record)) for table in book.tables)
-    golden = [ask(table) for table in book.tables]
+    golden = [self_test.passages(table) for table in book.tables]
     return ControllerCode(
         stem="passages",
         title="Controller tables of a car retarder with point sensors, and what a regulator does at a pair of pulses.",

@@ -8,19 +8,20 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.c_source import c_texts
-from tuning_tables.controller_code.passage_code import Ask, passage_code
+from tuning_tables.controller_code.passage_code import passage_code
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.passages.golden_passages import golden_passages
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.self_test_size import FULL, SelfTestSize
 
 
 def passage_c_files(
-    book: PassageBook, prefix: ExportPrefix = RETARDER, ask: Ask = golden_passages
+    book: PassageBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL
 ) -> Mapping[str, bytes]:
     """The files of the export by name: four of C99, ASCII, and all golden rows as CSV for other languages.
 
-    `ask`: what the self-test asks. Equal books give equal bytes. Raises `InvalidTable` for a category without number.
+    Equal books give equal bytes. Raises `InvalidTable` for a category without number.
     """
     golden = [golden_passages(table) for table in book.tables]
     rows = {
@@ -29,7 +30,7 @@ def passage_c_files(
         "golden_pulses.csv": [each.pulses for each in golden],
     }
     csv = {prefix.data_file(name): rows_csv(book.tables, each) for name, each in rows.items()}
-    return {**c_texts(passage_code(book, ask), prefix), **csv}
+    return {**c_texts(passage_code(book, self_test), prefix), **csv}
 
 
 def rows_csv(tables: Sequence[PassageTable], golden: Sequence[npt.NDArray[np.void]]) -> bytes:

@@ -7,14 +7,14 @@ from math import prod
 from typing import Final
 
 from tuning_tables.controller_code.code import ControllerCode
-from tuning_tables.controller_code.passage_code import Ask, passage_code
+from tuning_tables.controller_code.passage_code import passage_code
 from tuning_tables.controller_code.st_export import st_export
 from tuning_tables.errors import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.language.st_unit import Export
-from tuning_tables.passages.golden_passages import golden_passages
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.plc_forms.iec import part_files, unit_files
+from tuning_tables.plc_forms.iec import part_files
+from tuning_tables.self_test_size import FULL, SelfTestSize
 
 TABLE_FILE: Final = "retarder_passages.st"
 SELF_TEST_FILE: Final = "retarder_passages_self_test.st"
@@ -23,33 +23,26 @@ MOST_TABLES: Final = 500
 LARGEST_INT: Final = 32767
 
 
-def passage_export(book: PassageBook, prefix: ExportPrefix = RETARDER, ask: Ask = golden_passages) -> Export:
-    """The tables with their blocks, and the self-test, to be laid out in any form; `ask`: what the self-test asks.
+def passage_export(book: PassageBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL) -> Export:
+    """The tables with their blocks, and the self-test, to be laid out in any form.
 
     Raises `InvalidTable` for a category without number, and for what 16 bits do not count.
     """
-    return st_export(_exportable(book, ask), prefix)
+    return st_export(_exportable(book, self_test), prefix)
 
 
 def passage_st_files(
-    book: PassageBook, prefix: ExportPrefix = RETARDER, ask: Ask = golden_passages
+    book: PassageBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL
 ) -> Mapping[str, bytes]:
     """The files by name, ASCII with LF: the tables with their blocks, and the self-test. Equal books, equal bytes.
 
     Raises as `passage_export`.
     """
-    return part_files(passage_export(book, prefix, ask))
+    return part_files(passage_export(book, prefix, self_test))
 
 
-def passage_st_unit_files(
-    book: PassageBook, prefix: ExportPrefix = RETARDER, ask: Ask = golden_passages
-) -> Mapping[str, bytes]:
-    """The same units, a file each; by their names in the order in which they need each other. Raises as above."""
-    return unit_files(passage_export(book, prefix, ask))
-
-
-def _exportable(book: PassageBook, ask: Ask) -> ControllerCode:
-    code = passage_code(book, ask)
+def _exportable(book: PassageBook, self_test: SelfTestSize) -> ControllerCode:
+    code = passage_code(book, self_test)
     speeds = prod(code.room[axis] for axis in ("passages", "stages", "thresholds"))
     if len(book.tables) > MOST_TABLES or speeds > LARGEST_INT:
         raise InvalidTable(

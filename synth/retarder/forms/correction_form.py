@@ -10,14 +10,14 @@ from typing import Final
 from synth.frame.input_error import InputError
 from synth.retarder.forms.code_options import CodeOptions
 from synth.retarder.forms.table_forms import Files
-from tuning_tables import ControllerTable
+from tuning_tables import AnyTable, ControllerTable
 from tuning_tables.correction import Correction
 
 EXIT_READING_STD_M_S: Final = 0.05
 """Of a measured exit speed: one reading of the library's Doppler radar; engineering judgement for any other sensor."""
 
 
-def correction_files(form: str, tables: Sequence[ControllerTable], options: CodeOptions) -> Files:
+def correction_files(form: str, tables: Sequence[AnyTable], options: CodeOptions) -> Files:
     """The code in `form` of a correction up to `options.correction_m_s`; no file where none is asked for.
 
     The spread of exits is the median of what the tables predict of theirs, with that of a reading. `InputError` without
@@ -25,11 +25,12 @@ def correction_files(form: str, tables: Sequence[ControllerTable], options: Code
     """
     if options.correction_m_s is None:
         return {}
-    if not tables:
+    with_lines = [table for table in tables if isinstance(table, ControllerTable)]
+    if not with_lines:
         raise InputError(
             "--correction is for tables with lines, and these are aim tables or tables for point sensors; leave it out"
         )
-    correction = correction_of(tables, options.correction_m_s)
+    correction = correction_of(with_lines, options.correction_m_s)
     if form == "c":
         from tuning_tables.c_correction import correction_c_files
 

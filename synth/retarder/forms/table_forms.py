@@ -1,51 +1,70 @@
-"""The forms that tables are exported in: for each the files, by name, with their bytes."""
+"""The forms that tables of any kind are exported in: for each the files, by name, with their bytes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import TypeVar
+from typing import Any, TypeAlias
 
 from synth.frame.input_error import InputError
 from synth.retarder.forms.code_options import PLAIN, PLC_NAMES, CodeOptions
 from synth.retarder.forms.table_file import file_stem
-from tuning_tables import ControllerTable, to_csv, to_json
+from tuning_tables import AnyTable, TableBook, to_csv, to_json
 from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.aim.aim_tables import AimTables
+from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 
-_Table = TypeVar("_Table", ControllerTable, AimTable, PassageTable)
-Files = Mapping[str, bytes]
-Form = Callable[[Sequence[ControllerTable], CodeOptions], Files]
+Files: TypeAlias = Mapping[str, bytes]
+Form: TypeAlias = Callable[[Sequence[AnyTable], CodeOptions], Files]
+"""Of one table or more, all of one kind."""
 
 
-def json_form(tables: Sequence[_Table], _options: CodeOptions = PLAIN) -> Files:
+def json_form(tables: Sequence[AnyTable], _options: CodeOptions = PLAIN) -> Files:
     """One JSON file a table."""
     return one_each(tables, to_json, ".json")
 
 
-def csv_form(tables: Sequence[_Table], _options: CodeOptions = PLAIN) -> Files:
+def csv_form(tables: Sequence[AnyTable], _options: CodeOptions = PLAIN) -> Files:
     """One CSV file a table."""
     return one_each(tables, to_csv, ".csv")
 
 
-def c_form(tables: Sequence[ControllerTable], options: CodeOptions = PLAIN) -> Files:
-    """C99 source of all tables together, self-test and golden vectors; `InvalidTable` if they make no book."""
-    from tuning_tables.c_source import c_files
-    from tuning_tables.table_book import TableBook
+def c_form(tables: Sequence[AnyTable], options: CodeOptions = PLAIN) -> Files:
+    """C99 source of all tables together, self-test and golden answers. Raises as `bound`."""
+    match bound(tables):
+        case AimTables() as aims:
+            from tuning_tables.aim.c_source import aim_c_files
 
-    return c_files(TableBook(tuple(tables)), options.prefix, options.self_test)
+            return aim_c_files(aims, options.prefix, options.self_test)
+        case PassageBook() as points:
+            from tuning_tables.passages.c_source import passage_c_files
+
+            return passage_c_files(points, options.prefix, options.self_test)
+        case TableBook() as lines:
+            from tuning_tables.c_source import c_files
+
+            return c_files(lines, options.prefix, options.self_test)
 
 
-def plc_form(name: str, tables: Sequence[ControllerTable], options: CodeOptions = PLAIN) -> Files:
-    """Structured Text of all tables together and its self-test, in a form of `PLC_FORMS`.
-
-    `InvalidTable` if they make no book.
-    """
+def plc_form(name: str, tables: Sequence[AnyTable], options: CodeOptions = PLAIN) -> Files:
+    """Structured Text of all tables together and its self-test, in a form of `PLC_FORMS`. Raises as `bound`."""
     from synth.retarder.forms.plc_forms import PLC_FORMS
-    from tuning_tables.st_source import line_export
-    from tuning_tables.table_book import TableBook
 
-    return PLC_FORMS[name].files(line_export(TableBook(tuple(tables)), options.prefix, options.self_test), options)
+    match bound(tables):
+        case AimTables() as aims:
+            from tuning_tables.aim.st_source import aim_export
+
+            export = aim_export(aims, options.prefix, options.self_test)
+        case PassageBook() as points:
+            from tuning_tables.passages.st_source import passage_export
+
+            export = passage_export(points, options.prefix, options.self_test)
+        case TableBook() as lines:
+            from tuning_tables.st_source import line_export
+
+            export = line_export(lines, options.prefix, options.self_test)
+    return PLC_FORMS[name].files(export, options)
 
 
 FORMS: Mapping[str, Form] = {
@@ -56,7 +75,20 @@ FORMS: Mapping[str, Form] = {
 }
 
 
-def one_each(tables: Sequence[_Table], write: Callable[[_Table], bytes], suffix: str) -> Files:
+def bound(tables: Sequence[Any]) -> TableBook | PassageBook | AimTables:
+    """Tables of one kind together, as controllers hold them; `InvalidTable` if they do not go together.
+
+    Aim tables stand by category, that by category alone first, whatever their files are called.
+    """
+    match tables[0]:
+        case AimTable():
+            return AimTables(tuple(sorted(tables, key=lambda table: (table.category.number, table.is_measured))))
+        case PassageTable():
+            return PassageBook(tuple(tables))
+    return TableBook(tuple(tables))
+
+
+def one_each(tables: Sequence[AnyTable], write: Callable[[AnyTable], bytes], suffix: str) -> Files:
     """A file a table, called by its id; `InputError` if two would have one name."""
     files: dict[str, bytes] = {}
     for table in tables:

@@ -6,13 +6,10 @@ from dataclasses import dataclass
 
 from synth.frame.exhibits import File
 from synth.retarder.acceptance import CaseVerdict
+from synth.retarder.forms.table_forms import c_form, csv_form, plc_form
 from synth.retarder.sensors.sensor_acceptance import judged
 from synth.retarder.sensors.sensor_tune import SensorBook
 from tuning_tables import InvalidTable
-from tuning_tables.csv_file import to_csv
-from tuning_tables.passages.c_source import passage_c_files
-from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_st_files
 
 
 @dataclass(frozen=True)
@@ -34,12 +31,11 @@ def found_passages(book: SensorBook) -> FoundPassages:
     More tables than 16 bits count are no Structured Text. `InvalidTable` where they make no book.
     """
     tables = [case.table for case in book.cases]
-    bound = PassageBook(tuple(tables))
-    files, no_st = {f"c/{name}": content for name, content in passage_c_files(bound).items()}, ""
+    files, no_st = {f"c/{name}": content for name, content in c_form(tables).items()}, ""
     try:
-        files |= {f"st/{name}": content for name, content in passage_st_files(bound).items()}
+        files |= {f"st/{name}": content for name, content in plc_form("st", tables).items()}
     except InvalidTable as fault:
         no_st = str(fault)
     if book.config.output.csv:
-        files |= {f"tables/{table.id}.csv": to_csv(table) for table in tables}
+        files |= {f"tables/{name}": content for name, content in csv_form(tables).items()}
     return FoundPassages(book, judged(book), tuple(File(*each) for each in files.items()), no_st)

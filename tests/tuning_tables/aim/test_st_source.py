@@ -18,9 +18,11 @@ from tests.tuning_tables.st.storage import Fault, Frame
 from tests.tuning_tables.st.syntax import faults, parse, walk
 from tests.tuning_tables.st.test_syntax import KEYWORDS
 from tuning_tables.aim import AimAxes, AimCategory, AimTable, AimTables
-from tuning_tables.aim.golden_aims import few_golden_aims, golden_aims, golden_selections
-from tuning_tables.aim.st_source import aim_st_files, aim_st_unit_files
+from tuning_tables.aim.golden_aims import golden_selections
+from tuning_tables.aim.st_source import aim_export, aim_st_files
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.plc_forms.iec import unit_files
+from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
 QUESTIONS = 200_000
 AIM_FILE, SELF_TEST_FILE = "aim_table.st", "aim_self_test.st"
@@ -99,8 +101,8 @@ def run_all(
 @pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
 def test_nothing_is_wrong_with_the_export(compiler: Compiler) -> None:
     for aims in (small_set(), AimTables(sample_set().tables[:8])):
-        for ask in (golden_aims, few_golden_aims):
-            assert run_all(aim_st_files(aims, RETARDER, ask), 2 * len(aims.tables) + 2, compiler=compiler) == SOUND
+        for size in (FULL, SMALL):
+            assert run_all(aim_st_files(aims, RETARDER, size), 2 * len(aims.tables) + 2, compiler=compiler) == SOUND
 
 
 def test_it_takes_two_calls_a_table_and_two_and_can_be_repeated() -> None:
@@ -131,10 +133,10 @@ def another(literal: str) -> str:
     return f"{np.nextafter(np.float32(literal), np.float32(np.inf)):.9E}" if float(literal) else "1.0E-01"
 
 
-@pytest.mark.parametrize("ask", [golden_aims, few_golden_aims])
-def test_every_changed_constant_is_found(ask: Callable[..., object]) -> None:
+@pytest.mark.parametrize("size", [FULL, SMALL], ids=["full", "small"])
+def test_every_changed_constant_is_found(size: SelfTestSize) -> None:
     aims = AimTables((small_table(False), small_table(True)))
-    files = aim_st_files(aims, RETARDER, ask)  # type: ignore[arg-type]  # one of the two
+    files = aim_st_files(aims, RETARDER, size)
     spans = list(constants_in(files[AIM_FILE].decode("ascii")))
     # Numbers of both tables, the part of each, axes and speeds with room for both, and what the choice has of them.
     assert len(spans) == 2 * (9 + 1 + (2 + 3 + 2 + 12) + 2)
@@ -222,16 +224,16 @@ def test_the_largest_table_is_exported() -> None:
     axes = AimAxes(np.arange(1, 21), np.arange(1.0, 112.0), np.arange(9.0))
     speeds = np.broadcast_to(np.linspace(0.5, 7.0, 111)[:, None], axes.shape).copy()
     table = replace(measured_table(), axes=axes, exit_speed_m_s=speeds, reported=reported_of(speeds))
-    program = Program(b"".join(aim_st_files(AimTables((table,)), RETARDER, few_golden_aims).values()))
+    program = Program(b"".join(aim_st_files(AimTables((table,)), RETARDER, SMALL).values()))
     assert "AIM_SELF_TEST" in program.blocks
     assert table.held.speed_m_s.size < 32767  # what an INT counts
-    load = aim_st_files(AimTables((table,)), RETARDER, few_golden_aims)[AIM_FILE].decode("ascii")
+    load = aim_st_files(AimTables((table,)), RETARDER, SMALL)[AIM_FILE].decode("ascii")
     assert max(int(each) for each in re.findall(r"ARRAY\[0\.\.(\d+)\] OF \w+ :=", load)) < 999
 
 
 def test_units_in_files_of_their_own_are_the_same_text() -> None:
     aims, prefix = small_set(), ExportPrefix("Park_2")
-    whole, units = aim_st_files(aims, prefix), aim_st_unit_files(aims, prefix)
+    whole, units = aim_st_files(aims, prefix), unit_files(aim_export(aims, prefix))
     assert list(whole) == ["park_2_aim_table.st", "park_2_aim_self_test.st"]
     assert [name.partition("_PARK_2_AIM_")[2] for name in units][:4] == [
         "TABLE.st",

@@ -14,12 +14,10 @@ from tests.tuning_tables.st.conftest import oddly_named_book
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.exported_forms import MOST_CALLS, default_book
 from tuning_tables.aim import AimTables
-from tuning_tables.aim.golden_aims import few_golden_aims
 from tuning_tables.aim.st_source import aim_export
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.language.st_unit import Export
-from tuning_tables.passages.golden_passages import few_golden_passages
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.st_source import passage_export
 from tuning_tables.self_test_size import SMALL
@@ -42,15 +40,15 @@ def _named(book: TableBook, *ids: str) -> TableBook:
 
 def _passages(prefix: ExportPrefix) -> Export:
     tables = (passage_book().tables[0], passage_book().tables[5])
-    return passage_export(PassageBook(tables), prefix, few_golden_passages)
+    return passage_export(PassageBook(tables), prefix, SMALL)
 
 
 def _every_axle(prefix: ExportPrefix) -> Export:
-    return passage_export(PassageBook(every_axle_book().tables[:1]), prefix, few_golden_passages)
+    return passage_export(PassageBook(every_axle_book().tables[:1]), prefix, SMALL)
 
 
 def _aims(prefix: ExportPrefix) -> Export:
-    return aim_export(AimTables((measured_table(), category_table(1.5, 4, "СТ"))), prefix, few_golden_aims)
+    return aim_export(AimTables((measured_table(), category_table(1.5, 4, "СТ"))), prefix, SMALL)
 
 
 KINDS: Final[Mapping[str, Callable[[ExportPrefix], Export]]] = {

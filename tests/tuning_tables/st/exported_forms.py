@@ -19,16 +19,15 @@ from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
 from tuning_tables import Decisions, read_json
 from tuning_tables.aim import AimAxes, AimTable, AimTables
-from tuning_tables.aim.golden_aims import few_golden_aims
-from tuning_tables.aim.st_source import aim_st_files, aim_st_unit_files
+from tuning_tables.aim.st_source import aim_export, aim_st_files
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import ExportPrefix
-from tuning_tables.passages.golden_passages import few_golden_passages
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_st_files, passage_st_unit_files
+from tuning_tables.passages.st_source import passage_export, passage_st_files
+from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.self_test_size import FULL, SMALL
 from tuning_tables.st_correction import correction_st_files, correction_st_unit_files
-from tuning_tables.st_source import st_files, st_unit_files
+from tuning_tables.st_source import line_export, st_files
 from tuning_tables.table_book import TableBook
 
 Files = Mapping[str, bytes]
@@ -100,7 +99,7 @@ def _line_forms() -> tuple[Form, ...]:
         Form("at any time without gauge", lambda: st_files(_timed_book(), self_test=FULL)),
         Form("slopes", lambda: st_files(_at_odd_pressures(_slopes(*pair)), self_test=FULL)),
         Form("slopes small", lambda: st_files(_slopes("shadow-1.5", "odd"), self_test=SMALL)),
-        Form("split files", lambda: st_unit_files(_slopes("constant", "shadow-1.5"), self_test=SMALL)),
+        Form("split files", lambda: unit_files(line_export(_slopes("constant", "shadow-1.5"), self_test=SMALL))),
     )
 
 
@@ -129,12 +128,12 @@ def _timed_book() -> TableBook:
 
 
 def _passage_forms() -> tuple[Form, ...]:
-    name, few = "RETARDER_PASSAGES_SELF_TEST", few_golden_passages
+    name = "RETARDER_PASSAGES_SELF_TEST"
     return (
-        Form("point sensors", lambda: passage_st_files(_some(passage_book(), 0, 5), ask=few), name),
-        Form("one sensor, two stages", lambda: passage_st_files(_one_passage(), ask=few), name),
-        Form("every axle", lambda: passage_st_files(_some(every_axle_book(), 0), ask=few), name),
-        Form("split passages", lambda: passage_st_unit_files(_some(passage_book(), 3), ask=few), name),
+        Form("point sensors", lambda: passage_st_files(_some(passage_book(), 0, 5), self_test=SMALL), name),
+        Form("one sensor, two stages", lambda: passage_st_files(_one_passage(), self_test=SMALL), name),
+        Form("every axle", lambda: passage_st_files(_some(every_axle_book(), 0), self_test=SMALL), name),
+        Form("split passages", lambda: unit_files(passage_export(_some(passage_book(), 3), self_test=SMALL)), name),
     )
 
 
@@ -147,12 +146,16 @@ def _one_passage() -> PassageBook:
 
 
 def _aim_forms() -> tuple[Form, ...]:
-    name, few = "AIM_SELF_TEST", few_golden_aims
+    name = "AIM_SELF_TEST"
     return (
-        Form("aim table by category", lambda: aim_st_files(AimTables((category_table(),)), ask=few), name),
-        Form("aim table measured", lambda: aim_st_files(_measured_aims(), ask=few), name),
-        Form("aim table of one node", lambda: aim_st_files(AimTables((_one_node(False),)), ask=few), name),
-        Form("measured, of one node", lambda: aim_st_unit_files(AimTables((_one_node(True),)), ask=few), name),
+        Form("aim table by category", lambda: aim_st_files(AimTables((category_table(),)), self_test=SMALL), name),
+        Form("aim table measured", lambda: aim_st_files(_measured_aims(), self_test=SMALL), name),
+        Form("aim table of one node", lambda: aim_st_files(AimTables((_one_node(False),)), self_test=SMALL), name),
+        Form(
+            "measured, of one node",
+            lambda: unit_files(aim_export(AimTables((_one_node(True),)), self_test=SMALL)),
+            name,
+        ),
     )
 
 

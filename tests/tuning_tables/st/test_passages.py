@@ -23,17 +23,18 @@ from tests.tuning_tables.st.test_syntax import KEYWORDS
 from tuning_tables import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.language.records import st_name
-from tuning_tables.passages.golden_passages import few_golden_passages, golden_passages
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
 from tuning_tables.passages.st_source import (
     SELF_TEST_FILE,
     TABLE_FILE,
+    passage_export,
     passage_st_files,
-    passage_st_unit_files,
 )
+from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.programs.tracker import TRACKER
+from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.st_correction import correction_st_files
 from tuning_tables.st_source import st_files
 
@@ -130,9 +131,9 @@ def self_tested(text: str) -> tuple[int, int, int]:
     return tuple(int(block[name].value) for name in ("FAILED", "FIRSTFAILED", "FIRSTFAULT"))  # type: ignore[return-value]
 
 
-@pytest.mark.parametrize("ask", [golden_passages, few_golden_passages], ids=["full", "small"])
-def test_nothing_is_wrong_with_the_export(ask) -> None:  # type: ignore[no-untyped-def]
-    files = passage_st_files(BOOK, RETARDER, ask)
+@pytest.mark.parametrize("size", [FULL, SMALL], ids=["full", "small"])
+def test_nothing_is_wrong_with_the_export(size: SelfTestSize) -> None:
+    files = passage_st_files(BOOK, RETARDER, size)
     assert self_tested(b"\n".join(files.values()).decode("ascii")) == (0, -1, -1)
 
 
@@ -164,7 +165,7 @@ CHANGES = (
 @cache
 def small_texts(table: PassageTable) -> Mapping[str, bytes]:
     """The export of one table with the small self-test, made once for all changes."""
-    return MappingProxyType(dict(passage_st_files(PassageBook((table,)), RETARDER, few_golden_passages)))
+    return MappingProxyType(dict(passage_st_files(PassageBook((table,)), RETARDER, SMALL)))
 
 
 @pytest.mark.parametrize(("before", "after"), CHANGES, ids=[f"{n}" for n in range(len(CHANGES))])
@@ -184,7 +185,7 @@ def test_the_page_tells_what_is_asked_here() -> None:
 
 def test_a_changed_constant_is_found() -> None:
     tables = (passage_table(places_m=(-4.0, 2.0, 9.0), stages=3, axles=(0.0, 1.85)),)
-    files = passage_st_files(PassageBook(tables), RETARDER, few_golden_passages)
+    files = passage_st_files(PassageBook(tables), RETARDER, SMALL)
     text, test = (files[name].decode("ascii") for name in (TABLE_FILE, SELF_TEST_FILE))
     begin = text.index("VAR CONSTANT", text.index("FUNCTION_BLOCK RETARDER_LOAD_PASSAGES"))
     literals = [part for part in text[begin:].split() if "E+" in part or "E-" in part][:20]
@@ -212,7 +213,7 @@ def test_the_text_is_plain_and_fits_beside_all_others() -> None:
 
 
 def test_a_file_each_unit_holds_the_same() -> None:
-    units = passage_st_unit_files(BOOK, RETARDER, few_golden_passages)
+    units = unit_files(passage_export(BOOK, RETARDER, SMALL))
     assert len(units) == 16 + 4 * len(TABLES) + 3
     assert self_tested(b"\n".join(units.values()).decode("ascii")) == (0, -1, -1)
 

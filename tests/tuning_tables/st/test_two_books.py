@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from typing import TypeAlias
 
 import pytest
 
@@ -13,19 +11,19 @@ from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.syntax import faults, parse
 from tests.tuning_tables.st.test_self_test import MOST_CALLS
 from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.plc_forms.iec import Layout, part_files, unit_files
 from tuning_tables.self_test_size import SMALL, SelfTestSize
-from tuning_tables.st_source import st_files, st_unit_files
-from tuning_tables.table_book import TableBook
-
-Export: TypeAlias = Callable[[TableBook, ExportPrefix, SelfTestSize], Mapping[str, bytes]]
+from tuning_tables.st_source import line_export, st_files
 
 POSITIONS = {"BUNCH": estimating_book(), "PARK": park_book()}
 
 
-def project(self_test: SelfTestSize, export: Export = st_files) -> bytes:
+def project(self_test: SelfTestSize, layout: Layout = part_files) -> bytes:
     """The files of both, one after the other."""
     return b"\n".join(
-        text for name, book in POSITIONS.items() for text in export(book, ExportPrefix(name), self_test).values()
+        text
+        for name, book in POSITIONS.items()
+        for text in layout(line_export(book, ExportPrefix(name), self_test)).values()
     )
 
 
@@ -58,7 +56,7 @@ def test_both_self_tests_find_nothing(text: bytes) -> None:
 
 def test_split_files_in_the_order_of_their_names_are_the_same_program() -> None:
     for name, book in POSITIONS.items():
-        whole, units = (export(book, ExportPrefix(name)) for export in (st_files, st_unit_files))
+        whole, units = (layout(line_export(book, ExportPrefix(name))) for layout in (part_files, unit_files))
         assert list(units) == sorted(units)
         assert len(units) > 15
         for file, unit in units.items():
@@ -67,7 +65,7 @@ def test_split_files_in_the_order_of_their_names_are_the_same_program() -> None:
         comments = rb"\(\* Self-test of .*?\*\)\n\n"
         joined = b"\n".join(whole.values())
         assert re.sub(comments, b"", joined, count=1, flags=re.DOTALL) == b"\n".join(units.values())
-    Program(project(SMALL, st_unit_files))
+    Program(project(SMALL, unit_files))
 
 
 def test_the_longest_names_stay_within_32_characters() -> None:

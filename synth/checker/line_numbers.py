@@ -1,54 +1,23 @@
-"""The controller code of tables with lines against the tables: the same members in C99 and in Structured Text."""
+"""What controller code holds of tables with lines: their numbers by member."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Final
 
-from synth.checker.category_constants import category_differences
-from synth.checker.code_records import (
-    Numbers,
-    c_members,
-    c_numbers,
-    c_records,
-    checksum_fault,
-    st_records,
-)
-from synth.checker.code_records import differences as record_differences
+from synth.checker.code_export import Due
+from synth.checker.code_records import Numbers
 from synth.checker.float32 import rounded
 from synth.checker.table_reading import Table
 
 OF_LINES: Final = ("targetms", "coefficient", "slope")
 """In these two tables of one family may differ."""
 
-Differences = Iterator[tuple[str, str]]
 
-
-def c_differences(source: str, header: str, tables: Sequence[Table]) -> Differences:
-    """(about, sentence) for each disagreement of `retarder_table.c`; `tables` in the order of the book, "" the code."""
-    members = c_members(header, "retarder_table")
-    blocks = c_records(source, members, "retarder_tables", "retarder_table_count")
-    numbers = {table.category: table.category_number or 0 for table in tables}
-    yield from (("", sentence) for sentence in category_differences("RETARDER", numbers, header))
-    if len(blocks) != len(tables):
-        yield "", f"it holds {len(blocks)} tables, but there are {len(tables)}"
-        return
-    for number, (block, table, due) in enumerate(zip(blocks, tables, held_of(tables), strict=True)):
-        fault = checksum_fault(number, block)
-        if fault is not None:
-            yield table.id, fault
-        yield from ((table.id, each) for each in record_differences(number, c_numbers(members, block), due))
-
-
-def st_differences(text: str, tables: Sequence[Table]) -> Differences:
-    """(about, sentence) for each disagreement of the Structured Text."""
-    records = st_records(text, "RETARDER_TABLE", "RETARDER_LOAD")
-    yield from (("", fault) for fault in records.faults)
-    if len(records.tables) != len(tables):
-        yield "", f"it holds {len(records.tables)} tables, but there are {len(tables)}"
-        return
-    for number, (numbers, table, due) in enumerate(zip(records.tables, tables, held_of(tables), strict=True)):
-        yield from ((table.id, each) for each in record_differences(number, numbers, due))
+def due(tables: Sequence[Table]) -> Due:
+    """What an export of these tables must hold, in their order."""
+    categories = {table.category: table.category_number or 0 for table in tables}
+    return Due([table.id for table in tables], held_of(tables), categories)
 
 
 def held_of(tables: Sequence[Table]) -> list[Numbers]:
