@@ -14,3 +14,8 @@ IS_LONG: Final = os.environ.get("RETARDER_SYNTH_TESTS") == "long"
 def sized(short: _T, long: _T) -> _T:
     """How many questions, passes or trains a test takes: `short`, or `long` where there is time."""
     return long if IS_LONG else short
+
+
+FEW, MANY = 40_000, 1_000_000
+QUESTIONS: Final = sized(FEW, MANY)
+"""Put to the rules of each kind of tables, in C as every compiler makes it, in Structured Text as every one runs it."""

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from scripts.studies.in_the_loop.agreement import Questions, Tracks, ask, decisions_of, differences, follow
-from scripts.studies.in_the_loop.builds import BUILDS, Build
+from scripts.studies.in_the_loop.builds import Build
 from scripts.studies.in_the_loop.controller_process import BuildError, build_controller
 from tests.controller_code.conftest import BOOKS, Tool
-from tests.effort import sized
+from tests.controller_code.ways import FEW_WAYS, WAYS
+from tests.effort import QUESTIONS, sized
 from tuning_tables import decide_for, speed_for
 from tuning_tables.estimator import begin
 from tuning_tables.table_book import Status, TableBook
@@ -20,15 +21,13 @@ EVERY_WAY = ("measured", "surfaces")
 """The book of which most of the code is left out, and the one of which all of it is compiled. The code of the others is
 between them, without one definition or another, so they are compiled in few ways."""
 
-FEW_WAYS = ("gcc -O2", "clang -O3 -mfma -ffp-contract=fast without -std=c99")
 PROVED = [
     pytest.param(book, build, id=f"{name}-{build}")
     for name, book in BOOKS.items()
-    for build in BUILDS
-    if name in EVERY_WAY or str(build) in FEW_WAYS
+    for build in (WAYS if name in EVERY_WAY else FEW_WAYS)
 ]
 
-READINGS, COMMANDS, SAMPLES = sized((100_000, 2_000, 50_000), (1_000_000, 20_000, 500_000))
+READINGS, COMMANDS, SAMPLES = QUESTIONS, QUESTIONS // 40, QUESTIONS // 2
 
 
 @pytest.fixture(scope="session")

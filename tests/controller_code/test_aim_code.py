@@ -12,11 +12,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from scripts.studies.in_the_loop.builds import BUILDS, Build
+from scripts.studies.in_the_loop.builds import Build
 from scripts.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
 from tests.controller_code.conftest import ToChange, Tool
 from tests.controller_code.sample_book import sample_book
 from tests.controller_code.test_export import FLOAT_H, PEDANTIC
+from tests.controller_code.ways import WAYS
+from tests.effort import QUESTIONS
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, random_table, reported_of
 from tuning_tables.aim import AimTables
@@ -28,7 +30,6 @@ from tuning_tables.controller_code.code import crc32_of, words_of
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
-QUESTIONS = 200_000
 SOURCES = ("aim_table.c", "aim_self_test.c")
 PROGRAM = r"""
 #include <stdio.h>
@@ -104,7 +105,7 @@ def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
     return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
 
 
-@pytest.mark.parametrize("build", BUILDS, ids=str)
+@pytest.mark.parametrize("build", WAYS, ids=str)
 def test_c_answers_as_python_to_the_last_bit(
     build: Build,
     aims: AimTables,
@@ -125,11 +126,11 @@ def test_c_answers_as_python_to_the_last_bit(
 
 def test_the_questions_reach_much(asked: npt.NDArray[np.void], right: npt.NDArray[np.float32]) -> None:
     assert 0.3 * QUESTIONS < np.count_nonzero(right > 0.0) < 0.8 * QUESTIONS
-    assert len(np.unique(right)) > 20_000
+    assert len(np.unique(right)) > 0.1 * QUESTIONS
     for name in ("distance", "resistance"):
-        assert np.count_nonzero(~np.isfinite(asked[name])) > 100
+        assert np.count_nonzero(~np.isfinite(asked[name])) > 0.0005 * QUESTIONS
     # One step of float32 in the distance changes the answer: it is near a node, or sharp.
-    assert np.count_nonzero(asked["cars"] < 1) > 1000
+    assert np.count_nonzero(asked["cars"] < 1) > 0.005 * QUESTIONS
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])

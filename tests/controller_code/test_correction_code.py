@@ -13,19 +13,20 @@ import numpy.typing as npt
 import pytest
 from numba import njit
 
-from scripts.studies.in_the_loop.builds import BUILDS, Build
+from scripts.studies.in_the_loop.builds import Build
 from scripts.studies.in_the_loop.controller_process import CONTRACT, compile_with
 from synth.kernels.compiled_rules import compiled_rule
 from tests.controller_code.conftest import ToChange, Tool
 from tests.controller_code.sample_book import sample_book
 from tests.controller_code.test_export import FLOAT_H, PEDANTIC
+from tests.controller_code.ways import WAYS
+from tests.effort import QUESTIONS
 from tuning_tables.c_correction import correction_c_files
 from tuning_tables.c_source import c_files
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.programs.correct import corrected_speed, learn_exit, usable_exit
 
-PASSES = 1_000_000
 SOURCES = ("retarder_correction.c", "retarder_correction_self_test.c")
 CORRECTION = Correction(0.15, 0.06)
 QUESTION = np.dtype([("state", "u4", 3), ("error", "u4"), ("speed", "u4"), ("credible", "i4"), ("pass", "i4", 6)])
@@ -64,7 +65,7 @@ int main(int count, char **arguments)
 @cache
 def asked() -> npt.NDArray[np.void]:
     """Likely states and exits, those at every bound, and one in ten of any bits."""
-    rng, n = np.random.default_rng(20261122), PASSES
+    rng, n = np.random.default_rng(20261122), QUESTIONS
     limit, reach, clip = map(float, CORRECTION.setting[2:5])
     found = np.empty(n, QUESTION)
 
@@ -104,7 +105,7 @@ def right() -> npt.NDArray[np.float32]:
             p = passes[i]
             answers[i, 4] = usable(p[0], p[1], p[2], p[3] != 0, p[4] != 0, p[5] != 0, errors[i])
 
-    found, answers = asked(), np.empty((PASSES, 5), np.float32)
+    found, answers = asked(), np.empty((QUESTIONS, 5), np.float32)
     states = np.ascontiguousarray(found["state"]).view(np.float32).copy()
     with np.errstate(invalid="ignore"):  # a signalling NaN is widened
         errors, speeds = (np.ascontiguousarray(found[name]).view(np.float32).astype(np.float64)
@@ -149,7 +150,7 @@ def test_python_and_its_compiled_text_agree() -> None:
         )
 
 
-@pytest.mark.parametrize("build", BUILDS, ids=str)
+@pytest.mark.parametrize("build", WAYS, ids=str)
 def test_c_learns_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
     for name in build.missing():
         tool(name)

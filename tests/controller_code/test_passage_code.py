@@ -15,13 +15,15 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from scripts.studies.in_the_loop.builds import BUILDS, Build
+from scripts.studies.in_the_loop.builds import Build
 from scripts.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
 from tests.controller_code.conftest import Tool
 from tests.controller_code.passage_tables import every_axle_book, odd_table, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, right
 from tests.controller_code.sample_book import sample_book
 from tests.controller_code.test_export import FLOAT_H, PEDANTIC
+from tests.controller_code.ways import WAYS
+from tests.effort import QUESTIONS
 from tuning_tables.c_correction import correction_c_files
 from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.code import crc32_of, words_of
@@ -34,7 +36,6 @@ from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.programs.at_pulse import wanted_stage
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
-QUESTIONS = 40_000
 SOURCES = ("retarder_passages.c", "retarder_passages_self_test.c")
 BOOK = passage_book()
 TABLES = BOOK.tables
@@ -143,7 +144,7 @@ def blocks(book: PassageBook) -> list[npt.NDArray[np.uint32]]:
     return [np.append(each, np.uint32(crc32_of(each))) for each in words]
 
 
-@pytest.mark.parametrize("build", BUILDS, ids=str)
+@pytest.mark.parametrize("build", WAYS, ids=str)
 def test_c_does_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
     for name in build.missing():
         tool(name)
@@ -260,11 +261,6 @@ def test_golden_stages_as_csv_are_answered_as_they_say() -> None:
         assert np.array_equal(np.float32(row["reading_m_s"]), v, equal_nan=True)
         assert wanted_stage(held_by(table), int(row["passage"]), int(row["stage"]), v) == int(row["wanted"])
         assert table.id == row["id"]
-
-
-def test_the_page_tells_what_is_asked_here() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "controllers.md").read_text("utf-8")
-    assert f"answer {QUESTIONS // 1000} 000 pairs alike" in page
 
 
 def test_a_table_and_a_tracker_take_what_the_page_says(tmp_path: Path, tool: Tool) -> None:

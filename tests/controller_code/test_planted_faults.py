@@ -12,6 +12,7 @@ from scripts.studies.in_the_loop.controller_process import sources_of
 from tests.controller_code.conftest import ToChange
 from tests.controller_code.planted_faults import planted_faults
 from tests.controller_code.sample_book import surface_book
+from tests.effort import sized
 from tuning_tables.table_book import TableBook
 
 PARTS = {"constants": ("#define LARGEST", "\nconst "), "rules": ("static uint32_t crc_of_byte", "")}
@@ -44,7 +45,6 @@ def rules_book() -> TableBook:
     return TableBook(tuple(tables[name] for name in wanted))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("part", PARTS)
 def test_the_self_test_finds_every_fault(part: str, tmp_path: Path, to_change: ToChange) -> None:
     export = to_change([sources_of(rules_book())], "retarder_table.c")
@@ -53,6 +53,8 @@ def test_the_self_test_finds_every_fault(part: str, tmp_path: Path, to_change: T
     at = text.index(begin)
     to = text.index(end, at) if end else len(text)
     faults = list(planted_faults(text[at:to]))
+    assert len(faults) > 10
+    faults = faults[:: sized(4, 1)]
 
     def self_test(number: int) -> str:
         folder = tmp_path / str(number)
@@ -67,5 +69,4 @@ def test_the_self_test_finds_every_fault(part: str, tmp_path: Path, to_change: T
         said = list(pool.map(self_test, range(len(faults))))
     sound = [what for (what, _), answer in zip(faults, said, strict=True) if answer == "fault 0 at 0"]
     assert [what for what in sound if not any(same in what for same in SAME)] == []
-    assert len(sound) < max(2, 0.2 * len(faults))
-    assert len(faults) > 10
+    assert len(sound) < max(3, 0.2 * len(faults))

@@ -160,6 +160,7 @@ def test_controllers_do_not_contradict_themselves() -> None:
     assert len(wrong.faults()) > 0
 
 
+@pytest.mark.long
 def test_trains_are_humped_alike_whatever_the_batch_and_the_plan_is_shared() -> None:
     """A failure after the plan: the group's trial is that of the trial by itself."""
     config = load_trial(None)

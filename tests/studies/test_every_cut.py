@@ -30,6 +30,9 @@ ORDINARY_SEED = 8
 
 ORDINARY = [random_case(ORDINARY_SEED, number) for number in range(12)]
 
+LONGEST = frozenset((2, 4, 7))
+"""Of these the numbers of the longest pass of a bunch, a dumper and a park position."""
+
 
 def length_m(case: RandomCase) -> float:
     ((_, plant),) = parse_config(case.text(1000, 1), "a case").plants()
@@ -192,7 +195,7 @@ def test_what_another_software_has_found_is_not_taken(
     assert KeptCases(file).outcome_of("a", lambda: other) == other
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_figures_do_not_depend_on_how_a_run_is_cut() -> None:
     study = Study("every-cut", "", 1.0, "", "scripts.studies.every_cut.study")
     together = METHOD.run(replace(METHOD.smallest, workers=3), silent)
@@ -201,8 +204,17 @@ def test_figures_do_not_depend_on_how_a_run_is_cut() -> None:
     assert alone.cases == together.cases[1:2]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", ORDINARY, ids=lambda case: f"{case.number}-{case.position}-{case.cars}-{case.car}")
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(
+            case,
+            marks=() if case.number in LONGEST else pytest.mark.long,
+            id=f"{case.number}-{case.position}-{case.cars}-{case.car}",
+        )
+        for case in ORDINARY
+    ],
+)
 @one_blas_thread()
 def test_the_table_of_an_ordinary_cut_is_no_worse_than_a_rule(case: RandomCase) -> None:
     found = measured(case, parse_config(case.text(2000, 1), case.name))

@@ -1,4 +1,7 @@
-"""Every study runs, in its smallest form, and what it leaves can be read back and drawn."""
+"""Every study runs, in its smallest form, and what it leaves can be read back and drawn.
+
+Those that take longer run with the long tests; of them the kept result is drawn.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +11,18 @@ from typing import Any
 
 import pytest
 
+from scripts.studies.documents import result_of
 from scripts.studies.registry import STUDIES
-from scripts.studies.result import read_result, run_study
+from scripts.studies.result import Result, read_result, run_study
 from scripts.studies.study import Study
+
+ROOT = Path(__file__).parents[2]
+QUICK = frozenset(
+    ("aim-tables", "aimed-braking", "any-time", "benchmark", "book", "controller-agreement", "correction", "degree",
+     "estimator", "estimator-reserve", "estimator-wrong", "friction-known", "interpolation", "point-sensors",
+     "robustness", "rooms")
+)  # fmt: skip
+"""Studies whose smallest form takes less than ten seconds."""
 
 COARSE = """\
 [targets]
@@ -36,8 +48,10 @@ def smallest(study: Study, folder: Path) -> Any:
     return replace(options, config=folder / "coarse.toml")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
+@pytest.mark.parametrize(
+    "study",
+    [pytest.param(each, marks=() if each.name in QUICK else pytest.mark.long, id=each.name) for each in STUDIES],
+)
 def test_a_study_runs_and_its_result_reads_back(study: Study, tmp_path: Path) -> None:
     told: list[str] = []
     result = run_study(study, smallest(study, tmp_path), told.append)
@@ -54,18 +68,29 @@ def test_a_study_runs_and_its_result_reads_back(study: Study, tmp_path: Path) ->
     assert again.json() == result.json()
     assert again.findings.tables() == tables
 
-    for name, figure in again.figures().items():
-        assert name.startswith(study.name)
-        figure.savefig(tmp_path / f"{name}.png")
-        assert (tmp_path / f"{name}.png").stat().st_size > 5000
+    assert_drawn(again, tmp_path)
+
+
+def assert_drawn(result: Result, folder: Path) -> None:
+    """All figures of a result are pictures of some content."""
+    for name, figure in result.figures().items():
+        assert name.startswith(result.study.name)
+        figure.savefig(folder / f"{name}.png")
+        assert (folder / f"{name}.png").stat().st_size > 5000
+
+
+@pytest.mark.parametrize("name", [each.name for each in STUDIES if each.pictures and each.name not in QUICK])
+def test_a_kept_result_is_drawn(name: str, tmp_path: Path) -> None:
+    assert_drawn(result_of(ROOT, name), tmp_path)
 
 
 def test_names_are_sorted_and_questions_are_sentences() -> None:
     names = [study.name for study in STUDIES]
     assert names == sorted(set(names))
+    assert set(names) >= QUICK
     assert [study.name for study in STUDIES if not study.question.endswith("?") or study.seconds <= 0.0] == []
 
 
 def test_pages_of_studies_are_there() -> None:
-    docs = Path(__file__).parents[2] / "docs"
+    docs = ROOT / "docs"
     assert [study.page for study in STUDIES if study.page and not (docs / study.page.partition("#")[0]).is_file()] == []

@@ -74,6 +74,7 @@ def test_errors_of_normal_positions_are_found_again(trial: HumpTrial) -> None:
         assert each.longer_than_even.value == pytest.approx(0.08)
 
 
+@pytest.mark.long
 def test_families_are_run_on_common_programs_and_every_comparison_has_its_curves(loops: ClosedLoops) -> None:
     families = loops.families()
     normal = normal_families(loops.base, STDS_M_S)

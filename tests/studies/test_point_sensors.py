@@ -53,6 +53,7 @@ def made(site: Site) -> tuple[PassageChains, TunedPassages, SensorTable]:
 # ------------------------------------------------------------------------------------------------ the bound
 
 
+@pytest.mark.long
 def test_the_bound_begins_with_the_prediction_of_the_table(
     site: Site, made: tuple[PassageChains, TunedPassages, SensorTable]
 ) -> None:

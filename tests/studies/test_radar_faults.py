@@ -141,6 +141,7 @@ def test_alarms_are_those_of_the_fault(plant: Plant, loop: ClosedLoop, passes: R
 # ------------------------------------------------------------------------------- a table that takes over
 
 
+@pytest.mark.long
 def test_an_equal_table_takes_over_without_a_trace(plant: Plant, loop: ClosedLoop, passes: RandomPasses) -> None:
     """Which of two equal tables is in force changes no bit; weak cuts go to the heavier one, strong ones nowhere."""
     _, controller = controllers_of(plant)

@@ -140,6 +140,7 @@ def test_an_unknown_value_and_an_impossible_plant_are_refused(plant_52t: Plant) 
 # --------------------------------------------------------------------------------------- equivalent plants
 
 
+@pytest.mark.long
 def test_half_the_friction_is_half_the_slope(plant_52t: Plant, passes: RandomPasses) -> None:
     controller = constant_lines(plant_52t, [3.0, 3.2, 3.4, 3.6])
     loop = close_loop(plant_52t, 5)

@@ -49,6 +49,7 @@ def tuned() -> Trial:
     return trial_of("52 t", retuned(config, plant, 3.0), plant, random_passes(14, 0, 2000))
 
 
+@pytest.mark.long
 def test_a_table_tuned_for_the_true_plant_is_better_there_and_worse_elsewhere(tuned: Trial) -> None:
     aged = Perturbation("aged valves", aged_valves)
     other = retuned(load_config(None), aged.change(tuned.plant), 3.0)

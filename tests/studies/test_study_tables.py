@@ -25,6 +25,7 @@ from synth.solver.told_lines import SQUARED_ERROR_ALONE, knowing, mean_square, t
 from synth.solver.tuned_lines import fitted, polished
 
 
+@pytest.mark.long
 @one_blas_thread()
 def test_the_table_of_a_study_is_that_of_a_tune() -> None:
     config = parse_config("[regulator]\nestimator = false\n", "measured speed")

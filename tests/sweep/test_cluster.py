@@ -74,6 +74,7 @@ def test_killed_worker_and_killed_driver(
     assert contents(out) == contents(serial)
 
 
+@pytest.mark.long
 def test_trains_on_a_cluster_whose_worker_and_driver_are_killed(
     trial: Path, humped: Path, tmp_path: Path, cluster: tuple[str, list[int]]
 ) -> None:

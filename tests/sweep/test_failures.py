@@ -24,7 +24,10 @@ from tuning_tables import read_book
 
 @pytest.mark.parametrize(
     ("work", "reason"),
-    [(poison.refusing, "friction.common_cv is -1.0"), (poison.dying, "its worker was ended by SIGKILL, 2 times in 2")],
+    [
+        pytest.param(poison.refusing, "friction.common_cv is -1.0", marks=pytest.mark.long),
+        (poison.dying, "its worker was ended by SIGKILL, 2 times in 2"),
+    ],
 )
 def test_a_poisoned_class_is_told_and_stops_no_other(
     command: Callable[..., Ran],
@@ -78,6 +81,7 @@ mass_per_car_t = [22, 85]
 """
 
 
+@pytest.mark.long
 def test_a_target_without_a_table_loses_none_but_itself(command: Callable[..., Ran], tmp_path: Path) -> None:
     def swept(name: str, speeds: str) -> tuple[int, str]:
         (tmp_path / f"{name}.toml").write_text(TOO_COARSE.format(speeds=speeds), encoding="utf-8")
@@ -122,6 +126,7 @@ def test_a_class_without_any_table_has_failed(command: Callable[..., Ran], tmp_p
     assert "1 of 2 units done, 1 failed\n" in command("sweep", "status", tmp_path / "out")[1]
 
 
+@pytest.mark.long
 def test_refining_gives_up_a_class_with_a_target_without_a_table(command: Callable[..., Ran], tmp_path: Path) -> None:
     text = TOO_COARSE.format(speeds="[3.0, 3.5]").replace("[sweep]", "[sweep]\ninterpolation_loss_m_s = 0.5")
     (tmp_path / "sweep.toml").write_text(text, encoding="utf-8")
@@ -131,6 +136,7 @@ def test_refining_gives_up_a_class_with_a_target_without_a_table(command: Callab
     assert {table.cut.mass_t for table in read_book(tmp_path / "out" / "book.h5")} == {85.0}
 
 
+@pytest.mark.long
 def test_a_worker_that_dies_once_costs_nothing_but_time(
     monkeypatch: pytest.MonkeyPatch, config: Path, serial: Path, tmp_path: Path
 ) -> None:

@@ -80,6 +80,7 @@ def command_of(pid: int) -> bytes:
         return b""
 
 
+@pytest.mark.long
 def test_status_while_it_runs(command: Callable[..., Ran], config: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     sweep = begin("sweep", "run", config, "-o", out, "--workers", "1")

@@ -78,6 +78,7 @@ def test_a_killed_run_goes_on_to_the_same_bytes(trial: Path, humped: Path, tmp_p
     assert contents(out) == contents(humped)
 
 
+@pytest.mark.long
 def test_a_worker_that_is_killed_loses_nothing(
     trial: Path, humped: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -114,6 +115,7 @@ def test_a_worker_of_another_version_is_refused(trial: Path) -> None:
     assert "another version of retarder-synth" in answer.reason
 
 
+@pytest.mark.long
 def test_more_trains_keep_those_that_are_there_and_another_trial_keeps_none(
     command: Callable[..., Ran], trial: Path, humped: Path, tmp_path: Path
 ) -> None:

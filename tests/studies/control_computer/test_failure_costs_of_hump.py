@@ -90,6 +90,7 @@ def test_a_last_position_that_is_stuck_released_makes_cuts_couple_fast() -> None
     assert figures["gap_per_cut"].extra[2] < 0.0
 
 
+@pytest.mark.long
 def test_a_first_position_that_is_stuck_closed_stops_trains() -> None:
     """Cuts stand in it, and those behind run into them: no failure of which nobody knows."""
     failed = FailedPosition(1, StuckAtStage(4))

@@ -46,7 +46,7 @@ def tree() -> dict[str, object]:
     return tomllib.loads(CLASSES)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_tests_say_that_the_model_does_not_hold(found: Found) -> None:
     """Its friction falls with speed, and its drive fills by choked flow through a valve that opens slowly."""
     told = found[0]
@@ -56,7 +56,7 @@ def test_the_tests_say_that_the_model_does_not_hold(found: Found) -> None:
     assert friction.interval[1] < 0.0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_table_for_what_was_identified_beats_the_assumed_one(
     found: Found,
     assumed_tables: Mapping[str, ControllerTable],

@@ -10,9 +10,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.effort import QUESTIONS
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
-from tests.tuning_tables.st.compiler import BINARY32, ROUNDINGS, Compiler, name_of
+from tests.tuning_tables.st.compiler import ASKED_UNDER, BINARY32, ROUNDINGS, Compiler, name_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault, Frame
 from tests.tuning_tables.st.syntax import faults, parse, walk
@@ -24,7 +25,6 @@ from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
-QUESTIONS = 200_000
 AIM_FILE, SELF_TEST_FILE = "aim_table.st", "aim_self_test.st"
 SOUND = {"DONE": 1, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
 
@@ -36,7 +36,7 @@ def loaded(program: Program, number: int) -> Frame:
     return table
 
 
-@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+@pytest.mark.parametrize("compiler", ASKED_UNDER, ids=name_of)
 def test_hard_questions_are_answered_as_by_python_to_the_last_bit(compiler: Compiler) -> None:
     aims = sample_set()
     asked = hard_questions(aims, QUESTIONS, 20261123)

@@ -8,6 +8,8 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
+from tests.effort import sized
+
 Real: TypeAlias = type[np.float32] | type[np.float64]
 
 
@@ -56,6 +58,10 @@ ROUNDINGS: Final = (BINARY32, DOUBLE)
 
 COMPILERS: Final = (BINARY32, DOUBLE, LONG_LITERALS, FUSING, NO_TURN, ONE_TURN_TOO_MANY, MATIEC, WORST)
 """All under which every exported text must answer alike. CODESYS and STruC++ take literals as `LONG_LITERALS` does."""
+
+
+ASKED_UNDER: Final = sized((BINARY32, DOUBLE, WORST), COMPILERS)
+"""Those under which hard questions are asked."""
 
 
 def name_of(compiler: Compiler) -> str:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pytest
 
 from tests.controller_code.test_correction_code import CORRECTION, asked, right
-from tests.tuning_tables.st.compiler import ROUNDINGS, Compiler, name_of
+from tests.tuning_tables.st.compiler import ASKED_UNDER, Compiler, name_of
 from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.syntax import faults, parse, walk
@@ -45,7 +45,7 @@ def answers_of(program: Program, questions: npt.NDArray[np.void]) -> npt.NDArray
     return np.stack([np.broadcast_to(each, error.shape).astype(np.float32) for each in found], axis=1)
 
 
-@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+@pytest.mark.parametrize("compiler", ASKED_UNDER, ids=name_of)
 def test_every_question_is_answered_as_by_python(compiler: Compiler) -> None:
     with np.errstate(invalid="ignore"):  # a signalling NaN is widened
         found = answers_of(Program(FILES["retarder_correction.st"], compiler), asked())

@@ -14,7 +14,8 @@ import pytest
 from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, BEGIN, ON, PAIR, Rows, asked, right
 from tests.controller_code.test_correction_code import CORRECTION
-from tests.tuning_tables.st.compiler import ROUNDINGS, Compiler, name_of
+from tests.effort import FEW, MANY, QUESTIONS
+from tests.tuning_tables.st.compiler import ASKED_UNDER, Compiler, name_of
 from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault
@@ -41,7 +42,6 @@ from tuning_tables.st_source import st_files
 BOOK = passage_book()
 TABLES = BOOK.tables
 FILES = passage_st_files(BOOK)
-QUESTIONS = 40_000
 MEMBERS = tuple(st_name(name).upper() for name in TRACKER.members)
 
 
@@ -94,7 +94,7 @@ def differences(found: Rows, answers: Rows) -> int:
 
 
 @pytest.mark.parametrize("book", [BOOK, every_axle_book()], ids=["first axle", "every axle"])
-@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+@pytest.mark.parametrize("compiler", ASKED_UNDER, ids=name_of)
 def test_every_question_is_answered_as_by_python(compiler: Compiler, book: PassageBook) -> None:
     program = Program(passage_st_files(book)[TABLE_FILE], compiler)
     found, answers = questions(book)
@@ -179,7 +179,8 @@ def test_a_wrong_block_is_found_by_the_small_self_test(before: str, after: str) 
 
 def test_the_page_tells_what_is_asked_here() -> None:
     page = (Path(__file__).parents[3] / "docs" / "controllers.md").read_text("utf-8")
-    assert f"answer {QUESTIONS // 1000} 000 pairs alike" in page
+    assert f"{FEW // 1000} 000 questions to the rules of each kind" in page
+    assert f"with `scripts/test --long` {MANY // 10**6} 000 000" in page
     assert f"{len(CHANGES)} in the Structured Text" in page
 
 
