@@ -10,11 +10,13 @@ import pytest
 from hypothesis import settings
 
 from tests.corpus import Corpus, shared_base
-from tests.effort import IS_LONG
+from tests.effort import IS_LONG, sized
 from tests.printed_page import Page, caught
 
-settings.register_profile("ci", derandomize=True, deadline=None)
-settings.register_profile("here", deadline=None)
+EXAMPLES = sized(25, 100)
+"""That hypothesis draws where a test does not say how many."""
+settings.register_profile("ci", max_examples=EXAMPLES, derandomize=True, deadline=None)
+settings.register_profile("here", max_examples=EXAMPLES, deadline=None)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
 
 

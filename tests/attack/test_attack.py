@@ -13,8 +13,9 @@ from tests.attack.attempt import Kind, Outcome, Reading
 from tests.attack.kinds import KINDS
 from tests.attack.planted import FILE, PLANTED, SOUND, only_if_changed, waits_for_ever
 from tests.attack.processes import Limits, attempts
+from tests.effort import sized
 
-FEW = 30
+FEW = sized(12, 30)
 IMPATIENT = Limits(clock_s=1.0)
 SHORT = Limits(processor_s=0.5, memory_bytes=2**28)
 

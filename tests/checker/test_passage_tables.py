@@ -21,6 +21,7 @@ from synth.checker.passages.rule import passages_heard, wanted
 from synth.cli import main
 from tests.checker.planted_fault import Document, found, judged, look, rewrite
 from tests.controller_code.passage_tables import every_axle_book, passage_book
+from tests.effort import sized
 from tests.tuning_tables.passages.made_tables import passage_tables as any_tables
 from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import held_by, wanted_stage
@@ -80,7 +81,7 @@ def test_the_checkers_rule_is_the_rule_to_the_last_bit(table: PassageTable) -> N
 
 
 @given(any_tables())
-@settings(derandomize=True, max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(derandomize=True, max_examples=sized(10, 40), deadline=None, suppress_health_check=list(HealthCheck))
 def test_every_table_that_can_be_written_is_read(table: PassageTable) -> None:
     read = read_passage_table(to_json(table))
     assert read.id == table.id
@@ -257,7 +258,7 @@ def test_no_flipped_bit_changes_what_is_read() -> None:
 
 
 @given(st.binary(max_size=60))
-@settings(derandomize=True, max_examples=50)
+@settings(derandomize=True, max_examples=sized(12, 50))
 def test_noise_is_damage(content: bytes) -> None:
     with pytest.raises(DamagedError):
         read_passage_table(content)

@@ -13,6 +13,7 @@ from scripts.studies.in_the_loop.controller_process import CONTRACT, compile_wit
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimating_book
 from tests.controller_code.weighed_cuts import NAMES, TARGET_M_S, braked_by, weighed_book, weighed_cuts
+from tests.effort import sized
 from tuning_tables import decide_for
 from tuning_tables.c_source import c_files
 from tuning_tables.table_book import TableBook
@@ -27,6 +28,8 @@ int commanded(unsigned number, int stage, float s_m, float v_m_s)
 }
 """
 
+
+SAMPLES, CUTS = sized((4_000, 60), (20_000, 300))
 
 TELL = """
 float told_speed(void) { return speed_m_s; }
@@ -55,7 +58,7 @@ def program(tmp_path_factory: pytest.TempPathFactory, tool: Tool) -> ctypes.CDLL
 
 def test_the_page_commands_what_python_does(program: ctypes.CDLL) -> None:
     rng, book, far = np.random.default_rng(7), estimating_book(), 0
-    for _ in range(20_000):
+    for _ in range(SAMPLES):
         number = int(rng.integers(len(book.tables)))
         table = book.tables[number]
         stage = int(rng.integers(-1, len(table.stages) + 1))
@@ -63,7 +66,7 @@ def test_the_page_commands_what_python_does(program: ctypes.CDLL) -> None:
         wanted = decide_for(table, stage, s, v)
         assert program.commanded(number, stage, s, v) == wanted
         far += abs(wanted - stage) > 1
-    assert far > 500
+    assert far > SAMPLES // 40
 
 
 def test_the_page_goes_over_to_the_tables_that_python_does(tmp_path: Path, tool: Tool) -> None:
@@ -77,7 +80,7 @@ def test_the_page_goes_over_to_the_tables_that_python_does(tmp_path: Path, tool:
     tables = dict(zip(NAMES, book.tables, strict=True))
     assert loaded.on_weighed_cut(3, 4, TARGET_M_S) == 0  # the book lacks it
     left = 0
-    for told, samples in weighed_cuts(300):
+    for told, samples in weighed_cuts(CUTS):
         assert loaded.on_weighed_cut(told, 4, TARGET_M_S) == 1
         for sample, (number, speed) in zip(samples, braked_by(book, told, samples), strict=True):
             loaded.on_observed_sample(*map(float, sample))
@@ -87,4 +90,4 @@ def test_the_page_goes_over_to_the_tables_that_python_does(tmp_path: Path, tool:
                     tables[number], stage, float(sample[0]), speed
                 )
         left += number != told
-    assert 100 < left < 250
+    assert CUTS // 3 < left < 5 * CUTS // 6

@@ -43,7 +43,7 @@ def test_a_process_controls_as_the_rule_in_the_simulator(tmp_path: Path, tool: T
     assert closed_loop_with_process(plant, observing, 0, controller, passes, line).differing > 10
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_process_decides_at_any_time_as_the_rule_in_the_simulator(tmp_path: Path, tool: Tool) -> None:
     tool("gcc")
     first = make_case().table

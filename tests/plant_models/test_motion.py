@@ -18,6 +18,7 @@ from plant_models import (
     path_breaks_m,
     path_coefficients,
 )
+from tests.effort import sized
 
 DRIVE = Pneumatics(700.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 15.0)
 LENGTH_M = 12.475
@@ -63,7 +64,7 @@ def test_deceleration_table_of_the_facts(mass_t: float, deceleration: float) -> 
     assert float(c.brake_m_s2_per_kpa[0]) * 550.0 == pytest.approx(deceleration, abs=0.006)
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=sized(10, 40), deadline=None, derandomize=True)
 @given(cells=st.integers(3, 200), cars=st.integers(1, 3))
 def test_work_does_not_depend_on_the_cells(cells: int, cars: int) -> None:
     cut = couple((Car("g", GONDOLA.axle_offsets_m, 13.92, 22.0, 94.0),) * cars, 50.0 * cars, "С", 4)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from plant_models import PlantError, Pneumatics, PressureHistory
+from tests.effort import sized
 
 DRIVE = Pneumatics(
     supply_pressure_kpa=700.0,
@@ -85,7 +86,7 @@ def sorted_curve(history: PressureHistory) -> tuple[np.ndarray, np.ndarray]:
     return (p, t) if p[-1] >= p[0] else (p[::-1], t[::-1])
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=sized(15, 60), deadline=None, derandomize=True)
 @given(
     start=st.floats(0.0, 650.0),
     target=st.floats(0.0, 650.0),

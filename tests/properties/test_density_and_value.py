@@ -21,11 +21,15 @@ from synth.solver.policy_density import (
     forward_one,
 )
 from synth.solver.switching_lines import SwitchingLines
+from tests.effort import sized
 
 SEEDS = st.integers(0, 2**32 - 1)
 
 FEW = settings(
-    max_examples=12, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=sized(5, 12),
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 
 

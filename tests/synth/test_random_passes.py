@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from synth.kernels.loop.normal_numbers import normal_pairs
 from synth.simulation.random_passes import NOISE_SAMPLES, PATH_CELLS, RandomPasses, random_passes
+from tests.effort import sized
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +18,7 @@ def row() -> RandomPasses:
     return random_passes(seed=7, first_pass=0, count=3000)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=sized(5, 15), deadline=None)
 @given(first=st.integers(0, 2999), count=st.integers(0, 1500))
 def test_pass_has_the_same_numbers_however_it_is_asked_for(row: RandomPasses, first: int, count: int) -> None:
     count = min(count, 3000 - first)

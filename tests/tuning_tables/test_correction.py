@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.effort import sized
 from tuning_tables import InvalidTable
 from tuning_tables.correction import Correction, begun_correction
 from tuning_tables.programs.correct import corrected_speed, learn_exit, usable_exit
@@ -33,7 +34,7 @@ def state_of(values: tuple[float, float, float]) -> npt.NDArray[np.float32]:
 
 
 @given(CORRECTIONS, st.lists(st.tuples(NUMBERS, st.booleans()), max_size=60), NUMBERS)
-@settings(max_examples=300)
+@settings(max_examples=sized(75, 300))
 def test_whatever_comes_in_the_correction_is_bounded(
     correction: Correction, exits: list[tuple[float, bool]], speed: float
 ) -> None:
@@ -57,7 +58,7 @@ def test_whatever_comes_in_the_correction_is_bounded(
 
 
 @given(st.tuples(NUMBERS, NUMBERS, NUMBERS), NUMBERS, st.booleans(), st.floats(0.0, 40.0, width=32))
-@settings(max_examples=500)
+@settings(max_examples=sized(125, 500))
 def test_from_any_state_one_pass_leads_back_into_the_bounds(
     words: tuple[float, float, float], error: float, credible: bool, speed: float
 ) -> None:

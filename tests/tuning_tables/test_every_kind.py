@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
+from tests.effort import sized
 from tests.tuning_tables.aim.made_tables import random_table
 from tests.tuning_tables.every_kind import (
     SAMPLES,
@@ -113,7 +114,7 @@ def same_held(one: AnyTable, other: AnyTable) -> None:
 
 
 @given(tables() | passage_tables())
-@settings(derandomize=True, max_examples=80, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(derandomize=True, max_examples=sized(20, 80), deadline=None, suppress_health_check=list(HealthCheck))
 def test_random_tables_are_read_as_they_were_and_conform(table: AnyTable) -> None:
     for content in (to_json(table), canonical_json(document_of(table))):
         assert read_back(content, table) == table

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.effort import sized
 from tests.tuning_tables.random_tables import tables
 from tuning_tables import (
     ControllerTable,
@@ -29,7 +30,7 @@ from tuning_tables.canonical import canonical_json
 BINDER = Generator("binder", "1", "0" * 64)
 slowly = settings(
     derandomize=True,
-    max_examples=30,
+    max_examples=sized(7, 30),
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large],
 )
@@ -62,7 +63,7 @@ def test_json_and_book_hold_the_same_bits(tmp_path: Path, originals: list[Contro
 
 
 @given(tables())
-@settings(slowly, max_examples=60)
+@settings(slowly, max_examples=sized(15, 60))
 def test_both_layouts_of_a_table_are_read(original: ControllerTable) -> None:
     canonical = canonical_json(json.loads(to_json(original)))
     assert bits(from_json(canonical)) == bits(from_json(to_json(original))) == bits(original)

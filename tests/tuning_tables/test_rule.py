@@ -12,6 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from synth.kernels.compiled_rules import compiled_rule
+from tests.effort import sized
 from tests.tuning_tables.random_tables import tables
 from tuning_tables import ControllerTable, Decisions, Stage, ValidRange, decide, decide_for, decide_many
 from tuning_tables.active_table import active
@@ -115,7 +116,7 @@ def test_the_three_ways_agree_everywhere(name: str, request: pytest.FixtureReque
 
 
 @given(tables())
-@settings(derandomize=True, max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(derandomize=True, max_examples=sized(10, 40), deadline=None, suppress_health_check=list(HealthCheck))
 def test_the_three_ways_agree_on_tables_of_every_shape(compiled: Answering, table: ControllerTable) -> None:
     golden = golden_vectors(replace(table, target_speed_m_s=3.0))
     some = np.random.default_rng(len(golden)).permutation(len(golden))[:2_000]

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from tests.effort import sized
 from tuning_tables import ControllerTable, Decisions, InvalidTable, Stage, ValidRange, round_coefficients
 from tuning_tables.stage import Line
 from tuning_tables.surface_order import range_above, stage_gap, surface_bound
@@ -139,7 +140,7 @@ slopes = st.floats(-(2.0**-5), 2.0**-5, width=32).map(lambda c: c + 0.0)
     turn=st.floats(-(2.0**-24), 2.0**-24),
     seed=st.integers(0, 2**32 - 1),
 )
-@settings(derandomize=True, max_examples=150, deadline=None)
+@settings(derandomize=True, max_examples=sized(37, 150), deadline=None)
 def test_accepted_surfaces_never_cross_in_float32(
     tilting: Tilting, lower: list[float], gap: float, slope: float, turn: float, seed: int
 ) -> None:
@@ -181,7 +182,7 @@ def test_some_surfaces_that_are_refused_cross_in_float32_alone(tilting: Tilting)
     both=st.tuples(slopes, slopes),
     s_m=st.tuples(st.floats(-4, 0, width=32).map(lambda s: s + 0.0), st.floats(0.5, 4, width=32)),
 )
-@settings(derandomize=True, max_examples=150, deadline=None)
+@settings(derandomize=True, max_examples=sized(37, 150), deadline=None)
 def test_order_as_sampled_agrees_with_order_as_decided(
     tilting: Tilting, lower: list[float], gap: list[float], both: Slopes, s_m: tuple[float, float]
 ) -> None:
@@ -212,7 +213,7 @@ pressures = st.floats(0, 2e3, width=32)
     s=st.floats(-50, 50, width=32),
     ends=st.tuples(pressures, pressures, pressures),
 )
-@settings(derandomize=True, max_examples=400, deadline=None)
+@settings(derandomize=True, max_examples=sized(100, 400), deadline=None)
 def test_the_bound_holds_against_exact_arithmetic(
     line: list[float], slope: float, s: float, ends: tuple[float, float, float]
 ) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
+from tests.effort import sized
 from tests.tuning_tables.random_tables import tables
 from tests.tuning_tables.test_recursion_of_the_page import at_least, at_most
 from tuning_tables import ControllerTable, decide_for, from_json, to_json
@@ -97,7 +98,7 @@ def test_the_text_of_the_page_gives_the_golden_answers(surface_table: Controller
 
 
 @given(tables().filter(lambda table: table.has_gauge and table.target_speed_m_s < 1e6))
-@settings(derandomize=True, max_examples=10, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(derandomize=True, max_examples=sized(5, 10), deadline=None, suppress_health_check=list(HealthCheck))
 def test_the_text_of_the_page_holds_for_tables_of_every_shape(table: ControllerTable) -> None:
     assert all(agreements(table, block("python")))
 

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.effort import sized
 from tests.tuning_tables.test_surfaces import above, with_stage
 from tuning_tables import ControllerTable, Decisions, InvalidTable, Stage, TableBook, round_coefficients
 from tuning_tables.active_table import between, interpolable
@@ -121,7 +122,7 @@ slopes_of_a_stage = st.tuples(st.floats(-2.0, 2.0, width=32), st.floats(-1e-7, 1
     slopes=st.tuples(slopes_of_a_stage, slopes_of_a_stage),
     seed=st.integers(0, 2**32 - 1),
 )
-@settings(derandomize=True, max_examples=150, deadline=None)
+@settings(derandomize=True, max_examples=sized(37, 150), deadline=None)
 def test_surfaces_between_accepted_ones_never_cross_in_float32(
     surface_table: ControllerTable,
     lower: tuple[float, float],

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from tests.effort import sized
 from tuning_tables import (
     ControllerTable,
     CutId,
@@ -206,7 +207,7 @@ coefficients = st.floats(-8, 8, width=32).map(lambda c: c + 0.0)  # no -0.0
     gap=st.lists(coefficients, min_size=4, max_size=4),
     s_m=st.tuples(st.floats(-4, 0, width=32).map(lambda s: s + 0.0), st.floats(0.5, 4, width=32)),
 )
-@settings(derandomize=True, max_examples=300, deadline=None)
+@settings(derandomize=True, max_examples=sized(75, 300), deadline=None)
 def test_order_as_sampled_agrees_with_order_as_decided(
     crossing: Crossing, lower: list[float], gap: list[float], s_m: tuple[float, float]
 ) -> None:
@@ -228,7 +229,7 @@ def test_order_as_sampled_agrees_with_order_as_decided(
     offset=st.floats(0, 2.0**-14, width=32),
     seed=st.integers(0, 2**32 - 1),
 )
-@settings(derandomize=True, max_examples=200, deadline=None)
+@settings(derandomize=True, max_examples=sized(50, 200), deadline=None)
 def test_accepted_lines_never_cross_in_float32(
     crossing: Crossing, lower: list[float], offset: float, seed: int
 ) -> None:

@@ -14,13 +14,14 @@ from plant_models.rolling.roll_track import Bend, RollTrack
 from scripts.studies.rolling.by_numpy import NumpyRoll
 from scripts.studies.rolling.cases import CASES, COUPLING_M_S, PARK_EXIT_M, RollCase
 from synth.simulation.free_roll import rolling_cuts
+from tests.effort import sized
 from tests.oracles.rolling.made_cuts import START_M, cuts, random_cuts, random_track, rolling
 
 SEEDS = st.integers(0, 2**32 - 1)
 
 
 @given(SEEDS, st.integers(1, 8))
-@settings(max_examples=30)
+@settings(max_examples=sized(7, 30))
 def test_forwards_from_the_speed_found_backwards_a_cut_arrives_with_the_coupling_speed(seed: int, cars: int) -> None:
     """Or, where a hump of the track decides, faster: then it hardly crawls over it. A little slower, it stops before or
     arrives slower; from rest, where 0 was found, it arrives too fast."""
@@ -42,7 +43,7 @@ def test_forwards_from_the_speed_found_backwards_a_cut_arrives_with_the_coupling
 
 
 @given(SEEDS, st.integers(1, 5))
-@settings(max_examples=20)
+@settings(max_examples=sized(5, 20))
 def test_a_faster_start_is_a_faster_arrival_and_a_farther_stop(seed: int, cars: int) -> None:
     rng = np.random.default_rng(seed)
     track, n = random_track(rng), 40

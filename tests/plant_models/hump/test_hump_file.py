@@ -19,6 +19,7 @@ from plant_models.library.source import CITATION, sources
 from plant_models.library.sourced_value import CONFIDENCES, JUDGEMENT
 from plant_models.library.toml_lines import line_of, places_of
 from plant_models.library.type_file import HUMPS, TypeFileError
+from tests.effort import sized
 
 SMALL = """\
 format = "hump"
@@ -290,6 +291,9 @@ def test_lines_of_places() -> None:
     assert line_of(LINES, ("unknown",)) == 1
 
 
+TREES = sized(500, 2000)
+
+
 def changed_trees(seed: int, count: int) -> Iterator[dict[str, Any]]:
     """Trees of humps with one to three values taken away, doubled or replaced."""
     rng = random.Random(seed)
@@ -331,26 +335,26 @@ def test_what_the_schema_refuses_the_reader_refuses_too() -> None:
     assert validator.is_valid(tomllib.loads(SMALL))
     assert not validator.is_valid(tomllib.loads(SMALL + BOOK))
     refused = sound = 0
-    for tree in changed_trees(1, 400):
+    for tree in changed_trees(1, TREES // 5):
         if validator.is_valid(tree):
             sound += 1
             continue
         refused += 1
         with pytest.raises(TypeFileError):
             hump_from(tree, "", "changed", "changed.toml")
-    assert refused > 100
-    assert sound > 50
+    assert refused > TREES // 20
+    assert sound > TREES // 40
 
 
 def test_changed_trees_are_read_or_told_in_sentences() -> None:
     told = 0
-    for tree in changed_trees(2, 2000):
+    for tree in changed_trees(2, TREES):
         sentences = faults_of(tree)
         told += bool(sentences)
         for sentence in sentences:
             assert sentence.startswith("changed.toml, line 1: ") or sentence.endswith(" more faults")
             assert sentence.isprintable()
-    assert 1000 < told < 2000
+    assert TREES // 2 < told < TREES
 
 
 def faults_of(tree: dict[str, Any]) -> tuple[str, ...]:

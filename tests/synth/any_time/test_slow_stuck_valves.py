@@ -86,6 +86,7 @@ def slow_exit(
     return max(cut.v, 0.0), commands
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("way", Ways)
 @pytest.mark.parametrize("stuck", STUCK, ids=lambda stuck: stuck.name)
 def test_slow_passes_are_those_of_the_kernel(plant: Plant, stuck: StuckValves, way: Ways) -> None:

@@ -13,6 +13,7 @@ from plant_models.library.toml_lines import places_of
 from plant_models.library.type_file import HUMPS
 from synth.frame.input_error import InputError
 from synth.hump.hump_file import parse_hump
+from tests.effort import sized
 from tests.plant_models.hump.test_hump_file import LINES, SMALL
 
 FILES = int(os.environ.get("RETARDER_SYNTH_FUZZED_HUMPS", "4000"))
@@ -64,7 +65,7 @@ def places_in(tree: Any) -> Iterator[tuple[str | int, ...]]:
 
 def test_lines_are_found_of_all_that_tomllib_finds() -> None:
     rng, valid = random.Random(8), 0
-    while valid < 1000:
+    while valid < sized(250, 1000):
         text = changed(LINES if valid % 2 else SMALL, rng)
         try:
             tree = tomllib.loads(text)

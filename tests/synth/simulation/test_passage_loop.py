@@ -29,6 +29,7 @@ from synth.simulation.passage_loop import close_passage_loop, simulate_passages
 from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample, unfinished_shares
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
+from tests.effort import sized
 from tests.synth.conftest import pilot_plant
 from tests.synth.simulation.passage_cases import (
     SENSORS,
@@ -257,7 +258,7 @@ def test_known_friction_and_statistics_go_on_as_with_the_radar(plant: Plant, pas
 # ------------------------------------------------------------------------------------ any rule, any sensors
 
 
-@settings(max_examples=60)
+@settings(max_examples=sized(15, 60))
 @given(st.data())
 def test_any_rule_and_sensors_end_every_pass(data: st.DataObject) -> None:
     plant = with_approach(pilot_plant(data.draw(st.sampled_from([22.0, 52.0, 85.0]))), 4.0)

@@ -31,6 +31,7 @@ from synth.simulation.sensor_faults import (
     together,
 )
 from synth.simulation.stratified_passes import stratified_passes
+from tests.effort import sized
 from tests.synth.conftest import pilot_plant
 from tests.synth.simulation.passage_cases import SENSORS, braking_rule, holding_rule, limits_of, with_approach
 
@@ -80,7 +81,7 @@ def test_without_a_fault_the_tracker_believes_the_truth(mass_t: float, axles: Ax
     assert tracked.outcome.tobytes() == told.outcome.tobytes()
 
 
-@settings(max_examples=40)
+@settings(max_examples=sized(10, 40))
 @given(st.data())
 def test_wherever_sensors_stand_the_tracker_believes_the_truth(data: st.DataObject) -> None:
     plant = with_approach(pilot_plant(data.draw(st.sampled_from([22.0, 52.0, 85.0]))), 3.0)
@@ -214,7 +215,7 @@ def any_fault(data: st.DataObject, sensors: int, stream: int) -> SensorFault:
     return data.draw(st.sampled_from(faults))
 
 
-@settings(max_examples=100)
+@settings(max_examples=sized(25, 100))
 @given(st.data())
 def test_any_faults_leave_a_sound_loop(data: st.DataObject) -> None:
     plant = with_approach(pilot_plant(data.draw(st.sampled_from([22.0, 52.0]))), 5.0, 2, data.draw(st.integers(0, 2)))

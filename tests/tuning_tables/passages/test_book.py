@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.effort import sized
 from tests.tuning_tables.passages.made_tables import passage_tables, table_of
 from tuning_tables import (
     ControllerTable,
@@ -32,7 +33,7 @@ FIRST, EVERY = table_of(), replace(table_of(DecidesOn.EVERY_AXLE), id="every", v
 
 
 @given(st.lists(passage_tables(), min_size=1, max_size=3, unique_by=lambda table: table.id))
-@settings(derandomize=True, max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(derandomize=True, max_examples=sized(6, 25), deadline=None, suppress_health_check=list(HealthCheck))
 def test_json_and_book_hold_the_same_bits(tmp_path: Path, originals: list[PassageTable]) -> None:
     path = tmp_path / "book.h5"
     write_book([from_json(to_json(table), PassageTable) for table in originals], path, BINDER)

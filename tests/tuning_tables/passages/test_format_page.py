@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scripts.format_page import updated
+from tests.effort import sized
 from tests.tuning_tables.passages.true_passes import LIMITS, tracking
 from tuning_tables import PassageTable, from_json, to_json
 from tuning_tables.passages.held_passages import held_by
@@ -57,7 +58,7 @@ def test_the_worked_steps_are_those_of_the_code() -> None:
 
 
 @given(st.floats(0.0, 20.0), st.floats(0.4, 14.9), st.floats(0.4, 14.9), st.floats(0.0, 60.0))
-@settings(derandomize=True, max_examples=300, deadline=None)
+@settings(derandomize=True, max_examples=sized(75, 300), deadline=None)
 def test_what_follows_is_what_the_page_computes(elapsed: float, before: float, now: float, way: float) -> None:
     a, d, e, f = (np.float32(limit) for limit in LIMITS[2:])
     # Written numbers are float32 numbers; numpy keeps them so beside float32 operands.

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from synth.kernels.compiled_rules import compiled_rule
 from tests.controller_code.passage_tables import passage_table, passage_tables
+from tests.effort import sized
 from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
@@ -79,7 +80,7 @@ def test_a_reading_that_cannot_be_is_a_pair_that_is_not_believed(over_base_s: fl
     assert state.tolist() == [-1.0, 0.0, 0.75, -1.0, 0.0, 0.75]
 
 
-@settings(max_examples=400)
+@settings(max_examples=sized(100, 400))
 @given(st.sampled_from(TABLES), STATES, COUNTS, TIMES, TIMES, COUNTS, st.booleans())
 def test_for_every_input_the_step_is_its_parts_and_compiled_the_same(
     table: PassageTable, values: list[float], sensor: int, since_s: float, over_s: float, stage: int, ended: bool

@@ -12,6 +12,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from synth.kernels.compiled_rules import compiled_rule
+from tests.effort import sized
 from tests.tuning_tables.passages.made_tables import row_lists, table_of
 from tuning_tables.passages.held_passages import held_by, held_passages
 from tuning_tables.programs.at_pulse import wanted_stage
@@ -46,7 +47,7 @@ def restated(row: list[float], stage: int, highest: int, v: float) -> int:
 
 
 @given(switching(), st.integers(0, 2), st.data())
-@settings(derandomize=True, max_examples=120, deadline=None)
+@settings(derandomize=True, max_examples=sized(30, 120), deadline=None)
 def test_the_rule_counts_the_speeds_on_the_way(speeds: Speeds, passage: int, data: st.DataObject) -> None:
     stage = data.draw(st.integers(0, speeds.shape[2]))
     known = st.sampled_from([float(t) for t in speeds[passage].ravel() if np.isfinite(t)] or [1.0])
@@ -62,7 +63,7 @@ def test_the_rule_counts_the_speeds_on_the_way(speeds: Speeds, passage: int, dat
 
 
 @given(switching(), st.integers(-2, 4), st.integers(-2, 7), st.floats(), st.integers(0, 5), st.integers(0, 3))
-@settings(derandomize=True, max_examples=120, deadline=None)
+@settings(derandomize=True, max_examples=sized(30, 120), deadline=None)
 @example(np.zeros((3, 2, 1), np.float32), 0, 0, 3.5e38, 0, 0)
 def test_no_number_is_an_error_and_compiled_text_gives_the_same(
     speeds: Speeds, passage: int, stage: int, told: float, entrance: int, before: int
@@ -80,7 +81,7 @@ def test_no_number_is_an_error_and_compiled_text_gives_the_same(
 
 
 @given(switching(), st.integers(0, 2), st.data())
-@settings(derandomize=True, max_examples=80, deadline=None)
+@settings(derandomize=True, max_examples=sized(20, 80), deadline=None)
 def test_the_stage_wanted_never_falls_with_the_speed(speeds: Speeds, passage: int, data: st.DataObject) -> None:
     stage = data.draw(st.integers(0, speeds.shape[2]))
     slow, fast = sorted((data.draw(st.floats(0.0, 50.0)), data.draw(st.floats(0.0, 50.0))))

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.kernels.compiled_rules import compiled_rule
+from tests.effort import sized
 from tests.tuning_tables.passages.made_tables import table_of
 from tests.tuning_tables.passages.true_passes import Pulse, TruePass, rolled, tracking, true_passes
 from tuning_tables.passages.held_passages import held_by
@@ -18,7 +19,7 @@ from tuning_tables.programs.passage_table import NONE
 from tuning_tables.programs.tracker import begin_cut, believed_passage
 
 COMPILED: Any = compiled_rule(believed_passage)
-often = settings(derandomize=True, max_examples=200, deadline=None)
+often = settings(derandomize=True, max_examples=sized(50, 200), deadline=None)
 
 
 def believed(run: TruePass, pulses: Sequence[Pulse]) -> list[int]:

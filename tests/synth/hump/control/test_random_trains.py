@@ -17,6 +17,7 @@ from synth.hump.control.cut_record import Mark
 from synth.hump.control.event import Kind
 from synth.hump.control.misrouting import Misrouting
 from synth.hump.control.reference_faults import LateSwitch
+from tests.effort import sized
 from tests.synth.hump.control.judged_trains import Humping, Scene, judgement, random_humping
 from tests.synth.hump.control.many_trains import SCENES
 from tests.synth.hump.control.queue_of_cuts import APART_M
@@ -28,7 +29,7 @@ UNCOUPLINGS = ("wrong uncouplings missed", "wrong uncouplings false")
 
 
 @pytest.mark.parametrize("name", SCENES)
-@settings(max_examples=40)
+@settings(max_examples=sized(10, 40))
 @given(seed=SEEDS)
 def test_what_must_never_happen_does_not_and_right_sensors_find_all(name: str, seed: int) -> None:
     """No points under or beside a cut, none lost, no silent counter, and the log replays. With right sensors none is
