@@ -1,13 +1,15 @@
 """Hashes of the coefficients of many tables, by the one pipeline.
 
 Same bytes are promised on one kind of processor: with AVX-512 some last bits are others than without. Both are kept.
-Run as a program, it prints what is to be kept, JSON, with the hashes of the processor at hand.
+Run as a program, it prints what is to be kept, JSON, with the hashes of the processor at hand; or those of the
+configurations that it is given.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -88,15 +90,15 @@ def coefficients_sha256(table: ControllerTable) -> str:
 
 
 @one_blas_thread()
-def hashes() -> dict[str, dict[str, str]]:
-    """By configuration and table."""
+def hashes(*names: str) -> dict[str, dict[str, str]]:
+    """By configuration and table; of the configurations named, or of all."""
     positions = {name: parse_config(text, name) for name, text in POSITIONS.items()}
     tables = {
         **{name: tuned(config, config.cuts[0].label) for name, config in positions.items()},
         **{name: ends_of(parse_config(text, name)) for name, text in CONFIGURATIONS.items()},
         "sweep": swept(),
     }
-    return {name: {table.id: coefficients_sha256(table) for table in each} for name, each in tables.items()}
+    return {name: {table.id: coefficients_sha256(table) for table in tables[name]} for name in names or tables}
 
 
 def kind_of_processor() -> str:
@@ -111,5 +113,6 @@ def kept() -> dict[str, dict[str, str]]:
 
 
 if __name__ == "__main__":
-    known = json.loads(KEPT.read_bytes())
-    print(json.dumps({**known, kind_of_processor(): hashes()}, indent=1, sort_keys=True))
+    found = hashes(*sys.argv[1:])
+    whole = {**json.loads(KEPT.read_bytes()), kind_of_processor(): found}
+    print(json.dumps(found if sys.argv[1:] else whole, indent=1, sort_keys=True))
