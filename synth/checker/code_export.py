@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from synth.checker.category_constants import category_differences
 from synth.checker.code_file import CodeKind
@@ -13,8 +13,7 @@ from synth.checker.export_check import Differences
 from synth.checker.finding import DamagedError
 
 
-@dataclass(frozen=True)
-class Due:
+class Due(NamedTuple):
     """What an export must hold: by table, in the order of the export, its id and its numbers.
 
     `categories`: numbers of weight categories by name.

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, O, P, R, S, Steps, Unfinished, Verdict, Work
+from synth.frame.command import Asked, Command, Head, O, P, R, S, Unfinished, Verdict, Work
 from synth.frame.creation_time import creation_time, require_date
 from synth.frame.exhibits import Chapter, Chart, File, Table
 from synth.frame.picture.picture import Picture, picture_files
@@ -32,15 +32,13 @@ def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_j
     """
     require_date()
     problem = command.resolve(asked)
-    head, steps = command.head(problem), command.steps(problem)
+    head = command.head(problem)
     reads = (*asked.options.reads, *head.reads)
     with results_directory(output, command.name, reads, inputs=command.inputs) as directory:
-        if asked.options.config is not None and command.text is read_text:
-            directory.keep_configuration(asked.options.config, asked.text)
         for warning in head.warnings:
             say(f"warning: {warning}")
         try:
-            told = finished(command, problem, head, steps, directory)
+            told = finished(command, asked, problem, head, directory)
         except Unfinished as fault:
             say(f"{fault}; what was done before is kept in {output}, and the same command goes on from it")
             return LIMITS_MISSED
@@ -54,12 +52,14 @@ def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_j
     return OK if told.verdict.accepted else LIMITS_MISSED
 
 
-def finished(command: Command[S, O, P, R], problem: P, head: Head, steps: Steps, directory: ResultsDirectory) -> Told:
+def finished(
+    command: Command[S, O, P, R], asked: Asked[S, O], problem: P, head: Head, directory: ResultsDirectory
+) -> Told:
     """Compute, judge and write; what a chapter holds is on the disk before the next one is made."""
     from synth.frame.picture.studio import Studio
     from synth.frame.terminal.progress import Progress  # rich: a refusal needs none
 
-    started, created = time.monotonic(), creation_time()
+    started, created, steps = time.monotonic(), creation_time(), command.steps(problem)
     processes = command.drawing(problem) if head.output.plots or head.output.report else 1
     with (
         interruptible(directory, "summary"),
@@ -68,6 +68,8 @@ def finished(command: Command[S, O, P, R], problem: P, head: Head, steps: Steps,
     ):
         result = command.compute(problem, Work(progress, directory, studio.begin))
         verdict = Verdict(tuple(command.limits(result)))
+        if asked.options.config is not None and command.text is read_text:
+            directory.keep_configuration(asked.options.config, asked.text)
         chapters = []
         for chapter in command.show(result):
             write_data(chapter, directory)

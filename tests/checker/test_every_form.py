@@ -117,10 +117,10 @@ def test_a_changed_number_of_any_member_is_found(tmp_path: Path, kind: str, form
     code, (record, tables) = only_code(tmp_path), KINDS[kind]
     for member, text in changed_numbers(record, code.path):
         code.path.write_text(text, encoding="ascii")
-        told = [
-            each for each in found_in(code, source) if re.search(rf": {member}(\[0\])? of table 0 is ", each.sentence)
-        ]
-        assert [each.about for each in told] == [tables[0].id], member
+        found = found_in(code, source)
+        of_member = [each for each in found if re.search(rf": {member}(\[0\])? of table 0 is ", each.sentence)]
+        assert [each.about for each in of_member] == [tables[0].id], member
+        assert (form == "c") == any("the crc32 of table 0 is " in each.sentence for each in found)
 
 
 @pytest.mark.parametrize(("kind", "form", "split"), EXPORTS)

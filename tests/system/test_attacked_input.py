@@ -57,6 +57,10 @@ SWEEPS = {
     "equal ids": (CLASS + "[sweep]\nexit_speeds_m_s = [1.5, 1.5000001]\n", "but tables are named by six digits"),
     "a condition called sweep": (CONDITIONS.replace("NAME", "Sweep"), ".name is 'Sweep'; it must be another name"),
     "a condition called as a file": (CONDITIONS.replace("NAME", "report.html"), "a file or folder of the sweep"),
+    "a condition called as the kept file": (
+        CONDITIONS.replace("NAME", "configuration.toml"),
+        "a file or folder of the sweep",
+    ),
     "a condition called NUL": (CONDITIONS.replace("NAME", "NUL"), "a device of Windows"),
     "a condition called con.1": (CONDITIONS.replace("NAME", "con.1"), "a device of Windows"),
     "a dot at the end": (CONDITIONS.replace("NAME", "dry."), "with no dot at the end"),

@@ -80,11 +80,11 @@ def test_tune_prints_a_table_and_where_things_are(command: Command, one_class: P
     assert ran.code == 0
     assert "gondola-4-22t" in ran.out
     assert "accepted: the limits are kept in 1 feasible case" in ran.out
-    assert f"{tmp_path / 'out'}: c/, sheets/, tables/, book.h5, summary.json" in ran.out
+    assert f"{tmp_path / 'out'}: c/, sheets/, tables/, book.h5, configuration.toml, summary.json" in ran.out
     assert "report" not in ran.out
     assert "[1/1] gondola-4-22t to 1.5 m/s: rms 0.0" in ran.err
     files = {name for name in summary_of(tmp_path / "out")["files"] if not name.startswith("sheets/")}
-    assert files == {"book.h5", *(f"c/{name}" for name in C_FILES), f"tables/{ID}.json"}
+    assert files == {"book.h5", "configuration.toml", *(f"c/{name}" for name in C_FILES), f"tables/{ID}.json"}
 
 
 def test_missed_limits_give_1_and_stale_files_go(command: Command, one_class: Path, tuned: Path) -> None:

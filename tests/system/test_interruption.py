@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -68,6 +69,9 @@ def check_file(path: Path) -> None:
             assert read_book(path)
         case _, ".html":
             assert content.endswith(b"</html>\n")
+        case _, ".toml":
+            assert content
+            tomllib.loads(content.decode("utf-8"))
         case _:
             assert path.name == "summary.json"
             json.loads(content)

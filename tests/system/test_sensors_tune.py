@@ -78,7 +78,7 @@ def test_it_leaves_tables_code_pictures_report_and_a_summary_of_them_all(tuned_p
         for name, digest in summary["files"].items()
     )
     assert {name.partition("/")[0] for name in here} == {
-        "tables", "c", "st", "plots", "sheets", "report.html", "summary.json",
+        "tables", "c", "st", "plots", "sheets", "configuration.toml", "report.html", "summary.json",
     }  # fmt: skip
     assert {Path(name).suffix for name in here if name.startswith("tables/")} == {".json", ".csv"}
     assert sum(name.startswith("plots/") for name in here) == 6  # three pictures of the class, PNG and SVG

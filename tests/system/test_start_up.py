@@ -55,6 +55,19 @@ def test_inspect_of_a_table_needs_no_solver(tuned: Path) -> None:
     assert modules_after("inspect", str(table)).isdisjoint(HEAVY)
 
 
+@pytest.mark.parametrize(("form", "makes_code"), [("json", False), ("csv", False), ("c", True)])
+def test_only_an_export_of_code_imports_what_makes_code(
+    tuned: Path, tmp_path: Path, form: str, makes_code: bool
+) -> None:
+    source = (
+        "import sys; from synth.cli import main; code = main(sys.argv[1:]); "
+        "print('tuning_tables.controller_code' in sys.modules, file=sys.stderr); raise SystemExit(code)"
+    )
+    table = next((tuned / "tables").glob("*.json"))
+    ran = python(source, "export", str(table), "--format", form, "-o", str(tmp_path / "out"))
+    assert (ran.returncode, ran.stderr) == (0, f"{makes_code}\n")
+
+
 @pytest.mark.parametrize("arguments", [["--help"], ["tune", "--help"]])
 def test_help_is_quick(arguments: list[str]) -> None:
     """The program as it is installed: it does not look for garbage while it loads. Seconds of a processor, which other

@@ -20,7 +20,8 @@ RANGE_KEYS = {"from", "to", "step"}
 NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9._-]{0,29}[A-Za-z0-9_-])?")
 
 TAKEN = re.compile(
-    r"sweep|sheets|plots|report\.html|summary\.json|(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?:\..*)?", re.IGNORECASE
+    r"sweep|sheets|plots|configuration\.toml|report\.html|summary\.json|(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?:\..*)?",
+    re.IGNORECASE,
 )
 """Names of no condition: what a sweep writes beside their folders, and the devices of Windows and its shares."""
 
