@@ -20,7 +20,6 @@ from tuning_tables import Decisions
 from tuning_tables.table_book import TableBook
 
 
-@pytest.mark.slow
 def test_a_process_controls_as_the_rule_in_the_simulator(tmp_path: Path, tool: Tool) -> None:
     tool("gcc")
     first = make_case().table

@@ -61,7 +61,6 @@ int main(void) {
 """
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(bool(missing("gcc", "valgrind")), reason="gcc and valgrind are not installed")
 def test_the_dearest_call_is_the_one_that_turns_most(tmp_path: Path) -> None:
     """A loop's instructions grow in proportion with its turns, whatever the order of the calls."""

@@ -27,7 +27,7 @@ def test_speeds_of_tables_are_in_no_table_of_speeds_between() -> None:
     assert [cells[1] for cells in found.tables()["between"].rows] == ["2.5"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_book_gives_its_own_table_at_its_own_targets() -> None:
     found = METHOD.run(METHOD.smallest, print)
     own = [each for each in found.rows if not each.between]

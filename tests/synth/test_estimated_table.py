@@ -110,7 +110,6 @@ def test_a_trim_may_change_along_the_path() -> None:
     assert np.array(found) == pytest.approx(wanted, abs=2e-3)
 
 
-@pytest.mark.slow
 def test_lines_for_the_estimate_are_better_than_those_for_the_measured_speed(
     plant_of: Callable[[float], Plant], passes: RandomPasses
 ) -> None:
@@ -165,7 +164,7 @@ def on_nodes(nodes_m: np.ndarray, lines: SwitchingLines, rows: np.ndarray) -> np
     return np.where(np.isfinite(rows[:, :1]), np.array(inside), rows[:, :1])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_lines_for_slow_days_stand_slow_valves(passes: RandomPasses) -> None:
     """With valves twice as slow they are better beyond chance, and the usual day hardly pays."""
     plants = [uncertain(load_problem("gondola-4-52t", 3.0).plant, 0.08, spread) for spread in (0.0, 0.3)]
@@ -181,7 +180,7 @@ def test_lines_for_slow_days_stand_slow_valves(passes: RandomPasses) -> None:
     assert slow[1].rms_ci95_m_s[1] < slow[0].rms_ci95_m_s[0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_lines_for_an_uncertain_mean_keep_a_reserve(plant_of: Callable[[float], Plant], passes: RandomPasses) -> None:
     """On a day of little friction fewer cuts leave too fast, beyond chance, and the mean day hardly pays."""
     target = 3.0

@@ -35,7 +35,6 @@ def test_the_same_lines_are_evaluated_once() -> None:
     assert len(asked) == 3
 
 
-@pytest.mark.slow
 def test_what_no_lines_avoid_is_what_passes_at_full_brake_cost(plant_of: Callable[[float], Plant]) -> None:
     """The recursion at the highest stage all the way against simulated passes; nothing for a cut that it stops."""
     heavy, light = plant_of(85.0), plant_of(22.0)

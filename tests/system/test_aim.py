@@ -442,6 +442,7 @@ def test_killed_aims_leave_nothing_half_done(aimed: Path, small: Path, tmp_path:
     assert files - {"summary.json"} == set(json.loads((aimed / "summary.json").read_bytes())["files"])
 
 
+@pytest.mark.long
 def test_the_default_needs_no_file(tmp_path: Path) -> None:
     """Only the fewest passes: what it computes is the default otherwise."""
     ran = subprocess.run(

@@ -43,20 +43,21 @@ ASKED = '[regulator]\ncommands = "any_time"\n'
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Books with a gauge, tuned by one and by two threads and for the measured speed, and one without a gauge."""
+    """Books with a gauge, tuned by one thread and for the measured speed, and one without a gauge."""
     place = tmp_path_factory.mktemp("any-time")
+    tune(place, "one", BOOK.format(pressure="gauge", estimator="true"), 1)
+    tune(place, "none", BOOK.format(pressure="none", estimator="true").replace("[2.0, 2.5]", "[2.5]"), 2)
+    tune(place, "measured", BOOK.format(pressure="gauge", estimator="false"), 2)
+    return place
+
+
+def tune(folder: Path, name: str, config: str, workers: int) -> None:
+    """Leave in `folder` the configuration `name`.toml and what a tune of it makes, called `name`."""
+    file = folder / f"{name}.toml"
+    file.write_text(config, encoding="utf-8")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-        for name, file, pressure, estimator, workers in (
-            ("one", "gauge", "gauge", "true", "1"),
-            ("two", "gauge", "gauge", "true", "2"),
-            ("none", "none", "none", "true", "2"),
-            ("measured", "measured", "gauge", "false", "2"),
-        ):
-            config = place / f"{file}.toml"
-            config.write_text(BOOK.format(pressure=pressure, estimator=estimator), encoding="utf-8")
-            assert main(["tune", str(config), "-o", str(place / name), "--workers", workers]) in (0, 1)
-    return place
+        assert main(["tune", str(file), "-o", str(folder / name), "--workers", str(workers)]) in (0, 1)
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +98,9 @@ def test_they_are_better_than_the_lines_of_the_same_tune_at_rest(folder: Path, n
         assert best["table_ratio"]["high95"] < 1.0
 
 
+@pytest.mark.long
 def test_no_file_depends_on_the_number_of_threads(folder: Path) -> None:
+    tune(folder, "two", (folder / "one.toml").read_text(encoding="utf-8"), 2)
     one, two = ({p.name: p.read_bytes() for p in (folder / name).rglob("*.json")} for name in ("one", "two"))
     assert one == two
     assert (folder / "one" / "book.h5").read_bytes() == (folder / "two" / "book.h5").read_bytes()
@@ -133,7 +136,7 @@ def test_they_are_drawn_and_simulated_again_from_the_file(folder: Path) -> None:
         "validate",
         str(table),
         "--config",
-        str(folder / "gauge.toml"),
+        str(folder / "one.toml"),
         "--passes",
         "4000",
         "-o",
@@ -191,7 +194,7 @@ def test_a_plant_on_which_it_cannot_be_simulated_is_refused(folder: Path, capsys
 
 def test_a_loop_of_python_control_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = next((folder / "one" / "tables").glob("*.json"))
-    asked = ["loop", str(table), "--config", str(folder / "gauge.toml"), "-o", str(folder / "loop")]
+    asked = ["loop", str(table), "--config", str(folder / "one.toml"), "-o", str(folder / "loop")]
     assert main(asked) == 2
     assert "the table decides at any time" in capsys.readouterr().err
 

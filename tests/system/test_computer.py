@@ -114,6 +114,7 @@ def test_an_overloaded_hump_is_the_fault_of_the_input(tmp_path: Path) -> None:
     assert not (tmp_path / "out" / SUMMARY).exists()
 
 
+@pytest.mark.long
 def test_figures_of_the_hump_come_from_its_trials(tmp_path: Path) -> None:
     """Two trials of the same trains: their differences are paired, and are the ranges of the changes."""
     for name, std in (("today", 0.35), ("new", 0.03)):

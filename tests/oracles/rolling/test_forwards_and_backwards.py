@@ -197,11 +197,10 @@ def test_the_error_falls_at_least_with_the_square_of_the_step(cars: int) -> None
     assert np.all(orders > 1.85), orders
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 @pytest.mark.parametrize("cars", [1, 5])
 def test_the_kernel_rolls_as_numpy_does_by_small_steps(case: RollCase, cars: int) -> None:
-    n = 400
+    n = sized(100, 400)
     drawn = case.drawn(cars, 11, n)
     other, made = NumpyRoll(case.population, case.track, PARK_EXIT_M, drawn), case.rolling(cars, 11, n)
     start, speed = case.starts_m(made), case.speeds_m_s(n)

@@ -178,7 +178,7 @@ SAME = {
 number, and what happens to equal numbers is the same; at a node the part of the way is 0 or 1."""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_wrong_operation_is_found() -> None:
     """By the self-test, or by an operation or index that has no result; but what changes no answer."""
     level = np.full((5, 7), 0.5)
