@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from synth.kernels.compiled_rules import compiled_rule
+from synth.kernels.compiling import raising
 from tuning_tables.programs.aim_speed import exit_speed
 from tuning_tables.programs.aim_table import AimGrid
 
 speed_by_table = compiled_rule(exit_speed)
 
 
-@njit(cache=True, nogil=True)
+@raising
 def all_speeds(table, cars, free_distance_m, resistance_n_per_kn, speeds) -> None:
     """The answer to each question, -1 for none, into `speeds`; all arrays (n,)."""
     for place in range(len(speeds)):

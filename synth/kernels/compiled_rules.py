@@ -13,6 +13,8 @@ from typing import Any
 
 from numba import njit
 
+from synth.kernels.compiling import raising
+
 RULES = "tuning_tables.programs."
 
 
@@ -30,4 +32,4 @@ def compiled_rule(rule: Callable[..., Any], fresh: bool = False) -> Any:
     }
     function = FunctionType(rule.__code__, {**rule.__globals__, **asked}, rule.__name__)
     function.__qualname__ = rule.__qualname__
-    return njit(nogil=True, error_model="numpy")(function) if fresh else njit(cache=True, nogil=True)(function)
+    return njit(nogil=True, error_model="numpy")(function) if fresh else raising(function)

@@ -12,7 +12,7 @@ from scripts.studies.in_the_loop.builds import Build
 from scripts.studies.in_the_loop.controller_process import BuildError, build_controller
 from tests.controller_code.conftest import BOOKS, Tool
 from tests.controller_code.ways import FEW_WAYS, WAYS
-from tests.effort import QUESTIONS, sized
+from tests.effort import MANY, sized
 from tuning_tables import decide_for, speed_for
 from tuning_tables.estimator import begin
 from tuning_tables.table_book import Status, TableBook
@@ -27,7 +27,7 @@ PROVED = [
     for build in (WAYS if name in EVERY_WAY else FEW_WAYS)
 ]
 
-READINGS, COMMANDS, SAMPLES = QUESTIONS, QUESTIONS // 40, QUESTIONS // 2
+READINGS, COMMANDS, SAMPLES = sized((100_000, 5_000, 20_000), (MANY, 20_000, MANY // 2))
 
 
 @pytest.fixture(scope="session")

@@ -10,10 +10,10 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from synth.kernels.any_time.driven_period import play_period
+from synth.kernels.compiling import kernel, part, part_inline
 from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, Draws, Exits, Floats, Path, advance, note
 from synth.kernels.loop.regulator import (
     Rule,
@@ -24,7 +24,6 @@ from synth.kernels.loop.regulator import (
     stage_by_lines,
     stage_by_table,
 )
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 
 class SampledDrive(NamedTuple):
@@ -53,7 +52,7 @@ class AnyTimeLaw(NamedTuple):
     gauge_factor: float
 
 
-@borrowing
+@part
 def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, s: float, v: float) -> int:
     """The stage that is wanted at a sample, within 0 … `top`; `v` is the speed that the regulator knows."""
     by = law.rule
@@ -64,7 +63,7 @@ def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, s: floa
     return wanted
 
 
-@borrowing_inline
+@part_inline
 def joined_until(over: Floats, begun: int) -> int:
     """The part behind those that are played as one step with part `begun`: dead times and rests are one step."""
     i = begun
@@ -73,7 +72,7 @@ def joined_until(over: Floats, begun: int) -> int:
     return i
 
 
-@borrowing_inline
+@part_inline
 def roll_period(
     edges_m: Floats, free: Floats, brake: Floats, over: Floats, part_s: float, begins_s: float, stage: int,
     measured: float, cell: int, s: float, v: float, events: Floats, count: int,
@@ -92,7 +91,7 @@ def roll_period(
     return cell, s, v, kpa, time, used, status, count
 
 
-@borrowing
+@part
 def run_any_time_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw,
     entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats, known: NDArray[np.float32],
@@ -141,7 +140,7 @@ def run_any_time_pass(
     return v, time, status, switchings, count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def run_any_time_passes(
     path: Path, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw, draws: Draws, exits: Exits, events: Floats
 ) -> int:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, wanted_stage
 from synth.kernels.any_time.played_periods import PlayedPeriods, begin_playing, first_piece
+from synth.kernels.compiling import borrowing, part_inline
 from synth.kernels.loop.closed_loop import LONGEST_PASS_S, Draws, Exits, Path
 from synth.kernels.loop.closed_loop_lanes import begin_all, move, relieve
 from synth.kernels.loop.lane_estimator import Observed, estimated
@@ -18,10 +19,9 @@ from synth.kernels.loop.lane_places import LANES, LEFT_S, PASS, PIECE, STAGE, SW
 from synth.kernels.loop.lane_regulator import foretold, measured, speaks_by_lines, speaks_by_table
 from synth.kernels.loop.regulator import Sensor, admitted
 from synth.kernels.vector import packs
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 
-@borrowing_inline
+@part_inline
 def listen(
     work: Work, count: int, played: PlayedPeriods, sensor: Sensor, law: AnyTimeLaw, noise_z: NDArray[np.float32],
     observed: Observed,
@@ -51,7 +51,7 @@ def listen(
     return told
 
 
-@borrowing_inline
+@part_inline
 def regulate(
     work: Work, lane: int, speed_m_s: float, played: PlayedPeriods, drive: SampledDrive, sensor: Sensor,
     law: AnyTimeLaw, observed: Observed,

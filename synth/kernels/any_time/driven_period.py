@@ -6,15 +6,14 @@ the physics share one text. The kernels' fingerprint covers `plant_models`.
 
 from __future__ import annotations
 
-from numba import njit
-
 from plant_models import valve_drive
+from synth.kernels.compiling import kernel, raising
 
-wait_after_command = njit(cache=True, nogil=True)(valve_drive.wait_after_command)
-drive_on = njit(cache=True, nogil=True)(valve_drive.drive_on)
+wait_after_command = raising(valve_drive.wait_after_command)
+drive_on = raising(valve_drive.drive_on)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def play_period(pressure, wait, old_kpa, new_kpa, computing_delay, period, drive, over):
     """From one sample to the next; `old_kpa` is commanded until `computing_delay`, then `new_kpa`.
 

@@ -7,11 +7,10 @@ period of known pressure to a *way*: the few modes that stand for the drive at i
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from synth.kernels.any_time.period import ROOM, look_ahead, push_period, push_row
+from synth.kernels.compiling import kernel, part
 from synth.kernels.sweep.flow import add_row, clear, extent, widen
-from synth.kernels.vector.borrowing import borrowing
 from synth.kernels.vector.normal_packs import normal_cdf8
 from synth.kernels.vector.packs import EIGHT, eight, load8, store
 
@@ -22,7 +21,7 @@ LEAST_CHANCE = 1e-300
 """Of a command that counts: any but 0."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def occupy(
     lines, reading, noise, periods, kpa, way, target, share, entry, entry_way, entry_kpa, stationary,
     mixing, factor, extra, motion, path, heading, here, negligible, keep, records, band, where, way_band, exits, totals,
@@ -99,7 +98,7 @@ def occupy(
     return records
 
 
-@borrowing
+@part
 def gather_arrivals(slot, points, heading, spans, target, share, here, span, way_band, totals):
     """Bring what heads for this node from ways to modes, `here` (M, L, E'), and leave their rows empty."""
     for w in range(target.shape[0]):
@@ -121,7 +120,7 @@ def gather_arrivals(slot, points, heading, spans, target, share, here, span, way
             spans[w, q, slot, 0], spans[w, q, slot, 1] = points, 0
 
 
-@borrowing
+@part
 def change_levels(arrived, begin, end, points, mixing, negligible, out):
     """`out` (L, E'): the mass `arrived` after the level's change at the end of a period, which is emptied.
 
@@ -144,7 +143,7 @@ def change_levels(arrived, begin, end, points, mixing, negligible, out):
     return first, max(first, last)
 
 
-@borrowing
+@part
 def chances(lower, upper, reading, scale, periods, first, last, out):
     """`out` (3, E'): probability of every command for first ≤ j < last; of a command that there is not, 0."""
     row = out.shape[1]
@@ -157,7 +156,7 @@ def chances(lower, upper, reading, scale, periods, first, last, out):
         store(out, UP * row + j, up)
 
 
-@borrowing
+@part
 def product(mass, chance, begin, end):
     """Σ mass·chance over begin ≤ j < end."""
     total = 0.0
@@ -166,13 +165,13 @@ def product(mass, chance, begin, end):
     return total
 
 
-@borrowing
+@part
 def whole_packs(count):
     """So many numbers, filled up to whole packs."""
     return (count + EIGHT - 1) // EIGHT * EIGHT
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def longer(records, used, size):
     """The same with room for `size` numbers more."""
     found = np.empty(max(2 * records.shape[0], used + size))
@@ -181,7 +180,7 @@ def longer(records, used, size):
     return found
 
 
-@borrowing
+@part
 def keep_record(moved, chance, first, last, records, at):
     """Write density and chances from flat index `at` on; the density behind `last` is 0."""
     levels, width = moved.shape[0], whole_packs(last - first)

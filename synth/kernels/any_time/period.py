@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from synth.kernels.compiling import part, part_inline
 from synth.kernels.sweep.flow import LINEAR_CELLS, put_at, stencil, stencil_row, take
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 from synth.kernels.vector.packs import EIGHT, eight, greatest, load8, store
 
 ROOM = 16
@@ -23,7 +23,7 @@ NEAREST = 2
 are a little slower than they are, at speeds below ΔS/T_c."""
 
 
-@borrowing_inline
+@part_inline
 def look_ahead(n, extra, motion, path, ring, of_node, free, braking):
     """What lies within a period of node `n`: written to `of_node`, `free`, `braking` (R + 2,), for each node ahead.
 
@@ -40,7 +40,7 @@ def look_ahead(n, extra, motion, path, ring, of_node, free, braking):
         braking[r] = (path[1][to] - path[1][n]) / motion[3]
 
 
-@borrowing_inline
+@part_inline
 def pull_period(ahead, kpa, motion, rows, begin, end, out, scratch):
     """`out`[j] = value at the end of a period that begins with energy j, begin ≤ j < end.
 
@@ -84,7 +84,7 @@ def pull_period(ahead, kpa, motion, rows, begin, end, out, scratch):
             store(out, j, share0 * found0 + share1 * found1 + share2 * found2)
 
 
-@borrowing_inline
+@part_inline
 def push_period(ahead, kpa, motion, mass, chance, begin, end, rows, spans, scratch):
     """Transpose of `pull_period`: `mass`[j]·`chance`[j] is added to `rows`.
 
@@ -114,7 +114,7 @@ def push_period(ahead, kpa, motion, mass, chance, begin, end, rows, spans, scrat
             push_shifted(scratch, side * width, count, first, cells, points, rows[to], spans[to])
 
 
-@borrowing_inline
+@part_inline
 def push_shifted(scratch, at, count, first, cells, points, row, span):
     """Add `count` masses, in `scratch` behind eight places from flat index `at` on, to `row` at `first` + `cells`.
 
@@ -137,19 +137,19 @@ def push_shifted(scratch, at, count, first, cells, points, row, span):
     span[0], span[1] = min(span[0], begin), max(span[1], end)
 
 
-@borrowing_inline
+@part_inline
 def longer_quanta(cells, middle, motion):
     """Quanta that a period is longer by than at the speed of its begin, if `cells` are gained until node `middle`."""
     return cells * motion[3] / (middle * motion[2]) * motion[1]
 
 
-@borrowing_inline
+@part_inline
 def within(base0, base1, base2, first, last, points):
     """Whether all energies first ≤ j < `last` arrive far enough from both ends of the grid for the cubic stencil."""
     return first + min(base0, base1, base2) >= LINEAR_CELLS and last + max(base0, base1, base2) <= points - 2
 
 
-@borrowing_inline
+@part_inline
 def parabolas(quanta, middle):
     """Weights of the nodes around `middle` at the end of periods that are so many quanta long, three packs."""
     x = greatest(quanta, 1.0) - middle
@@ -157,7 +157,7 @@ def parabolas(quanta, middle):
     return square * 0.5 - half, square * -1.0 + 1.0, square * 0.5 + half
 
 
-@borrowing
+@part
 def pull_row(row, shift, points, first, last, out):
     """`out`[j] = `row` at j + `shift` cells, first ≤ j < last."""
     base = int(np.floor(shift))
@@ -172,7 +172,7 @@ def pull_row(row, shift, points, first, last, out):
         take(row, j + shift, points, 1, out, j)
 
 
-@borrowing
+@part
 def push_row(mass, first, shift, points, row, span):
     """Transpose of `pull_row`: masses of the energies from `first` on are added to `row`; `span` (2,) is widened."""
     for i in range(mass.shape[0]):

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, joined_until
 from synth.kernels.any_time.driven_period import play_period
+from synth.kernels.compiling import part, part_inline
 from synth.kernels.loop.lane_places import LANES, Floats, Ints, Pieces
 from synth.kernels.loop.regulator import pressure_above_stage
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 STATES, PIECES = 0, 1
 """Places in `PlayedPeriods.taken`."""
@@ -46,7 +46,7 @@ class PlayedPeriods(NamedTuple):
     over: Floats
 
 
-@borrowing_inline
+@part_inline
 def slot_of(played: PlayedPeriods, pressure: float, wait: float, stage: int) -> Any:
     """Where in `slots` this state stands, or the free place where it belongs."""
     p, w = np.float64(pressure).view(np.int64), np.float64(wait).view(np.int64)
@@ -61,7 +61,7 @@ def slot_of(played: PlayedPeriods, pressure: float, wait: float, stage: int) -> 
         slot = (slot + 1) & last
 
 
-@borrowing
+@part
 def state_at(played: PlayedPeriods, law: AnyTimeLaw, lane: int, pressure: float, wait: float, stage: int) -> Any:
     """Number of this state, noted if it is new; that of the lane where there is no room for it."""
     pieces = played.pieces
@@ -86,7 +86,7 @@ def state_at(played: PlayedPeriods, law: AnyTimeLaw, lane: int, pressure: float,
     return state
 
 
-@borrowing
+@part
 def play(
     played: PlayedPeriods, drive: SampledDrive, law: AnyTimeLaw, period_s: float, lane: int, state: int, stage: int
 ) -> Any:
@@ -120,7 +120,7 @@ def play(
     return first
 
 
-@borrowing_inline
+@part_inline
 def first_piece(
     played: PlayedPeriods, drive: SampledDrive, law: AnyTimeLaw, period_s: float, lane: int, state: int, stage: int
 ) -> Any:
@@ -131,7 +131,7 @@ def first_piece(
     return play(played, drive, law, period_s, lane, state, stage)
 
 
-@borrowing_inline
+@part_inline
 def begin_playing(played: PlayedPeriods, drive: SampledDrive, law: AnyTimeLaw) -> None:
     """Nothing is remembered but the state that every pass begins in."""
     pieces = played.pieces

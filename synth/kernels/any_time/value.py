@@ -7,17 +7,16 @@ valued.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from synth.kernels.any_time.occupancy import DOWN, HOLD, LEAST_CHANCE, UP, whole_packs
 from synth.kernels.any_time.period import look_ahead, pull_period, pull_row
+from synth.kernels.compiling import kernel, part, part_inline
 from synth.kernels.sweep.flow import clear, extent, in_every_state
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 from synth.kernels.vector.normal_packs import normal_density8
 from synth.kernels.vector.packs import EIGHT, eight, load8, store
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def value(
     lines, reading, noise, periods, kpa, way, target, share, entry, entry_way, entry_kpa, stationary,
     mixing, factor, extra, motion, path, rows, values, terminal, stalled, change_cost, period_price, records, band,
@@ -78,7 +77,7 @@ def value(
     return cost
 
 
-@borrowing
+@part
 def take_chances(records, at, levels, first, last, chance, ends):
     """The chances of down and up (3, E') of a mode's record, and the energies `ends` (3, 2) at which a command counts.
 
@@ -96,7 +95,7 @@ def take_chances(records, at, levels, first, last, chance, ends):
             ends[command, 0] = begin - (begin - first) % EIGHT  # a record ends with a whole pack
 
 
-@borrowing
+@part
 def decide(commanded, chance, ends, change_cost, records, density, out, saved, fresh):
     """Value `out` (E',) at a sample of a level under the chances of the commands; behind its energies it is 0.
 
@@ -116,7 +115,7 @@ def decide(commanded, chance, ends, change_cost, records, density, out, saved, f
     store(out, last, eight(0.0))
 
 
-@borrowing
+@part
 def add_period_times(quanta, left, price, first, last, out):
     """Add the price of the period that begins at each energy to `out` (E',), `left` quanta before the exit.
 
@@ -127,7 +126,7 @@ def add_period_times(quanta, left, price, first, last, out):
         out[j] += price * min(max(1.0, 1.0 / quanta[j]), left / quanta[j])
 
 
-@borrowing
+@part
 def by_line(saved, line, reading, scale, ends, scratch, side, n, m, slopes, bends):
     """Slope and bend of the cost by one line, of which commands cost `saved` (E',) less, times density, at `ends`."""
     slope, bend = eight(0.0), eight(0.0)
@@ -141,7 +140,7 @@ def by_line(saved, line, reading, scale, ends, scratch, side, n, m, slopes, bend
         bends[side, n, m] = -sign * scale * lanes_together(bend, scratch)
 
 
-@borrowing_inline
+@part_inline
 def lanes_together(pack, scratch):
     """Sum of the lanes."""
     store(scratch, 0, pack)
@@ -151,7 +150,7 @@ def lanes_together(pack, scratch):
     return total
 
 
-@borrowing
+@part
 def change_levels_back(values, first, last, mixing, scratch):
     """Values (L, E') before the level's change at the end of a period, of those after it, in place."""
     levels, row = values.shape
@@ -165,7 +164,7 @@ def change_levels_back(values, first, last, mixing, scratch):
             store(values, q * row + j, load8(scratch, q * EIGHT))
 
 
-@borrowing
+@part
 def at_ways(slot, way_band, values, target, share, stalled, rows):
     """Values of modes as values of the ways that lead to them, where mass arrives."""
     levels, row = values.shape[1:]
@@ -183,7 +182,7 @@ def at_ways(slot, way_band, values, target, share, stalled, rows):
             to[0] = stalled
 
 
-@borrowing
+@part
 def leave_zeros(band, way_band, rows, values):
     """Zeros again wherever a pass has written; `band` (M, 2) of the first node."""
     nodes, (ways, levels, ring, _) = way_band.shape[0], rows.shape

@@ -13,9 +13,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from synth.kernels.compiling import borrowing_inline, kernel, part, part_inline
 from synth.kernels.loop.regulator import (
     Rule,
     Sensor,
@@ -26,7 +26,6 @@ from synth.kernels.loop.regulator import (
     stage_by_lines,
     stage_by_table,
 )
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -134,7 +133,7 @@ def advance(
             return cell, s, v, duration_s - left, LEFT
 
 
-@borrowing_inline
+@part_inline
 def note(events: Floats, count: int, t: float, s: float, v: float, kpa: float, stage: int, measured: float) -> int:
     """Write one event, if a trace is wanted (`events` not empty); returns the number of events."""
     if count < events.shape[0]:
@@ -144,7 +143,7 @@ def note(events: Floats, count: int, t: float, s: float, v: float, kpa: float, s
     return count
 
 
-@borrowing
+@part
 def run_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: Drive, sensor: Sensor, law: Rule,
     entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats, known: NDArray[np.float32],
@@ -217,7 +216,7 @@ def run_pass(
     return v, time, status, switchings, count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def brake_rows(path: Path, cut_factor: Floats, path_z: NDArray[np.float32], rows: Floats) -> None:
     """Deceleration by one kPa in every cell of every pass, `rows` (n, C): β·ξ_cut·(1 + η), η from cell to cell.
 
@@ -242,7 +241,7 @@ def brake_rows(path: Path, cut_factor: Floats, path_z: NDArray[np.float32], rows
                 rows[first + k, j] = brake * factor
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def run_passes(path: Path, drive: Drive, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, events: Floats) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
     gravity, brakes = path.gravity_m_s2, draws.brake_m_s2_per_kpa

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from synth.kernels.compiling import borrowing, part_inline
 from synth.kernels.loop.closed_loop import LONGEST_PASS_S, Draws, Exits, Path
 from synth.kernels.loop.lane_estimator import Observed
 from synth.kernels.loop.lane_places import (
@@ -41,7 +42,6 @@ from synth.kernels.loop.lane_places import (
 from synth.kernels.loop.lane_regulator import listen, regulate
 from synth.kernels.loop.regulator import Rule, Sensor
 from synth.kernels.vector import packs
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 LINE_BYTES = 64
 """What the memory delivers at once."""
@@ -50,7 +50,7 @@ SAMPLES_FETCHED = 128
 """Noise of a pass that is worth asking for in advance; most passes need less."""
 
 
-@borrowing_inline
+@part_inline
 def move(work: Work, active: int, path: Path, brakes: Floats, pieces: Pieces, looked_at: int, longest: int) -> Any:
     """Move each lane by one turn of `closed_loop.advance`, and on to the next cell or piece; one that stalls stays.
 
@@ -96,7 +96,7 @@ def move(work: Work, active: int, path: Path, brakes: Floats, pieces: Pieces, lo
     return waiting, ended
 
 
-@borrowing_inline
+@part_inline
 def begin(x: Floats, n: Ints, lane: int, i: int, path: Path, pieces: Pieces, draws: Draws) -> None:
     """Pass `i` begins on `lane`; its sample −1 lasts until the first."""
     x[S + lane], x[V + lane] = path.edges_m[0], draws.entry_m_s[i]
@@ -107,7 +107,7 @@ def begin(x: Floats, n: Ints, lane: int, i: int, path: Path, pieces: Pieces, dra
     n[PIECE + lane], n[SAMPLE + lane], n[STAGE + lane], n[SWITCHINGS + lane] = 0, -1, pieces.initial_stage, 0
 
 
-@borrowing_inline
+@part_inline
 def fetch_ahead(i: int, path: Path, draws: Draws) -> None:
     """Ask the memory for the rows of pass `i`, which is to begin soon: gathers do not tell it what comes next."""
     for cell in range(0, path.gravity_m_s2.shape[0], LINE_BYTES // 8):
@@ -116,7 +116,7 @@ def fetch_ahead(i: int, path: Path, draws: Draws) -> None:
         packs.fetch(draws.noise_z, i * draws.noise_z.shape[1] + sample)
 
 
-@borrowing_inline
+@part_inline
 def record(
     work: Work, lane: int, longest: int, path: Path, pieces: Pieces, sensor: Sensor, draws: Draws, exits: Exits
 ) -> None:
@@ -138,7 +138,7 @@ def record(
     exits.switchings[i] = n[SWITCHINGS + lane]
 
 
-@borrowing_inline
+@part_inline
 def clear(work: Work) -> None:
     """No pass anywhere."""
     work.floats[:], work.ints[:] = 0.0, 0
@@ -146,7 +146,7 @@ def clear(work: Work) -> None:
         work.floats[V + place], work.ints[NUMBER + place] = math.nan, min(place, LANES)
 
 
-@borrowing_inline
+@part_inline
 def leave(x: Floats, n: Ints, lane: int, last: int) -> None:
     """Lane `lane` takes over the pass of lane `last`, which falls idle."""
     for field in range(FLOATS):
@@ -156,7 +156,7 @@ def leave(x: Floats, n: Ints, lane: int, last: int) -> None:
     x[V + last], n[CELL + last] = math.nan, 0
 
 
-@borrowing_inline
+@part_inline
 def begin_all(work: Work, active: int, path: Path, pieces: Pieces, draws: Draws) -> None:
     """The first passes begin, one on each lane."""
     clear(work)
@@ -164,7 +164,7 @@ def begin_all(work: Work, active: int, path: Path, pieces: Pieces, draws: Draws)
         begin(work.floats, work.ints, lane, lane, path, pieces, draws)
 
 
-@borrowing_inline
+@part_inline
 def relieve(
     work: Work, ended: int, active: int, following: int, longest: int, path: Path, pieces: Pieces, sensor: Sensor,
     draws: Draws, exits: Exits,

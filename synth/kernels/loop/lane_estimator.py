@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.kernels.compiling import part, part_inline
 from synth.kernels.loop.lane_places import Floats, Ints
 from synth.kernels.vector import packs
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 from tuning_tables.programs.motion_filter import (
     LARGEST_EXCESS_M_S2,
     LARGEST_FACTOR,
@@ -43,7 +43,7 @@ class Observed(NamedTuple):
     passed_kpa: Floats
 
 
-@borrowing_inline
+@part_inline
 def work_until(table, place, j):
     """(work of the grade, work of the brake, break before) at the path `place`; `j`: a break before it."""
     breaks = table.breaks
@@ -60,7 +60,7 @@ def work_until(table, place, j):
     return drive, brake, j
 
 
-@borrowing
+@part
 def estimated(observed, table, there, i, s_m, v_m_s):
     """The speeds to compare of the passes `i` of a pack, float64; `there`: the lanes that have a pass.
 

@@ -10,6 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.kernels.compiling import part_inline
 from synth.kernels.loop.lane_estimator import Observed, estimated
 from synth.kernels.loop.lane_places import (
     BEFORE,
@@ -30,10 +31,9 @@ from synth.kernels.loop.lane_places import (
 )
 from synth.kernels.loop.regulator import Rule, Sensor, admitted, stage_by_lines, stage_by_table
 from synth.kernels.vector import packs
-from synth.kernels.vector.borrowing import borrowing_inline
 
 
-@borrowing_inline
+@part_inline
 def listen(
     work: Work, count: int, pieces: Pieces, sensor: Sensor, law: Rule, noise_z: NDArray[np.float32], observed: Observed
 ) -> int:
@@ -62,7 +62,7 @@ def listen(
     return told
 
 
-@borrowing_inline
+@part_inline
 def measured(x, n, lane, sensor, noise_z):
     """`regulator.measure` for a pack of lanes."""
     width = noise_z.shape[1]
@@ -76,7 +76,7 @@ def measured(x, n, lane, sensor, noise_z):
     return packs.choose(value < 0.0, 0.0, value)
 
 
-@borrowing_inline
+@part_inline
 def foretold(x, lane, speed, sloping, sensor, law):
     """The speed that lines are compared with: `speed` and, with a lead, that times the slope of the speed `sloping`."""
     if law.lead_s != 0.0:
@@ -84,7 +84,7 @@ def foretold(x, lane, speed, sloping, sensor, law):
     return speed
 
 
-@borrowing_inline
+@part_inline
 def slope(x, lane, speed, period_s, filter_s):
     """Filtered slope of the measured speed (as in `closed_loop.run_pass`), noted for the next sample."""
     change = speed - packs.gather(x, lane + BEFORE)
@@ -97,7 +97,7 @@ def slope(x, lane, speed, period_s, filter_s):
     return new
 
 
-@borrowing_inline
+@part_inline
 def speaks_by_table(table, stage, s_m, v_m_s, lower_rise, upper_rise):
     """Whether the table has a command, by the arithmetic of `programs.decide`; a line that is not there is NaN.
 
@@ -116,7 +116,7 @@ def speaks_by_table(table, stage, s_m, v_m_s, lower_rise, upper_rise):
     return (v < lower + lower_rise) | (v > upper + upper_rise)
 
 
-@borrowing_inline
+@part_inline
 def speaks_by_lines(law, stage, s, v):
     """Whether `regulator.line_decision` is not 0."""
     place = (s - law.start_m) / law.spacing_m
@@ -129,7 +129,7 @@ def speaks_by_lines(law, stage, s, v):
     return below | above
 
 
-@borrowing_inline
+@part_inline
 def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, law: Rule, observed: Observed) -> None:
     """What the regulator does where it has a command (as in `closed_loop.run_pass`)."""
     s, stage, top = x[S + lane], n[STAGE + lane], pieces.command.shape[1] - 1

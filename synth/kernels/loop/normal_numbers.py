@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from synth.kernels.vector.borrowing import borrowing
+from synth.kernels.compiling import borrowing
 
 f32 = np.float32
 

@@ -12,9 +12,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from synth.kernels.compiling import borrowing_inline, kernel, part, part_inline
 from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, STALLED, Draws, Exits, Path, note
 from synth.kernels.loop.passage_pulses import (
     Heard,
@@ -28,7 +28,6 @@ from synth.kernels.loop.passage_pulses import (
     take_row,
 )
 from synth.kernels.loop.passage_regulator import NOT_HEARD, begin_cut, outcome_of, stage_after_pair
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 from tuning_tables.programs.passage_table import HeldPassages
 
 Floats = NDArray[np.float64]
@@ -95,7 +94,7 @@ def roll(
             return cell, s, v, duration_s - left, ON_COIL
 
 
-@borrowing_inline
+@part_inline
 def note_pair(
     seen: Floats, count: int, time_s: float, half_s: float, told: int, passage: int, taken_for: int, read_m_s: float,
     outcome: int, stage: int,
@@ -109,7 +108,7 @@ def note_pair(
     return count
 
 
-@borrowing
+@part
 def run_passage_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: PieceDrive, pulses: Pulses, after_s: Floats, told_m_s: Floats,
     law: HeldPassages, tracks: bool, start_m_s: float, noise_z: NDArray[np.float32], memory: Memory, outcomes: Outcomes,
@@ -186,7 +185,7 @@ def run_passage_pass(
     return v, time, status, switchings, count, pairs
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def run_passage_passes(
     path: Path, drive: PieceDrive, pulses: Pulses, heard: Heard, law: HeldPassages, tracks: bool, draws: Draws,
     memory: Memory, exits: Exits, outcomes: Outcomes, events: Floats, seen: Floats,

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.vector.borrowing import borrowing_inline
+from synth.kernels.compiling import borrowing_inline, part_inline
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -84,7 +84,7 @@ def coils_of(pulses: Pulses, source: int, z: float) -> Any:
     return pulses.path_m[source] - half, pulses.path_m[source] + half
 
 
-@borrowing_inline
+@part_inline
 def measured_over_base_s(pulses: Pulses, true_s: float, z: float) -> float:
     """The measured time over the base: it has the noise `z` in standard deviations and is rounded.
 
@@ -103,7 +103,7 @@ def read_speed_m_s(pulses: Pulses, true_s: float, z: float) -> float:
     return pulses.base_m / over_s
 
 
-@borrowing_inline
+@part_inline
 def place_coils(pulses: Pulses, noise_z: NDArray[np.float32], memory: Memory) -> None:
     """Where the first axle is at each pulse of this pass, and the order of the pulses."""
     sources = pulses.path_m.shape[0]
@@ -119,7 +119,7 @@ def place_coils(pulses: Pulses, noise_z: NDArray[np.float32], memory: Memory) ->
         memory.order[slot] = coil
 
 
-@borrowing_inline
+@part_inline
 def pulses_before(start_m: float, free_m_s2: float, v: float, memory: Memory) -> int:
     """Times of the coils passed before `start_m`, which the cut reaches with `v` at time 0; returns how many.
 
@@ -134,7 +134,7 @@ def pulses_before(start_m: float, free_m_s2: float, v: float, memory: Memory) ->
     return coil
 
 
-@borrowing_inline
+@part_inline
 def wait_for(row: int, source: int, due_s: float, half_s: float, over_s: float, waiting: int, memory: Memory) -> int:
     """Have `row` heard at `due_s`; returns how many rows are waited for."""
     memory.due_s[row], memory.half_s[row], memory.over_s[row] = due_s, half_s, over_s
@@ -143,7 +143,7 @@ def wait_for(row: int, source: int, due_s: float, half_s: float, over_s: float, 
     return waiting + 1
 
 
-@borrowing_inline
+@part_inline
 def rows_by_the_clock(pulses: Pulses, after_s: Floats, told_m_s: Floats, memory: Memory) -> int:
     """Have the rows heard that come from no source; returns how many rows are waited for."""
     waiting = 0
@@ -155,7 +155,7 @@ def rows_by_the_clock(pulses: Pulses, after_s: Floats, told_m_s: Floats, memory:
     return waiting
 
 
-@borrowing_inline
+@part_inline
 def rows_of_source(
     pulses: Pulses, source: int, time_s: float, z: float, after_s: Floats, told_m_s: Floats, waiting: int,
     memory: Memory,
@@ -176,7 +176,7 @@ def rows_of_source(
     return waiting
 
 
-@borrowing_inline
+@part_inline
 def next_row(waiting: int, memory: Memory) -> Any:
     """(time, place in `waiting`) of the row that is heard next, the first of several; infinity where none waits."""
     due_s, found = math.inf, -1
@@ -187,7 +187,7 @@ def next_row(waiting: int, memory: Memory) -> Any:
     return due_s, found
 
 
-@borrowing_inline
+@part_inline
 def take_row(at: int, waiting: int, memory: Memory) -> Any:
     """(row, how many still wait) once the row at place `at` of `waiting` is heard."""
     row = memory.waiting[at]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.kernels.compiled_rules import compiled_rule
-from synth.kernels.vector.borrowing import borrowing_inline
+from synth.kernels.compiling import borrowing_inline
 from tuning_tables.programs import at_pulse, tracker
 from tuning_tables.programs.passage_table import HeldPassages
 

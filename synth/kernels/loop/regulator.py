@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.kernels.compiled_rules import compiled_rule
-from synth.kernels.vector.borrowing import borrowing_inline
+from synth.kernels.compiling import borrowing_inline, part_inline
 from tuning_tables.programs.decide import decide, pressure_above
 from tuning_tables.programs.line_table import LineTable
 from tuning_tables.programs.observe import observe
@@ -66,7 +66,7 @@ def measure(v: float, z: float, sensor: Sensor) -> float:
     return 0.0 if value < 0.0 else value  # not max(0, value): it would report a standstill for NaN
 
 
-@borrowing_inline
+@part_inline
 def line_decision(
     lower: Floats, upper: Floats, start_m: float, spacing_m: float, stage: int, s: float, v: float
 ) -> int:

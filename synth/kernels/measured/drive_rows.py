@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from plant_models import valve_drive
 from plant_models.valve_drive import ValveDrive
+from synth.kernels.compiling import kernel, raising
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-drive_on = njit(cache=True, nogil=True)(valve_drive.drive_on)
-wait_after_command = njit(cache=True, nogil=True)(valve_drive.wait_after_command)
+drive_on = raising(valve_drive.drive_on)
+wait_after_command = raising(valve_drive.wait_after_command)
 
 
 class Commands(NamedTuple):
@@ -35,7 +35,7 @@ class Commands(NamedTuple):
     settled: bool
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def drive_rows(
     commands: Commands,
     drive: ValveDrive,

@@ -16,8 +16,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from synth.kernels.compiling import kernel, kernel_inline
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -79,7 +80,7 @@ class Cuts(NamedTuple):
     resistance_variance: Floats
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def filter_passes(
     rows: Rows,
     spread: Spread,
@@ -120,7 +121,7 @@ def filter_passes(
         cuts.resistance_n_per_kn[number], cuts.resistance_variance[number] = x[2], p[2, 2]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@kernel_inline
 def correct(x, p, v, reading_var, row, surprise, variance):
     """By one reading; the mean of √(2e) is a little below the root of the mean."""
     expected = math.sqrt(2.0 * x[0])
@@ -138,7 +139,7 @@ def correct(x, p, v, reading_var, row, surprise, variance):
     x[0] = max(x[0], LEAST_ENERGY)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@kernel_inline
 def predict(x, p, f, q, rows, row, spread, by_speed):
     """Over one step of path, with η as an Ornstein–Uhlenbeck process whose mean over the step does the work."""
     step = max(rows.step_m[row], 1e-9)
@@ -177,7 +178,7 @@ def predict(x, p, f, q, rows, row, spread, by_speed):
     p[3, 3] += end_var
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@kernel_inline
 def mean_variance(ratio):
     """Variance of the mean of a unit Ornstein–Uhlenbeck process over `ratio` lengths, given its first value:
     (2r − 3 + 4e^(−r) − e^(−2r))/r²; its series where the difference would lose digits."""

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+from synth.kernels.compiling import borrowing, part_inline
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -72,7 +72,7 @@ def work_for(legs: Legs) -> Work:
     )
 
 
-@borrowing_inline
+@part_inline
 def mark_time(legs, q, i, k, s, time, speed, out):
     """When mark `s` is passed on stretch `q` that begins at `time` with `speed`, and whose pass ends at `out`; NaN if
     it is not there."""
@@ -84,7 +84,7 @@ def mark_time(legs, q, i, k, s, time, speed, out):
     return time + time_to(legs, q, i, k, speed, share)
 
 
-@borrowing_inline
+@part_inline
 def pass_end(legs, q, i, k, time, speed):
     """When the pass ends; infinite where the cut stops."""
     if speed > 0.0 and legs.speeds_m_s[q, i, k] > 0.0:
@@ -92,7 +92,7 @@ def pass_end(legs, q, i, k, time, speed):
     return math.inf
 
 
-@borrowing_inline
+@part_inline
 def time_to(legs, q, i, k, speed, share):
     """How long a cut takes that comes with `speed` for this share of the path of the pass, on which v² falls evenly."""
     exit_speed = legs.speeds_m_s[q, i, k]
@@ -100,7 +100,7 @@ def time_to(legs, q, i, k, speed, share):
     return 2.0 * legs.path_m[q, i] * share / (speed + between)
 
 
-@borrowing_inline
+@part_inline
 def is_able(legs, q, i, k, speed):
     """Whether a cut that comes to the position with `speed` can leave it with the choice `k`."""
     exit_speed = legs.speeds_m_s[q, i, k]
@@ -157,7 +157,7 @@ def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, 
                 level += 1
 
 
-@borrowing_inline
+@part_inline
 def list_marks(legs, i, met, met_to):
     """Fill the marks that cut `i` meets on each stretch, `met` (q, s), and how many, `met_to` (q,)."""
     for q in range(met.shape[0]):
@@ -169,7 +169,7 @@ def list_marks(legs, i, met, met_to):
         met_to[q] = count
 
 
-@borrowing_inline
+@part_inline
 def nearer(passed, s, i, free_from_s, free_by_s, ahead, behind):
     """Least margins so far, and that of a mark that is passed at `passed`."""
     if math.isnan(passed):
@@ -181,7 +181,7 @@ def nearer(passed, s, i, free_from_s, free_by_s, ahead, behind):
     return ahead, (margin if margin < behind else behind)
 
 
-@borrowing_inline
+@part_inline
 def unknown_out(legs, i, e):
     """Whether the first axle comes to element `e` on the way that is forecast, but the last one does not leave it."""
     comes, leaves = not math.isnan(legs.before_s[i, 2 * e]), not math.isnan(legs.before_s[i, 2 * e + 1])

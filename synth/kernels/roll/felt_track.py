@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.kernels.compiling import part_inline
 from synth.kernels.vector import packs
-from synth.kernels.vector.borrowing import borrowing_inline
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -73,7 +73,7 @@ class Lanes(NamedTuple):
     wind_m_s: Any
 
 
-@borrowing_inline
+@part_inline
 def lanes_from(cuts, i):
     """The cuts from `i` on."""
     return Lanes(
@@ -89,7 +89,7 @@ def lanes_from(cuts, i):
     )
 
 
-@borrowing_inline
+@part_inline
 def place_of(way, cuts, at, x):
     """(node, nodes beyond it) of the cars at flat index `at` with the heads at `x`; at most 1 beyond it, but outside
     the table, where the fall goes on as at its end."""
@@ -98,7 +98,7 @@ def place_of(way, cuts, at, x):
     return node, place - packs.fraction(node)
 
 
-@borrowing_inline
+@part_inline
 def fall_at(way, cuts, lanes, x):
     """(fall of the cuts when their heads are at `x`, metres; the same summed up over the path)."""
     fall, total = packs.choose(x == x, 0.0, x), packs.choose(x == x, 0.0, x)
@@ -114,7 +114,7 @@ def fall_at(way, cuts, lanes, x):
     return fall, total
 
 
-@borrowing_inline
+@part_inline
 def bend_at(cuts, lanes, b):
     """Where the bend `b` of the lanes begins and ends, and one over its length."""
     at = b * cuts.bends_from_m.shape[1] + lanes.bends
@@ -125,7 +125,7 @@ def bend_at(cuts, lanes, b):
     )
 
 
-@borrowing_inline
+@part_inline
 def bends_between(way, cuts, lanes, x, h):
     """Heads that the bends take while the heads go from `x` to `x` + `h`: (per (m/s)², whatever the speed), and by how
     much their mean on the way is above half of them, (per (m/s)², whatever the speed).
@@ -152,7 +152,7 @@ def bends_between(way, cuts, lanes, x, h):
     return v2, head, early_v2, early_head
 
 
-@borrowing_inline
+@part_inline
 def start_by_themselves(way, cuts, lanes, x, target):
     """The lanes that start from rest wherever their heads are from `target` to `x`; False where that is not certain."""
     won = packs.choose(x == x, 0.0, x)

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import math
 
+from synth.kernels.compiling import borrowing
 from synth.kernels.roll.felt_track import LANES, bends_between, fall_at, lanes_from, start_by_themselves
 from synth.kernels.roll.roll_step import FINE_M, SHORT_M, even_steps, next_step, stepped
 from synth.kernels.vector import packs
-from synth.kernels.vector.borrowing import borrowing
 
 
 @borrowing

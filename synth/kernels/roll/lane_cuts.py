@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.kernels.compiling import borrowing
 from synth.kernels.roll.felt_track import LANES
-from synth.kernels.vector.borrowing import borrowing
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

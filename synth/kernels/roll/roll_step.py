@@ -7,8 +7,8 @@ the energy may even end at 0.
 
 from __future__ import annotations
 
+from synth.kernels.compiling import part_inline
 from synth.kernels.vector import packs
-from synth.kernels.vector.borrowing import borrowing_inline
 
 SHORT_M = 0.3
 """A step near e = 0 need not be shorter than this."""
@@ -24,7 +24,7 @@ NO_SPEED_M_S = 1e-12
 """Keeps quotients of speeds finite."""
 
 
-@borrowing_inline
+@part_inline
 def lost_head(lanes, linear, h, mean_v, mean_v2):
     """Head that air, and resistance linear in the speed, take on `h` metres, from the means of v and v² over them."""
     w = lanes.wind_m_s
@@ -33,7 +33,7 @@ def lost_head(lanes, linear, h, mean_v, mean_v2):
     return h * (linear * mean_v + lanes.air * against)
 
 
-@borrowing_inline
+@part_inline
 def stepped(lanes, linear, h, steady, more, bend_v2, early_v2, e, v):
     """Energy at the other end of `h` metres on which the head `steady` is won, from energy `e` and speed `v` at this
     end; negative where the cut does not get there. Backwards `h` is negative, and so are the heads that are lost.
@@ -57,14 +57,14 @@ def stepped(lanes, linear, h, steady, more, bend_v2, early_v2, e, v):
     return e + g * (steady - lost_head(lanes, linear, h, mean_v, mean_v2 + change) - in_bends), more_e
 
 
-@borrowing_inline
+@part_inline
 def next_step(longest, left, limit, e):
     """How far lanes go at the energy `e`; `left`: to the station."""
     near = packs.choose(e == 0.0, REST_M, packs.greatest(e * REACH_S2_PER_M, SHORT_M))
     return packs.least(packs.least(longest, near), packs.least(left, limit))
 
 
-@borrowing_inline
+@part_inline
 def even_steps(gap, step_m):
     """Length of the steps into which `gap` is divided, `step_m` at most."""
     return gap / packs.fraction(packs.whole(packs.greatest(gap * (1.0 / step_m) + (1.0 - 1e-9), 1.0)))

@@ -10,8 +10,8 @@ side in memory.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from synth.kernels.compiling import kernel, part
 from synth.kernels.sweep.commands import normal_cdf
 from synth.kernels.sweep.flow import in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import find_runs, landing_scratch, landing_tables
@@ -19,11 +19,10 @@ from synth.kernels.sweep.next_sample import quanta_to_next_sample
 from synth.kernels.sweep.pass_time import add_change_times, add_quantum_times
 from synth.kernels.sweep.thresholds import find_lines
 from synth.kernels.sweep.transient_sweep import add_transient_values
-from synth.kernels.vector.borrowing import borrowing
 from synth.kernels.vector.packs import EIGHT, choose, load8, magnitude, store
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def sweep(
     terminal, stalled, prices, tolerance, rounding, reading, errors, smear_start, smear, prior, decision_at,
     speed, stage, pressure, change_chain, chain_mode,
@@ -114,7 +113,7 @@ def sweep(
         copy_out(recent[:, n % ring], values, n, points)
 
 
-@borrowing
+@part
 def hold_everywhere(
     following, shift, transition, stalled, speed, period, path_step, energy_step,
     n, prices, ahead, quanta, holds, scratch,
@@ -136,7 +135,7 @@ def hold_everywhere(
             hold_values(ahead, h * size + q, quanta[h, q], stalled.shape[0], holds[h, q])
 
 
-@borrowing
+@part
 def value_change(
     n, decision, last, c, q, runs, found, mode, ends, met, slope, least_ahead,
     extra, path_step, energy_step, prices, speed, values, mixed, stalled, place, weight, scratch, out,
@@ -153,7 +152,7 @@ def value_change(
     )  # fmt: skip
 
 
-@borrowing
+@part
 def hold_values(ahead, state, quanta, width, out):
     """Value of holding until the next sample, `quanta` (E,) further, into `out` (E·T,).
 
@@ -174,7 +173,7 @@ def hold_values(ahead, state, quanta, width, out):
                 store(out, at, load8(ahead, near + at) * (1.0 - x) + load8(ahead, near + stride + at) * x)
 
 
-@borrowing
+@part
 def in_every_cell(numbers, out):
     """`out` (E·T,) = `numbers` (T,) at every energy."""
     width = numbers.shape[0]
@@ -183,7 +182,7 @@ def in_every_cell(numbers, out):
             store(out, at + t, load8(numbers, t))
 
 
-@borrowing
+@part
 def add_gains(hold, changed, weight, rounding, width, gain):
     """Add the cost saved by a change, times `weight`, to `gain` (E·T,).
 
@@ -196,7 +195,7 @@ def add_gains(hold, changed, weight, rounding, width, gain):
         store(gain, at, load8(gain, at) + counted * weight)
 
 
-@borrowing
+@part
 def spread(gain, start, weights, width, out):
     """`out` (E·T,) = `gain` averaged over the true speeds behind every measured speed."""
     for j in range(start.shape[0]):
@@ -207,7 +206,7 @@ def spread(gain, start, weights, width, out):
             store(out, j * width + t, found)
 
 
-@borrowing
+@part
 def apart(row, width, out):
     """`row` (E·T,), with targets padded, as `out` (T, E)."""
     for t in range(out.shape[0]):
@@ -215,7 +214,7 @@ def apart(row, width, out):
             out[t, j] = row[j * width + t]
 
 
-@borrowing
+@part
 def command_chances(lines, reading, errors, decision, width, out, undecided):
     """Probability of each command at every true speed and target, `out` (C, E·T); `lines` (C, T) in readings.
 
@@ -236,7 +235,7 @@ def command_chances(lines, reading, errors, decision, width, out, undecided):
             undecided[j] = undecided[j] or (heard[t] > 0.0 and (further_down > 0.0 or further_up > 0.0))
 
 
-@borrowing
+@part
 def sampled_values(chance, changes, value_next, value_hold, quanta, undecided, stalled, out):
     """Values at a sample (E·T,), of `changes` (C, E·T) commanded with the chances of `command_chances`.
 
@@ -266,7 +265,7 @@ def sampled_values(chance, changes, value_next, value_hold, quanta, undecided, s
             store(out, at, choose(change > 0.0, sampled, held))
 
 
-@borrowing
+@part
 def copy_out(rows, values, n, points):
     """Node `n` of `values` (I, ·, H, L, E, T), if it is kept, from `rows` (I, H, L, E·T'), whose targets are padded."""
     if n >= values.shape[1]:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from synth.kernels.vector.borrowing import borrowing
+from synth.kernels.compiling import borrowing, part
 
 CERTAIN = 6.0
 """So many standard deviations from a line a command is certain, or certainly not given."""
@@ -48,13 +48,13 @@ def command_slopes(lines, reading, noise, out):
                 out[command, n, k, j] = normal_density((line - reading[j]) * scale) * scale
 
 
-@borrowing
+@part
 def uncertain(speed, line, scale):
     """Range of `speed` (E,), ascending, that lies within `CERTAIN` standard deviations 1/`scale` of `line`."""
     return first_above(speed, line, scale, -CERTAIN, False), first_above(speed, line, scale, CERTAIN, True)
 
 
-@borrowing
+@part
 def first_above(speed, line, scale, far, beyond):
     """First index of `speed` that is `far` standard deviations above `line` or, if `beyond`, more than that."""
     low, high = 0, speed.shape[0]
@@ -68,7 +68,7 @@ def first_above(speed, line, scale, far, beyond):
     return low
 
 
-@borrowing
+@part
 def normal_cdf(z):
     """Φ(z), exactly 0 or 1 beyond six standard deviations."""
     if z > CERTAIN:
@@ -78,7 +78,7 @@ def normal_cdf(z):
     return 0.5 * math.erfc(-z * 0.7071067811865476)
 
 
-@borrowing
+@part
 def normal_density(z):
     """φ(z), zero beyond six standard deviations."""
     if abs(z) > CERTAIN:

@@ -8,19 +8,18 @@ ones, and the rest goes on as before. The equation is linear in the masses: both
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from synth.kernels.compiling import borrowing, kernel, part
 from synth.kernels.sweep.flow import NO_MASS, extent, stencil, widen
 from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
 from synth.kernels.sweep.policy_density import BEGIN, collect, follow
-from synth.kernels.vector.borrowing import borrowing
 from synth.kernels.vector.packs import EIGHT, load8, scatter
 
 LINEAR_BELOW = 2
 """Cells next to the stall whose mass is refined linearly: a cubic would reach below it."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def forward_to_finer_end(
     node, handed, times, fine_policy, fine_decision_at, fine_speed, fine_ends, negligible,
     policy, decision_at, entry, entry_mode, speed, stage, pressure, change_chain, chain_mode,
@@ -89,7 +88,7 @@ def forward_to_finer_end(
         refine(rest, 0, points, np.ones(points), basis, exits[i])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def refine_landings(ends, points, first, times, fine_ends):
     """`fine_ends` (R − first, C, F, 2, E_f'): `ends` (R, C, F, 2, E') from decision `first` on, `times` as dense.
 
@@ -115,7 +114,7 @@ def refine_landings(ends, points, first, times, fine_ends):
                 out[i] = found[min((2 * i + times) // (2 * times), row - 1)]
 
 
-@borrowing
+@part
 def between(row, begin, end, weights, apart, finer, first):
     """`finer`[`first` + times·j] = the four of `row` around j by their `weights`, begin ≤ j < end.
 
@@ -130,7 +129,7 @@ def between(row, begin, end, weights, apart, finer, first):
         finer[times * j + first] = c0 * row[j - 1] + c1 * row[j] + c2 * row[j + 1] + c3 * row[j + 2]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def refinement(times):
     """What a mass on a grid becomes on one `times` as dense: cubic Lagrange functions, (4·times − 1,), sum 1.
 
@@ -144,7 +143,7 @@ def refinement(times):
     return basis
 
 
-@borrowing
+@part
 def hand_over(rows, spans, handed, basis, finer, finer_spans):
     """Take the share `handed` (E,) out of `rows` (M, H, L, E') and put it, refined, into `finer` (M, H, L, E_f')."""
     for r in range(rows.shape[0]):
@@ -154,7 +153,7 @@ def hand_over(rows, spans, handed, basis, finer, finer_spans):
                 refine_span(rows[r, h, q], begin, end, handed, basis, finer[r, h, q], finer_spans[r, h, q])
 
 
-@borrowing
+@part
 def hand_over_landed(rows, landed, handed, basis, finer, finer_landed):
     """The same for what has landed at a node: `rows` (H, L, E'), `landed` (H, 2) for all levels."""
     for h in range(rows.shape[0]):
@@ -163,7 +162,7 @@ def hand_over_landed(rows, landed, handed, basis, finer, finer_landed):
             refine_span(rows[h, q], begin, end, handed, basis, finer[h, q], finer_landed[h])
 
 
-@borrowing
+@part
 def refine_span(row, begin, end, handed, basis, finer, span):
     """`refine` within the range in which there is mass; `span` (2,), the range of `finer`, is widened."""
     begin, end = extent(row, begin, end, NO_MASS)

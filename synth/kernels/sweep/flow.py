@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+from synth.kernels.compiling import part, part_inline
 from synth.kernels.vector.packs import EIGHT, eight, first_lane, last_lane, load8, magnitude, store
 
 LINEAR_CELLS = 8
@@ -22,7 +22,7 @@ NO_MASS = 1e-25
 """Probabilities below this are dropped: the tails of a density would otherwise run into slow denormal numbers."""
 
 
-@borrowing
+@part
 def in_every_state(row, points, out):
     """The first `points` of `out` (·, H, L, ·) = those of `row`, in every mode and level.
 
@@ -35,7 +35,7 @@ def in_every_state(row, points, out):
                     out[i, h, q, j] = row[j]
 
 
-@borrowing
+@part
 def pull(values, points, transition, shift, stalled, first, last, out, mixed):
     """`out`[h, q, j] = Σ_m transition[q, m]·values[h, m](j + shift[h, q]) for first ≤ j < last.
 
@@ -64,7 +64,7 @@ def pull(values, points, transition, shift, stalled, first, last, out, mixed):
                 take(mixed, j + base + x, points, width, out[h, q], j)
 
 
-@borrowing
+@part
 def mix_row(values, h, share, begin, end, out):
     """`out`[begin:end] = Σ_m share[m]·values[h, m, begin:end], `values` (H, L, E·T)."""
     levels, size = values.shape[1], values.shape[2]
@@ -81,7 +81,7 @@ def mix_row(values, h, share, begin, end, out):
             out[j] += share[m] * values[h, m, j]
 
 
-@borrowing
+@part
 def stencil_row(row, ahead, width, c0, c1, c2, c3, begin, end, out):
     """`out`[j] = the four of `row` around j + `ahead`, a distance of `width` apart, for begin ≤ j < end."""
     stop = begin + (end - begin) // EIGHT * EIGHT
@@ -94,7 +94,7 @@ def stencil_row(row, ahead, width, c0, c1, c2, c3, begin, end, out):
         out[j] = c0 * row[i - width] + c1 * row[i] + c2 * row[i + width] + c3 * row[i + 2 * width]
 
 
-@borrowing
+@part
 def take(row, position, points, width, out, j):
     """`out` at energy j = `row` interpolated at `position`, for all targets; rows (E·T,)."""
     i, c0, c1, c2, c3 = interpolation(position, points)
@@ -103,7 +103,7 @@ def take(row, position, points, width, out, j):
         out[j * width + t] = c0 * row[at - width] + c1 * row[at] + c2 * row[at + width] + c3 * row[at + 2 * width]
 
 
-@borrowing
+@part
 def push(mass, spans, transition, shift, points, first, last, out, reached, moved):
     """Transpose of `pull`: mass in first ≤ j < last at the start of a quantum goes to its end, added to `out`.
 
@@ -141,7 +141,7 @@ def push(mass, spans, transition, shift, points, first, last, out, reached, move
     return stalled, escaped
 
 
-@borrowing
+@part
 def widen(span, begin, end):
     """Make the range `span` (2,), empty where it does not end beyond its beginning, hold begin ≤ j < end too."""
     if span[0] < span[1]:
@@ -149,14 +149,14 @@ def widen(span, begin, end):
     span[0], span[1] = begin, end
 
 
-@borrowing
+@part
 def add_row(row, share, begin, end, out, at):
     """Add `share` of `row`[begin:end] to `out` from flat index `at` + begin on; beyond it stand zeros."""
     for j in range(begin, end, EIGHT):
         store(out, at + j, load8(out, at + j) + load8(row, j) * share)
 
 
-@borrowing
+@part
 def clear(rows, first, last):
     """Set the flat indices first ≤ j < `last` of `rows` to zero, and what whole packs need beyond, within `rows`."""
     last = min(last, rows.size)
@@ -167,7 +167,7 @@ def clear(rows, first, last):
         rows[j] = 0.0
 
 
-@borrowing
+@part
 def spread_by_stencil(row, low, high, base, weights, out):
     """Add every row[j], low ≤ j < high, to out[j + base − 1 … j + base + 2] with its four weights.
 
@@ -197,7 +197,7 @@ def spread_by_stencil(row, low, high, base, weights, out):
     out[last + 1] += c3 * row[high - 1]
 
 
-@borrowing
+@part
 def extent(row, first, last, least_mass):
     """Smallest range of indices within [first, last) that holds all entries of `row` of at least `least_mass`.
 
@@ -215,7 +215,7 @@ def extent(row, first, last, least_mass):
     return first, last
 
 
-@borrowing_inline
+@part_inline
 def stencil(x):
     """Weights of cubic Lagrange interpolation at fraction x between the second and third of four points."""
     c0 = -x * (x - 1.0) * (x - 2.0) / 6.0
@@ -225,7 +225,7 @@ def stencil(x):
     return c0, c1, c2, c3
 
 
-@borrowing_inline
+@part_inline
 def interpolation(position, points):
     """Second of the four grid points that interpolate at `position` (cells), and their weights.
 
@@ -243,7 +243,7 @@ def interpolation(position, points):
     return i, c0, c1, c2, c3
 
 
-@borrowing
+@part
 def put_at(row, points, position, mass):
     """Transpose of `take`, `row` of `points` energies; what arrives at or below cell 0 is found in `row`[0]."""
     i, c0, c1, c2, c3 = interpolation(position, points)
@@ -253,7 +253,7 @@ def put_at(row, points, position, mass):
     row[i + 2] += c3 * mass
 
 
-@borrowing
+@part
 def shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, out):
     """Energy change over quantum `n` at every mode and level, in cells of the grid; `out` (H, L)."""
     for h in range(pressure.shape[0]):
@@ -262,7 +262,7 @@ def shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_s
             out[h, q] = slope * path_step / energy_step
 
 
-@borrowing
+@part
 def mix_values(values, transition, first, last, stalled, out):
     """`out`[h, q, j] = Σ_m transition[q, m]·values[h, m, j] for first ≤ j < last; shapes (H, L, E·T)."""
     modes, levels, _ = values.shape

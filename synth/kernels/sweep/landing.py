@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+from synth.kernels.compiling import kernel, part, part_inline
 from synth.kernels.vector.packs import (
     SIXTEEN,
     choose,
@@ -24,7 +23,7 @@ STATE = 3 * SIXTEEN
 """Numbers of the state of a pack on its way: path, speed, and the energy that it left with, −1 before."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def land(
     starts, lead, held, fine, work, gravity, overpressure, steps, shared, dt, factors, speed, ends
 ):  # fmt: skip
@@ -74,7 +73,7 @@ def land(
                     store(ends, at + points + j, energy)
 
 
-@borrowing_inline
+@part_inline
 def put_state(trail, at, s, v, left_with):
     """Write the state of a pack to flat index `at` of `trail`."""
     store(trail, at, s)
@@ -82,7 +81,7 @@ def put_state(trail, at, s, v, left_with):
     store(trail, at + 2 * SIXTEEN, left_with)
 
 
-@borrowing
+@part
 def rolled_on(start, ahead, v, work, rise, gravity, fine, brake):
     """Speeds a path `ahead` of `start`, behind it if that is negative, at the constant overpressure times friction."""
     here, there = max(start, 0.0) / fine, max(start + ahead, 0.0) / fine
@@ -92,7 +91,7 @@ def rolled_on(start, ahead, v, work, rise, gravity, fine, brake):
     return choose(v > 0.0, root(greatest(square, 0.0)), 0.0)
 
 
-@borrowing
+@part
 def drive_on(trail, begin, first, last, work, rise, gravity, fine, overpressure, factor, dt):
     """Drive a pack on from step `first` of a transient to its step `last`; returns the step after which none moved.
 
@@ -128,7 +127,7 @@ def drive_on(trail, begin, first, last, work, rise, gravity, fine, overpressure,
     return last
 
 
-@borrowing
+@part
 def end_of_drive(trail, at, start, exit_m):
     """(path, v²/2) of a pack in the state at flat index `at` of `trail`, driven on from `start`."""
     s, v, left_with = load16(trail, at), load16(trail, at + SIXTEEN), load16(trail, at + 2 * SIXTEEN)

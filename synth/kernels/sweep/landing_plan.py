@@ -16,10 +16,9 @@ Arguments shared by all: `ends` (R, C, F, 2, E') path and energy at the end of a
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from synth.kernels.compiling import kernel, part, part_inline
 from synth.kernels.sweep.flow import LINEAR_CELLS
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 from synth.kernels.vector.packs import (
     EIGHT,
     choose,
@@ -38,7 +37,7 @@ STALLED = -1
 """Stands for the place of a landing that is none: the cut stops in the transient. Its share is its first weight."""
 
 
-@borrowing
+@part
 def factor_weights(f, factors):
     """Quadratic interpolation in the friction factor: (nearest node, centre node, three weights)."""
     width = factors[1] - factors[0]
@@ -48,7 +47,7 @@ def factor_weights(f, factors):
     return nearest, centre, 0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def landing_tables(factor, extra, factors, probability, mean, std, levels, pressure, drive, brake, path_step):
     """What every plan of the scenarios `factor`, `extra` (I,) needs, worked out once: (met, slope).
 
@@ -73,7 +72,7 @@ def landing_tables(factor, extra, factors, probability, mean, std, levels, press
     return met, slope
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def landing_scratch(points, levels, kind):
     """`crossed`, `runs` of `find_runs` for `points` E' energies; `place`, `weight` of `store_plan` for 2·L plans.
 
@@ -85,7 +84,7 @@ def landing_scratch(points, levels, kind):
     )  # fmt: skip
 
 
-@borrowing_inline
+@part_inline
 def law_met(met, c, r, q, m, side):
     """The numbers of `landing_tables` for one side of the law of the friction met."""
     at = ((((c * met.shape[1] + r) * met.shape[2] + q) * met.shape[3] + m) * 2 + side) * 6
@@ -93,7 +92,7 @@ def law_met(met, c, r, q, m, side):
     return item(met, at), nearest, centre, item(met, at + 3), item(met, at + 4), item(met, at + 5)
 
 
-@borrowing_inline
+@part_inline
 def end_of_transient(ends, at, width, nearest, centre, low, middle, high):
     """(path, energy, path of the nearest node) of a pack of energies; `at`: flat index of this node and transient.
 
@@ -112,7 +111,7 @@ def end_of_transient(ends, at, width, nearest, centre, low, middle, high):
     return path, energy
 
 
-@borrowing
+@part
 def find_runs(decision, c, begin, end, factor, ends, factors, path_step, longest, crossed, runs):
     """Runs of energies begin ≤ j < `end` that cross equally many path quanta in transient `c` of a decision at ξ_cut.
 
@@ -134,7 +133,7 @@ def find_runs(decision, c, begin, end, factor, ends, factors, path_step, longest
     return count
 
 
-@borrowing_inline
+@part_inline
 def landing_of_pack(
     ends, at, width, law, stalls, slope, left, extra, quanta, cells, points, stride, first, wrap, wrapped, least_ahead
 ):
@@ -190,7 +189,7 @@ def landing_of_pack(
     return row_a + (i - 1), row_b + (k - 1), a, b, crossed, lowest, highest
 
 
-@borrowing_inline
+@part_inline
 def store_plan(at_a, at_b, a, b, plan, place, weight):
     """Write the places and weights of a pack as number `plan` of `place` (·, 2, 8) and `weight` (·, 2, 4, 8)."""
     store(place, 2 * plan * EIGHT, at_a)
@@ -200,7 +199,7 @@ def store_plan(at_a, at_b, a, b, plan, place, weight):
         store(weight, (8 * plan + 4 + i) * EIGHT, b[i])
 
 
-@borrowing_inline
+@part_inline
 def planned(plan, lane, place, weight):
     """What `store_plan` wrote for one energy: (place a, place b, flat index of the first weight a, and of b).
 
@@ -211,7 +210,7 @@ def planned(plan, lane, place, weight):
     return item(place, at), item(place, at + EIGHT), first, first + 4 * EIGHT
 
 
-@borrowing_inline
+@part_inline
 def stencil_of_pack(x):
     """`flow.stencil` for a pack."""
     up, down, two = x + 1.0, x - 1.0, x - 2.0
@@ -220,7 +219,7 @@ def stencil_of_pack(x):
     return c0, c1, c2, c3
 
 
-@borrowing_inline
+@part_inline
 def interpolation_of_pack(position, stopped, points):
     """`flow.interpolation` for a pack; what `stopped` has its first weight alone."""
     inside = least(greatest(position, 0.0), points - 1.0)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from synth.kernels.vector.borrowing import borrowing
+from synth.kernels.compiling import part
 
 
-@borrowing
+@part
 def quanta_to_next_sample(speed, begin, end, acceleration, period, path_step, out):
     """`out`[begin:end]: path until the next sample in quanta, from every `speed` (E,), never below a small number.
 

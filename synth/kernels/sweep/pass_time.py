@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import math
 
+from synth.kernels.compiling import part, part_inline
 from synth.kernels.sweep.landing_plan import end_of_transient, law_met
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 from synth.kernels.vector.packs import (
     EIGHT,
     choose,
@@ -31,7 +31,7 @@ from synth.kernels.vector.packs import (
 )
 
 
-@borrowing
+@part
 def add_quantum_times(n, prices, speed, shift, energy_step, first, last, ahead, spent):
     """Add the price of the time over quantum `n` to all rows of `ahead` (M, H, L, E·T) but the first.
 
@@ -49,7 +49,7 @@ def add_quantum_times(n, prices, speed, shift, energy_step, first, last, ahead, 
                 add_priced(spent, price, 0, first, last, ahead[r, h, q])
 
 
-@borrowing
+@part
 def add_change_times(
     n, decision, last, c, q, runs, count, mode, ends, met, slope, least_ahead,
     extra, path_step, prices, speed, scratch, out,
@@ -80,7 +80,7 @@ def add_change_times(
             add_priced(scratch, price, -j, j, min(stop, j + EIGHT), out)
 
 
-@borrowing_inline
+@part_inline
 def is_priced(price):
     """Whether a second costs something for any target."""
     for t in range(price.shape[0]):
@@ -89,7 +89,7 @@ def is_priced(price):
     return False
 
 
-@borrowing_inline
+@part_inline
 def add_priced(spent, price, at, first, last, out):
     """Add `price` (T,) times `spent`[`at` + j] to `out` (E·T,), first ≤ j < last."""
     width = price.shape[0]
@@ -102,7 +102,7 @@ def add_priced(spent, price, at, first, last, out):
             store(out, j * width + t, load8(out, j * width + t) + load8(price, t) * spent[at + j])
 
 
-@borrowing_inline
+@part_inline
 def time_of_pack(
     ends, at, width, law, slope, left, extra, quanta, least_ahead, quantum, left_m, duration, lead, v, slowest
 ):

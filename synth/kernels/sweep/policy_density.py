@@ -8,13 +8,12 @@ nodes around it) or to go up (then the next sample is at the end of the transien
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from synth.kernels.compiling import kernel, part
 from synth.kernels.sweep.flow import NO_MASS, add_row, clear, extent, push, shifts, widen
 from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
 from synth.kernels.sweep.transient import spread_changes
-from synth.kernels.vector.borrowing import borrowing
 from synth.kernels.vector.packs import (
     EIGHT,
     choose,
@@ -38,7 +37,7 @@ MATTERS = 1e-3
 """Energies at which no state has this share of the negligible mass are not looked at."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def forward(
     policy, decision_at, entry, entry_mode, speed, stage, pressure, change_chain, chain_mode,
     ends, factors, probability, mean, std, levels, transition, stationary,
@@ -84,7 +83,7 @@ def forward(
         collect(arriving[drive.shape[0] % ring], mixing[drive.shape[0] % ring], heading, exits[i])
 
 
-@borrowing
+@part
 def follow(
     start, stop, negligible, heading, arriving, mixing, memory, scratch, spans, arrived, landed,
     policy, decision_at, speed, stage, pressure, change_chain, chain_mode,
@@ -152,7 +151,7 @@ def follow(
         clear_spans(heading[reach - 1], spans[reach - 1])
 
 
-@borrowing
+@part
 def find_arrivals(here, mixed, transition, landed, matters, arrived):
     """Mass that was deposited before the noise level changed joins `here` (H, L, E') after the change.
 
@@ -170,7 +169,7 @@ def find_arrivals(here, mixed, transition, landed, matters, arrived):
             arrived[h, q, 0], arrived[h, q, 1] = extent(here[h, q], low, high, matters)
 
 
-@borrowing
+@part
 def clear_landed(here, mixed, landed):
     """Set a node's rows (H, L, E') to zero where `landed` (H, 2) says and mixing filled packs; then it says nowhere."""
     for h in range(here.shape[0]):
@@ -180,7 +179,7 @@ def clear_landed(here, mixed, landed):
         landed[h, 0], landed[h, 1] = 0, 0
 
 
-@borrowing
+@part
 def occupied(heading, spans, arrived, points, matters):
     """The range of energies at which mass that `matters` stands, has arrived or is on its way."""
     low, high = heading.shape[3], 0
@@ -195,7 +194,7 @@ def occupied(heading, spans, arrived, points, matters):
     return min(low, high), high
 
 
-@borrowing
+@part
 def masses_at_sample(here, arrived, heading, span, first, last, negligible, mass):
     """`mass` (E',) = `here` + `heading` where it is not `negligible`: the range returned, which zeros follow."""
     begin, end = span[0], span[1]
@@ -211,7 +210,7 @@ def masses_at_sample(here, arrived, heading, span, first, last, negligible, mass
     return begin, end
 
 
-@borrowing
+@part
 def go_on(mass, policy, told, chance, quanta, begin, end, negligible, heading, spans, h, q):
     """What holds is on its way to its next sample, in `heading` (M + 1, H, L, E') at mode `h` and level `q`.
 
@@ -248,7 +247,7 @@ def go_on(mass, policy, told, chance, quanta, begin, end, negligible, heading, s
             store(chance, command * row + j, choose(magnitude(share) >= negligible, share, 0.0))
 
 
-@borrowing
+@part
 def clear_spans(rows, spans):
     """Set `rows` (H, L, E') to zero in the ranges `spans` (H, L, 2), which become empty."""
     for h in range(rows.shape[0]):
@@ -257,7 +256,7 @@ def clear_spans(rows, spans):
             spans[h, q, 0], spans[h, q, 1] = 0, 0
 
 
-@borrowing
+@part
 def collect(arriving, mixing, heading, exits):
     """Sum all mass at the exit over modes and levels into `exits` (E,), and leave the rings empty."""
     exits[:] = 0.0

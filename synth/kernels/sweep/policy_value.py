@@ -6,20 +6,19 @@ The transpose of `policy_density`: same chain, same weights.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from synth.kernels.compiling import kernel, part
 from synth.kernels.sweep.flow import in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
 from synth.kernels.sweep.pass_time import add_change_times, add_quantum_times
 from synth.kernels.sweep.policy_density import NEGLIGIBLE_MASS
 from synth.kernels.sweep.transient import change_values
-from synth.kernels.vector.borrowing import borrowing
 
 NEGLIGIBLE_PROBABILITY = 1e-9
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def backward(
     policy, slopes, decision_at, terminal, stalled, prices, entry, entry_mode, speed, stage, pressure,
     change_chain, chain_mode, ends, factors, probability, mean, std,
@@ -70,7 +69,7 @@ def backward(
     return cost
 
 
-@borrowing
+@part
 def follow_back(
     ahead, values, mixed, scratch, stop, quanta, commanded, shift, landing,
     policy, slopes, decision_at, stalled, prices, speed, stage, pressure,
@@ -153,7 +152,7 @@ def follow_back(
         mix_values(here, transition, first, last, stop, mixed[n % ring])
 
 
-@borrowing
+@part
 def decided(policy, slopes, density, command, decision, k, h, q, first, last):
     """Range of energies within [first, last) that hold every state for which the value of a command counts."""
     while first < last and not counts(policy, slopes, density, command, decision, k, h, q, first):
@@ -163,7 +162,7 @@ def decided(policy, slopes, density, command, decision, k, h, q, first, last):
     return first, last
 
 
-@borrowing
+@part
 def counts(policy, slopes, density, command, decision, k, h, q, j):
     """Whether the value of a command counts in a state: it may be given there, or the gradient asks for it.
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.kernels.vector.borrowing import borrowing
+from synth.kernels.compiling import part
 
 
-@borrowing
+@part
 def find_lines(gain, possible, reading, tolerance, best, chosen, lines):
     """The lines (C, T) of one stage from the gains (C, T, E) of its commands, 2·d − 2 down and 2·d − 1 up by d stages.
 
@@ -27,7 +27,7 @@ def find_lines(gain, possible, reading, tolerance, best, chosen, lines):
             lines[up, t] = max(lines[up, t], lines[0, t])
 
 
-@borrowing
+@part
 def upper_threshold(gain, speed, tolerance):
     """Speed above which the change pays most in total; +inf if nowhere. Ties go to holding."""
     best, total, at = 0.0, 0.0, -1
@@ -40,7 +40,7 @@ def upper_threshold(gain, speed, tolerance):
     return crossing(gain[at - 1] - tolerance, gain[at] - tolerance, speed[at - 1], speed[at])
 
 
-@borrowing
+@part
 def lower_threshold(gain, speed, tolerance):
     """Speed below which the change pays most in total; −inf if nowhere. Ties go to holding."""
     best, total, at = 0.0, 0.0, -1
@@ -53,7 +53,7 @@ def lower_threshold(gain, speed, tolerance):
     return crossing(gain[at] - tolerance, gain[at + 1] - tolerance, speed[at], speed[at + 1])
 
 
-@borrowing
+@part
 def ordered_thresholds(gain, count, reading, tolerance, side, best, chosen, out):
     """Thresholds `out` of the first `count` commands of one side (1: up, −1: down), ordered; `gain` (D, E).
 
@@ -90,13 +90,13 @@ def ordered_thresholds(gain, count, reading, tolerance, side, best, chosen, out)
         out[d] = max(out[d], out[d - 1]) if side > 0 else min(out[d], out[d - 1])
 
 
-@borrowing
+@part
 def excess(gain, first, last, j):
     """What command `last` pays over the one before `first`, which is holding if there is none."""
     return gain[last, j] - (gain[first - 1, j] if first > 0 else 0.0)
 
 
-@borrowing
+@part
 def beyond(gain, tolerance):
     """The part of a gain or loss that exceeds the tolerance."""
     if gain > tolerance:
@@ -106,7 +106,7 @@ def beyond(gain, tolerance):
     return 0.0
 
 
-@borrowing
+@part
 def crossing(a, b, low, high):
     """Where the line through (low, a) and (high, b) is zero, kept within [low, high]."""
     if (a < 0.0) == (b < 0.0):

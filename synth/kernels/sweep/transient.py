@@ -11,9 +11,9 @@ level; begin ≤ j < end the energies; `factor` ξ_cut; `mode` reached; `met`, `
 
 from __future__ import annotations
 
+from synth.kernels.compiling import part, part_inline
 from synth.kernels.sweep.flow import widen
 from synth.kernels.sweep.landing_plan import find_runs, landing_of_pack, law_met, planned, store_plan
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 from synth.kernels.vector.packs import (
     EIGHT,
     add_to,
@@ -29,7 +29,7 @@ from synth.kernels.vector.packs import (
 )
 
 
-@borrowing
+@part
 def spread_changes(
     share, n, decision, last, c, q, begin, end, factor, mode, ends, factors, met, slope, least_ahead,
     extra, path_step, energy_step, points, arriving, mixing, landed, scratch,
@@ -78,14 +78,14 @@ def spread_changes(
     return stalled
 
 
-@borrowing_inline
+@part_inline
 def add_four(masses, at, weight, first):
     """Add four numbers, every eighth of `weight` from flat index `first` on, to neighbours in `masses` from `at` on."""
     for k in range(4):
         add_to(masses, at + k, item(weight, first + EIGHT * k))
 
 
-@borrowing
+@part
 def widen_landed(quanta, cells, n, last, points, landed):
     """Widen `landed` (ring, 2) by landings from node `n`.
 
@@ -99,7 +99,7 @@ def widen_landed(quanta, cells, n, last, points, landed):
         widen(landed[k % landed.shape[0]], max(low, 1) - 1, min(high, points - 3) + 3)
 
 
-@borrowing
+@part
 def change_values(
     n, decision, last, c, q, begin, end, factor, mode, ends, factors, met, slope, least_ahead,
     extra, path_step, energy_step, points, values, mixed, stalled, scratch, out,

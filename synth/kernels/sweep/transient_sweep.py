@@ -6,12 +6,12 @@ Where a cut lands does not depend on the target speed; only the value there does
 
 from __future__ import annotations
 
+from synth.kernels.compiling import part, part_inline
 from synth.kernels.sweep.landing_plan import landing_of_pack, law_met, planned, store_plan
-from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 from synth.kernels.vector.packs import EIGHT, item, load8, store
 
 
-@borrowing
+@part
 def add_transient_values(
     n, decision, last, c, q, runs, count, mode, ends, met, slope, least_ahead,
     extra, path_step, energy_step, values, mixed, stalled, place, weight, out,
@@ -41,7 +41,7 @@ def add_transient_values(
                 add_planned(place, weight, lane, 2 * size, width, stalled, values, mixed, out, (j + lane) * width)
 
 
-@borrowing_inline
+@part_inline
 def add_planned(place, weight, lane, plans, width, stalled, values, mixed, out, to):
     """Add the planned values of one energy to `out` (E·T,) from flat index `to` on."""
     for t in range(0, width, EIGHT):
@@ -63,7 +63,7 @@ def add_planned(place, weight, lane, plans, width, stalled, values, mixed, out, 
         store(out, to + t, total)
 
 
-@borrowing_inline
+@part_inline
 def four_weights(weight, at):
     """Every eighth number of `weight` from flat index `at` on."""
     return item(weight, at), item(weight, at + EIGHT), item(weight, at + 2 * EIGHT), item(weight, at + 3 * EIGHT)

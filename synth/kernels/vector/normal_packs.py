@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 
+from synth.kernels.compiling import part_inline
 from synth.kernels.sweep.commands import CERTAIN
-from synth.kernels.vector.borrowing import borrowing_inline
 from synth.kernels.vector.packs import choose, gather, greatest, least, magnitude, nearest, whole
 
 PER_STD = 32
@@ -24,7 +24,7 @@ BELOW = np.array([0.5 * math.erfc(-z / math.sqrt(2.0)) for z in NODES])
 DENSITY = np.exp(-0.5 * NODES**2) / math.sqrt(2.0 * math.pi)
 
 
-@borrowing_inline
+@part_inline
 def normal_cdf8(z):
     """Φ of a pack, exactly 0 or 1 beyond six standard deviations."""
     held = least(greatest(z, -CERTAIN), CERTAIN)
@@ -38,7 +38,7 @@ def normal_cdf8(z):
     return choose(z > CERTAIN, 1.0, choose(z < -CERTAIN, 0.0, found))
 
 
-@borrowing_inline
+@part_inline
 def normal_density8(z):
     """φ of a pack, zero beyond six standard deviations."""
     held = least(greatest(z, -CERTAIN), CERTAIN)

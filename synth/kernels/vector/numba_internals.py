@@ -6,6 +6,8 @@ of packs and closed loop pass, and the coefficients of 86 tables are the same. p
 releases alone.
 
 - `WITHOUT_REFERENCE_COUNTS`, an undocumented option of `njit`: without it kernels give the same bits, but slower;
+- `WITHOUT_CALLBACK`, another one: without it kernels do the same, but take longer to compile;
+- `compiled_part`, which keeps numba from making a function that Python can call: the same, they only take longer;
 - `CACHE_READER`, the name of numba's module for cached kernels: without it `guarded` mends no damaged cache;
 - `ir`, llvmlite's builders of machine code, and `intrinsic`, `register_vector`, `infer_operation`, `lower_operation`,
   `declared_function`, `array_data`, from numba's registries and code generator: without them there are no packs, and
@@ -16,18 +18,20 @@ A new release of numba: read its list of changes, run `.ci/newest`, raise the ca
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from llvmlite import ir
-from numba import extending
+from numba import extending, njit
 from numba.core import cgutils
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 
 __all__ = [
     "CACHE_READER",
+    "WITHOUT_CALLBACK",
     "WITHOUT_REFERENCE_COUNTS",
     "array_data",
+    "compiled_part",
     "declared_function",
     "infer_operation",
     "intrinsic",
@@ -41,6 +45,30 @@ WITHOUT_REFERENCE_COUNTS: dict[str, Any] = {"_nrt": False}
 
 An unknown option is refused when the kernel is decorated, so a numba without it cannot go unnoticed.
 """
+
+WITHOUT_CALLBACK: dict[str, Any] = {"no_cfunc_wrapper": True}
+"""Option of `njit` and `overload`: numba makes no second function of it that C could call back.
+
+Nothing here is handed to C, and to make these took a sixth of the time of compiling.
+"""
+
+
+def compiled_part(function: Callable[..., Any], options: Mapping[str, Any]) -> Any:
+    """`function` compiled with `options` of `njit` for kernels alone; a `TypeError` for who calls it from Python.
+
+    What numba makes of a function for Python took a fifth of the time of compiling. A call of what was not made would
+    end the process, so no call is given to it.
+    """
+
+    def refused(*_arguments: Any, **_named: Any) -> Any:
+        raise TypeError(f"{function.__name__} is a part of kernels; from Python call {function.__name__}.py_func")
+
+    compiler: Any = njit
+    made = compiler(**options, no_cpython_wrapper=True)(function)
+    made._insert = lambda *_arguments, **_named: None
+    made._compile_for_args = refused
+    return made
+
 
 CACHE_READER = "numba.core.caching"
 """The module that reads cached kernels: an error raised in it means that the cache is damaged."""

@@ -11,10 +11,14 @@ each function means, in numpy, which is also what runs without the compiler; `pa
 
 from __future__ import annotations
 
+from functools import partial
+from typing import Any
+
 import numpy as np
 from numba.extending import overload
 
 from synth.kernels.vector import mask_code, pack_code, pack_memory
+from synth.kernels.vector.numba_internals import WITHOUT_CALLBACK
 
 SIXTEEN, EIGHT = 16, 8
 """Lanes of a pack: two packs of energies at once; energies or targets."""
@@ -146,30 +150,33 @@ def last_lane(mask, count):
     return int(np.max(np.flatnonzero(mask[:count]), initial=-1))
 
 
-overload(item)(lambda array, at: lambda array, at: pack_memory.item(array, at))
-overload(add_to)(lambda array, at, number: lambda array, at, number: pack_memory.add_to(array, at, number))
-overload(fetch)(lambda array, at: lambda array, at: pack_memory.fetch(array, at))
-overload(eight)(lambda number: lambda number: pack_code.eight(number))
-overload(load16)(lambda array, at: lambda array, at: pack_memory.load16(array, at))
-overload(load8)(lambda array, at: lambda array, at: pack_memory.load8(array, at))
-overload(store)(lambda array, at, pack: lambda array, at, pack: pack_memory.store(array, at, pack))
-overload(gather)(lambda array, where: lambda array, where: pack_memory.gather(array, where))
-overload(gather_four)(lambda array, where: lambda array, where: pack_memory.gather_four(array, where))
-overload(choose)(lambda mask, yes, no: lambda mask, yes, no: pack_code.choose(mask, yes, no))
-overload(least)(lambda a, b: lambda a, b: pack_code.choose(b < a, b, a))
-overload(greatest)(lambda a, b: lambda a, b: pack_code.choose(b > a, b, a))
-overload(magnitude)(lambda pack: lambda pack: pack_code.choose(pack < 0.0, pack * -1.0, pack))
-overload(holds_anywhere)(lambda mask: lambda mask: pack_code.holds_anywhere(mask))
-overload(whole)(lambda pack: lambda pack: pack_code.whole(pack))
-overload(fraction)(lambda pack: lambda pack: pack_code.fraction(pack))
-overload(scatter)(
+overloaded: Any = overload
+compiled = partial(overloaded, jit_options=WITHOUT_CALLBACK)
+
+compiled(item)(lambda array, at: lambda array, at: pack_memory.item(array, at))
+compiled(add_to)(lambda array, at, number: lambda array, at, number: pack_memory.add_to(array, at, number))
+compiled(fetch)(lambda array, at: lambda array, at: pack_memory.fetch(array, at))
+compiled(eight)(lambda number: lambda number: pack_code.eight(number))
+compiled(load16)(lambda array, at: lambda array, at: pack_memory.load16(array, at))
+compiled(load8)(lambda array, at: lambda array, at: pack_memory.load8(array, at))
+compiled(store)(lambda array, at, pack: lambda array, at, pack: pack_memory.store(array, at, pack))
+compiled(gather)(lambda array, where: lambda array, where: pack_memory.gather(array, where))
+compiled(gather_four)(lambda array, where: lambda array, where: pack_memory.gather_four(array, where))
+compiled(choose)(lambda mask, yes, no: lambda mask, yes, no: pack_code.choose(mask, yes, no))
+compiled(least)(lambda a, b: lambda a, b: pack_code.choose(b < a, b, a))
+compiled(greatest)(lambda a, b: lambda a, b: pack_code.choose(b > a, b, a))
+compiled(magnitude)(lambda pack: lambda pack: pack_code.choose(pack < 0.0, pack * -1.0, pack))
+compiled(holds_anywhere)(lambda mask: lambda mask: pack_code.holds_anywhere(mask))
+compiled(whole)(lambda pack: lambda pack: pack_code.whole(pack))
+compiled(fraction)(lambda pack: lambda pack: pack_code.fraction(pack))
+compiled(scatter)(
     lambda array, where, mask, pack: lambda array, where, mask, pack: pack_memory.scatter(array, where, mask, pack)
 )
-overload(keep)(lambda array, at, mask, pack: lambda array, at, mask, pack: pack_memory.keep(array, at, mask, pack))
-overload(opposite)(lambda mask: lambda mask: pack_code.opposite(mask))
-overload(narrow)(lambda pack: lambda pack: pack_code.narrow(pack))
-overload(wide)(lambda pack: lambda pack: pack_code.wide(pack))
-overload(root)(lambda pack: lambda pack: pack_code.root(pack))
-overload(nearest)(lambda pack: lambda pack: pack_code.nearest(pack))
-overload(first_lane)(lambda mask: lambda mask: mask_code.first_lane(mask))
-overload(last_lane)(lambda mask, count: lambda mask, count: mask_code.last_lane(mask, count))
+compiled(keep)(lambda array, at, mask, pack: lambda array, at, mask, pack: pack_memory.keep(array, at, mask, pack))
+compiled(opposite)(lambda mask: lambda mask: pack_code.opposite(mask))
+compiled(narrow)(lambda pack: lambda pack: pack_code.narrow(pack))
+compiled(wide)(lambda pack: lambda pack: pack_code.wide(pack))
+compiled(root)(lambda pack: lambda pack: pack_code.root(pack))
+compiled(nearest)(lambda pack: lambda pack: pack_code.nearest(pack))
+compiled(first_lane)(lambda mask: lambda mask: mask_code.first_lane(mask))
+compiled(last_lane)(lambda mask, count: lambda mask, count: mask_code.last_lane(mask, count))

@@ -69,7 +69,7 @@ def test_routes_and_lists_of_tracks_are_those_of_enumeration() -> None:
         if len(graph.leads) == 2:
             joined += bool(set(graph.routes(graph.leads[0])) & set(graph.routes(graph.leads[1])))
     assert max(sizes) > 20  # else the humps are too small to prove anything
-    assert joined > 50
+    assert joined > 20
 
 
 def test_metres_of_a_route_are_sums_over_its_edges() -> None:

@@ -10,11 +10,11 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, roll_period, wanted_stage
 from synth.kernels.any_time.driven_period import play_period, wait_after_command
+from synth.kernels.compiling import kernel
 from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, Draws, Exits, Floats, Ints, Path, advance, note
 from synth.kernels.loop.regulator import Sensor, admitted, measure
 
@@ -46,13 +46,13 @@ class Asking(NamedTuple):
     initial_mode: int
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def reached(pressure: float, stage_kpa: float, valves: Any) -> bool:
     """Whether `pressure` lies in the dead band of the stage, edges included, so that its drive rests."""
     return bool(abs(stage_kpa - pressure) <= valves.band_kpa * (1.0 + 1e-12))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def wait_at_turn(pressure: float, wait: float, stage_kpa: float, begins: bool, stuck: Any, free: Any) -> float:
     """The wait of the drive where valves get stuck (`begins`), or are free again.
 
@@ -65,7 +65,7 @@ def wait_at_turn(pressure: float, wait: float, stage_kpa: float, begins: bool, s
     return anew if math.isinf(wait) else wait
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def run_stuck_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: SampledDrive, stuck: Any, sensor: Sensor, law: AnyTimeLaw,
     asking: Asking, begin_s: float, end_s: float, entry_m_s: float, first_sample_s: float,
@@ -116,7 +116,7 @@ def run_stuck_pass(
     return v, time, status, switchings, count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def run_stuck_passes(
     path: Path, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw, asking: Asking, stuck: Stuck, draws: Draws,
     exits: Exits, events: Floats,

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.kernels.compiling import part
 from synth.kernels.loop.regulator import estimated_speed
-from synth.kernels.vector.borrowing import borrowing
 from tuning_tables.programs.estimate import ESTIMATE, FACTOR
 from tuning_tables.programs.line_table import LineTable
 
@@ -16,7 +16,7 @@ KNOWN = len(ESTIMATE.members)
 """Numbers of the state."""
 
 
-@borrowing
+@part
 def observed(table: LineTable, state: NDArray[np.float32], s: float, measured: float, overpressure_kpa: float) -> Any:
     """(estimated speed, m/s, estimated friction factor) after one more sample; speed −1 before the first reading."""
     speed = float(estimated_speed(table, state, s, measured, overpressure_kpa))

@@ -10,7 +10,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from scripts.studies.peers.kernels.observed_motion import KNOWN, observed
@@ -18,6 +17,7 @@ from scripts.studies.peers.kernels.prediction import MeanPath, Prediction, stage
 from scripts.studies.peers.kernels.pulses import STATE, Pulses, begin_pulses, stage_by_pulses
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, roll_period, wanted_stage
 from synth.kernels.any_time.driven_period import play_period
+from synth.kernels.compiling import kernel, part
 from synth.kernels.loop.closed_loop import (
     LEFT,
     LONGEST_PASS_S,
@@ -31,7 +31,6 @@ from synth.kernels.loop.closed_loop import (
     note,
 )
 from synth.kernels.loop.regulator import Sensor, admitted, measure
-from synth.kernels.vector.borrowing import borrowing
 from tuning_tables.programs.line_table import LineTable
 
 BY_TABLE, BY_PREDICTION, BY_PULSES = 0, 1, 2
@@ -70,7 +69,7 @@ class Memory(NamedTuple):
     pulses: Floats
 
 
-@borrowing
+@part
 def wanted_by(
     peer: Peer, path: MeanPath, hardware: Hardware, stage: int, may: bool, pressure: float, wait: float, factor: float,
     cell: int, s: float, v: float, memory: Memory,
@@ -91,7 +90,7 @@ def wanted_by(
     return tabled
 
 
-@borrowing
+@part
 def play_locked(drive: Drive, mode: int, chain: int, played: int, over: Floats) -> Any:
     """A period of the drive that is commanded at rest into `over`; (mode, chain, periods played) at its end."""
     if chain < 0:
@@ -106,7 +105,7 @@ def play_locked(drive: Drive, mode: int, chain: int, played: int, over: Floats) 
     return mode, chain, played
 
 
-@borrowing
+@part
 def run_peer_pass(
     edges_m: Floats, free: Floats, brake: Floats, hardware: Hardware, peer: Peer, path: MeanPath, entry_m_s: float,
     first_sample_s: float, noise_z: NDArray[np.float32], memory: Memory, events: Floats,
@@ -159,7 +158,7 @@ def run_peer_pass(
     return v, time, status, switchings, count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def run_peer_passes(
     cells: Path, hardware: Hardware, peer: Peer, path: MeanPath, draws: Draws, exits: Exits, events: Floats
 ) -> int:

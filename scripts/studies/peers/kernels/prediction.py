@@ -12,9 +12,9 @@ import numpy as np
 
 from synth.kernels.any_time.closed_loop import SampledDrive
 from synth.kernels.any_time.driven_period import play_period
+from synth.kernels.compiling import part
 from synth.kernels.loop.closed_loop import MOVING, Floats, advance
 from synth.kernels.loop.regulator import admitted
-from synth.kernels.vector.borrowing import borrowing
 
 
 class MeanPath(NamedTuple):
@@ -47,7 +47,7 @@ class Prediction(NamedTuple):
     parts: int
 
 
-@borrowing
+@part
 def line_square(path: MeanPath, aim_m_s: float, slowing_kpa: float, cell: int, s: float) -> float:
     """v² at `s` in `cell`, from which so much overpressure at ξ = 1 leads to `aim_m_s` at the exit; may be negative."""
     square = aim_m_s * aim_m_s
@@ -60,7 +60,7 @@ def line_square(path: MeanPath, aim_m_s: float, slowing_kpa: float, cell: int, s
     return line
 
 
-@borrowing
+@part
 def held(
     path: MeanPath, drive: SampledDrive, period_s: float, horizon_s: float, old: int, new: int, pressure: float,
     wait: float, factor: float, cell: int, s: float, v: float, over: Floats,
@@ -84,7 +84,7 @@ def held(
     return cell, s, v, status
 
 
-@borrowing
+@part
 def stage_by_prediction(
     law: Prediction, path: MeanPath, drive: SampledDrive, period_s: float, stage: int, pressure: float, wait: float,
     factor: float, cell: int, s: float, v: float, over: Floats,

@@ -6,8 +6,8 @@ import math
 from typing import NamedTuple
 
 from scripts.studies.peers.kernels.prediction import MeanPath, line_square
+from synth.kernels.compiling import part
 from synth.kernels.loop.closed_loop import Floats
-from synth.kernels.vector.borrowing import borrowing
 
 INTEGRAL, CLOCK, LOW, SHARE, HIGH_FIRST = range(5)
 """Places of the state: integral of the error, m/s; time in the pulse period, s (negative: none has begun); the lower of
@@ -32,14 +32,14 @@ class Pulses(NamedTuple):
     stage_kpa: Floats
 
 
-@borrowing
+@part
 def begin_pulses(state: Floats) -> None:
     """The state (`STATE`,) before the first sample of a cut."""
     state[:] = 0.0
     state[CLOCK] = -1.0
 
 
-@borrowing
+@part
 def output_kpa(law: Pulses, path: MeanPath, sample_s: float, cell: int, s: float, v: float, state: Floats) -> float:
     """The overpressure that the PI wants, within that of the stages; the integral stands still beyond them."""
     error = v - math.sqrt(max(line_square(path, law.aim_m_s, law.held_kpa, cell, s), 0.0))
@@ -51,7 +51,7 @@ def output_kpa(law: Pulses, path: MeanPath, sample_s: float, cell: int, s: float
     return clamped
 
 
-@borrowing
+@part
 def begin_period(law: Pulses, wanted_kpa: float, stage: int, state: Floats) -> None:
     """Two neighbouring stages and the share of the upper one; the one that is nearer to `stage` comes first."""
     low = 0
@@ -62,7 +62,7 @@ def begin_period(law: Pulses, wanted_kpa: float, stage: int, state: Floats) -> N
     state[HIGH_FIRST] = 1.0 if stage > low else 0.0
 
 
-@borrowing
+@part
 def stage_by_pulses(
     law: Pulses, path: MeanPath, sample_s: float, stage: int, cell: int, s: float, v: float, state: Floats
 ) -> int:
