@@ -12,6 +12,7 @@ import pytest
 
 from synth.checker.finding import Kind
 from synth.checker.source import read_source
+from tests.effort import sized
 from tests.tuning_tables.forged_book import forge, put
 from tuning_tables import TableError, read_book, write_book
 from tuning_tables.book_layout import Layout, book_layout
@@ -93,7 +94,7 @@ def test_a_column_of_another_type_unit_or_length(mixed: Path, layout: Layout, tm
 
         return edit
 
-    for column in layout.columns:
+    for column in layout.columns[:: sized(3, 1)]:
         dtype = {"S": "S90", "<f8": "<f4", "<f4": "<f8"}.get(column.dtype, "<i2")
         edits = [other_unit(column.name), wider(column.name, dtype)]
         for edit in (*edits, *(longer(column.name, axis) for axis in range(len(column.axes)))):

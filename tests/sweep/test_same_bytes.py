@@ -33,7 +33,7 @@ mass_t = 30
 """
 
 
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.long), 2])
 def test_worker_processes_give_the_bytes_of_this_process(
     config: Path, serial: Path, tmp_path: Path, workers: int
 ) -> None:

@@ -60,6 +60,7 @@ def up_to_stage_1(controller: TableController) -> TableController:
     return TableController(replace(table, stages=tuple(stages)))
 
 
+@pytest.mark.long
 def test_a_summit_on_an_edge_is_no_sharp_number(yard: Yard, found: Estimate) -> None:
     """Of a change to stage 1 the pressure rests before the next reading whatever the touch delay is, nearly.
 

@@ -157,6 +157,7 @@ def test_the_command_tells_a_day(config: ResolvedConfig, table: ControllerTable,
     assert main(["watch", str(tmp_path / "none.csv"), "-o", str(tmp_path / "calm")]) == 2
 
 
+@pytest.mark.long
 def test_drifts_are_counted_from_the_reference(
     config: ResolvedConfig,
     table: ControllerTable,

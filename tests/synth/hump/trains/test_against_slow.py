@@ -10,6 +10,7 @@ from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10
 from plant_models.rolling.weather import Weather
 from synth.hump.trains.hump_routes import Mark
 from synth.hump.trains.train_memory import TrainMemory
+from tests.effort import sized
 from tests.plant_models.rolling.populations import MIX, population
 from tests.synth.hump.trains.agreement import agreement, judged
 from tests.synth.hump.trains.fast_and_slow import HARD, ORDINARY, BothTrains, Hardness, both_trains
@@ -17,7 +18,7 @@ from tests.synth.hump.trains.slow_humping import STEP_S, SlowHumping, humped_slo
 from tests.synth.hump.trains.slow_train import Kind
 
 TRACKS = (1, 2, 3, 9, 17)
-TRAINS, CUTS = 15, 6
+TRAINS, CUTS = sized(6, 15), 6
 NEAR_S = 0.03
 """A decision that is nearer to its limit may be another with the steps of the layered simulator."""
 

@@ -84,6 +84,7 @@ def test_the_files_of_a_gain_are_its_book_and_each_of_its_tables(retuned: Retune
     assert tuple(from_json(written[f"tables/{table.id}.json"]) for table in retuned.tables) == retuned.tables
 
 
+@pytest.mark.long
 def test_what_a_log_gave_is_not_offered_again(
     retuned: Retuned, known: Yard, worse: Yard, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
