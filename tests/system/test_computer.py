@@ -102,7 +102,7 @@ def test_a_pay_back_that_never_comes_is_a_statement(tmp_path: Path) -> None:
     document = json.loads(done.stdout)
     figures = {row["figure"]: row["value"] for row in document["tables"]["economics"]}
     assert figures["pay back years"] is None
-    assert {name.partition("/")[0] for name in document["files"]} == {"sheets"}
+    assert {name.partition("/")[0] for name in document["files"]} == {"configuration.toml", "sheets"}
 
 
 def test_an_overloaded_hump_is_the_fault_of_the_input(tmp_path: Path) -> None:
