@@ -76,6 +76,7 @@ def test_intervals_of_real_tables_hold_the_truth(path: Path) -> None:
     assert held["rms"] < 0.99 * BLOCKS  # an interval that is never wrong is too wide
 
 
+@pytest.mark.long
 def test_another_seed_changes_no_verdict_and_no_figure_beyond_its_interval() -> None:
     config = DEFAULT_BOOK
     found = [

@@ -117,6 +117,7 @@ def passage_table(config_path: Path) -> PassageTable:
     )
 
 
+@pytest.mark.long
 def test_json_is_the_file_and_the_same_table_gives_the_same_bytes(
     command: Command, tuned: Path, two_classes: Path, tmp_path: Path
 ) -> None:

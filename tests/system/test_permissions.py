@@ -142,6 +142,7 @@ def test_all_files_are_named_with_their_hashes(ran: Path) -> None:
         assert hashlib.sha256((ran / "one" / name).read_bytes()).hexdigest() == digest
 
 
+@pytest.mark.long
 def test_the_same_bytes_with_two_workers_and_as_json(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

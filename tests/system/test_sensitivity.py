@@ -99,6 +99,7 @@ def test_what_the_configuration_sets_is_held(ran: Path) -> None:
     assert all(row["low"] <= row["nominal"] <= row["high"] for row in told["ranges"])
 
 
+@pytest.mark.long
 def test_same_bytes_whatever_the_threads(ran: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     monkeypatch.setattr(command, "available", lambda: 3)

@@ -291,6 +291,7 @@ def test_tune_tells_that_it_leaves_point_sensors_aside(command: Command, config:
     assert "tables are made for the radar of [sensor]; 'retarder-synth sensors tune' makes those for" in ran.err
 
 
+@pytest.mark.long
 def test_the_checkers_own_passes_confirm_the_figures_and_only_true_ones(tuned_points: Path, tmp_path: Path) -> None:
     verdict = verify(tuned_points, 1500, 3)
     assert verdict.findings == ()
