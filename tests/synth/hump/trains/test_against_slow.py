@@ -18,7 +18,7 @@ from tests.synth.hump.trains.slow_humping import STEP_S, SlowHumping, humped_slo
 from tests.synth.hump.trains.slow_train import Kind
 
 TRACKS = (1, 2, 3, 9, 17)
-TRAINS, CUTS = sized(6, 15), 6
+TRAINS, CUTS = sized(10, 15), 6
 NEAR_S = 0.03
 """A decision that is nearer to its limit may be another with the steps of the layered simulator."""
 
