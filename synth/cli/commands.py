@@ -105,7 +105,7 @@ def plot(
 ) -> int:
     """Draw exported tables.
 
-    Lines and surfaces; where the plant is known, simulated passes too. Nothing is solved.
+    Lines, surfaces and exit speeds; where the plant is known, simulated passes too. Nothing is solved.
     """
     from synth.cli.plot import plot_command
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from synth.retarder.configuration.resolved_config import ResolvedConfig
     from tuning_tables import ControllerTable
+    from tuning_tables.aim import AimTable
     from tuning_tables.passages.passage_table import PassageTable
     from tuning_tables.table_kinds import StageTable
 
@@ -26,11 +27,13 @@ def plot_command(source: Path, output: Path, config_path: Path | None, as_json: 
     from synth.cli.loop import any_tables
     from synth.frame.results_directory import results_directory
     from synth.frame.terminal.interrupt import interruptible
-    from synth.retarder.forms.table_file import file_stem, files_at
+    from synth.retarder.forms.aim_file import read_aims
+    from synth.retarder.forms.table_file import file_stem, files_at, holds_tables
     from synth.retarder.tables_configuration import configuration_for
     from tuning_tables.passages.passage_table import PassageTable
 
-    tables = any_tables(source)
+    aims = [file.table for file in read_aims(source)]
+    tables = any_tables(source) if not aims or holds_tables(source) else []
     config, place = configuration_for(config_path, [table for table in tables if isinstance(table, PassageTable)])
     around = Surroundings(config, place, config_path is not None)
     from synth.frame.picture.figure_file import figure_files
@@ -38,6 +41,8 @@ def plot_command(source: Path, output: Path, config_path: Path | None, as_json: 
     written: list[str] = []
     reads = [*files_at(source), *filter(None, [config_path])]
     with results_directory(output, "plot", reads) as directory, interruptible(directory, "pictures"):
+        for name, figure in aim_figures(aims).items():
+            written += map(str, directory.write_all(figure_files(figure, name)))
         for table in tables:
             for name, figure in figures_of(table, around).items():
                 written += map(str, directory.write_all(figure_files(figure, f"{file_stem(table)}-{name}")))
@@ -65,6 +70,16 @@ class Surroundings:
                 raise
             say(f"no passes are drawn: {fault}")
             return None
+
+
+def aim_figures(tables: Sequence[AimTable]) -> Mapping[str, Figure]:
+    """The pictures of aim tables by name, all tables of one kind of knowledge together."""
+    from synth.aim.pictures.commands import commands_by_cars, commands_by_resistance
+
+    measured = [table for table in tables if table.is_measured]
+    plain = [table for table in tables if not table.is_measured]
+    found = {"aim-commands-by-cars": commands_by_cars(plain)} if plain else {}
+    return {**found, "aim-commands-by-resistance": commands_by_resistance(measured)} if measured else found
 
 
 def figures_of(table: StageTable, around: Surroundings) -> Mapping[str, Figure]:

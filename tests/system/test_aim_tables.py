@@ -65,6 +65,18 @@ def test_inspect_tells_the_contents(command: Command, aims: Path) -> None:
     ]  # fmt: skip
 
 
+def test_plot_draws_the_speeds_and_no_loop_is_closed(command: Command, aims: Path, tmp_path: Path) -> None:
+    ran = command("plot", aims, "-o", tmp_path / "plots")
+    assert ran.code == 0
+    pictures = {path.name for path in (tmp_path / "plots").glob("aim-*")}
+    assert pictures == {f"aim-commands-by-{what}.{kind}" for what in ("cars", "resistance") for kind in ("png", "svg")}
+    assert all((tmp_path / "plots" / name).stat().st_size > 5000 for name in pictures)
+    for name in ("loop", "validate"):
+        assert refused(command, name, aims, "-o", tmp_path / name) == (
+            2, f"{aims}: its tables are aim tables, which regulate nothing; give tables that do",
+        )  # fmt: skip
+
+
 def test_a_table_without_any_speed_is_told(command: Command, tmp_path: Path) -> None:
     nothing = np.full_like(TABLES[0].exit_speed_m_s, np.nan)
     table = replace(TABLES[0], exit_speed_m_s=nothing, reported=reported_of(nothing))
@@ -161,8 +173,8 @@ def test_damage_and_faults_of_use_are_told_in_one_sentence(command: Command, aim
     assert (code, "must not end with AIM" in sentence) == (2, True)
     (tmp_path / "empty").mkdir()
     assert refused(command, "export", tmp_path / "empty", "--format", "c")[0] == 2
-    assert refused(command, "plot", aims)[0] == 2
-    assert refused(command, "plot", aims / "tables" / "b.json")[0] == 2
+    assert refused(command, "loop", aims)[0] == 2
+    assert refused(command, "loop", aims / "tables" / "b.json")[0] == 2
     assert not (tmp_path / "x").exists()
 
 

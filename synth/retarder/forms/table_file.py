@@ -10,6 +10,7 @@ from pathlib import Path
 from synth.frame.input_error import InputError
 from synth.frame.machine_fault import MACHINE_FAULTS
 from synth.frame.summary import FORMAT
+from synth.retarder.forms.aim_file import read_aims
 from synth.retarder.forms.table_mark import is_table_of
 from tuning_tables import ControllerTable, read_book, read_json
 from tuning_tables.aim.aim_table import AimTable
@@ -40,6 +41,8 @@ def read_tables(path: Path, directory_allowed: bool = False) -> tuple[TableFile,
         if not directory_allowed:
             raise InputError(f"{path}: this is a directory; give a table (.json) or a book (.h5)")
         files = table_files(path)
+        if not files and read_aims(path):
+            raise InputError(f"{path}: its tables are aim tables, which regulate nothing; give tables that do")
         if not files:
             raise InputError(f"{path}: there are neither tables (.json) nor books (.h5) in it; give what a tune left")
         return tuple(read_table_file(file) for file in files)
