@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import struct
 from collections.abc import Iterator, Sequence
@@ -11,6 +9,7 @@ from typing import Final
 
 from synth.checker.finding import DamagedError
 from synth.checker.float32 import decide, from_bits, rises
+from synth.checker.source_file import rows_below
 from synth.checker.table_reading import Table
 
 HEAD: Final = ["table", "id", "stage", "s_bits", "v_bits", "s_m", "v_m_s", "answer"]
@@ -20,17 +19,12 @@ HEAD_WITH_GAUGE: Final = [*HEAD[:5], "p_bits", *HEAD[5:7], "pressure_kpa", "answ
 
 def differences(content: bytes, tables: Sequence[Table]) -> Iterator[tuple[str, str]]:
     """(about, sentence) for tables with wrong vectors, the first of each; `tables` in the order of the book."""
-    try:
-        rows = list(csv.reader(io.StringIO(content.decode("utf-8"), newline=""), strict=True))
-    except (UnicodeDecodeError, csv.Error) as fault:
-        raise DamagedError(f"it is no CSV: {fault}") from None
     has_gauge = any(table.has_gauge for table in tables)
     head = HEAD_WITH_GAUGE if has_gauge else HEAD
-    if not rows or rows[0] != head:
-        raise DamagedError(f"its first line is not {','.join(head)}")
+    rows = rows_below(head, content)
     seen: set[int] = set()
     wrong: set[int] = set()
-    for place, row in enumerate(rows[1:], start=2):
+    for place, row in enumerate(rows, start=2):
         try:
             number, name, stage = int(row[0]), row[1], int(row[2])
             s, v, answer = from_bits(int(row[3], 16)), from_bits(int(row[4], 16)), int(row[len(head) - 1])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import csv
+import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -30,3 +33,14 @@ def text_of(path: Path) -> str:
         return content_of(path).decode("ascii")
     except UnicodeDecodeError as fault:
         raise DamagedError(f"byte {fault.start} is not ASCII") from None
+
+
+def rows_below(head: Sequence[str], content: bytes) -> list[list[str]]:
+    """The rows of a CSV file below its first line, which must be `head`; `DamagedError` otherwise."""
+    try:
+        rows = list(csv.reader(io.StringIO(content.decode("utf-8"), newline=""), strict=True))
+    except (UnicodeDecodeError, csv.Error) as fault:
+        raise DamagedError(f"it is no CSV: {fault}") from None
+    if not rows or rows[0] != list(head):
+        raise DamagedError(f"its first line is not {','.join(head)}")
+    return rows[1:]

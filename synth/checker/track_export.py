@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import struct
 from collections.abc import Iterator, Sequence
@@ -13,6 +11,7 @@ from typing import Final
 from synth.checker.estimator import Estimator, Observer, next_unseen
 from synth.checker.finding import DamagedError, shown
 from synth.checker.float32 import bits, from_bits
+from synth.checker.source_file import rows_below
 from synth.checker.table_reading import Table
 
 WORDS: Final = ("s_bits", "v_bits", "overpressure_bits", "estimate_bits")
@@ -24,17 +23,12 @@ Sample = tuple[int, int, int, int, float, float]
 
 def differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iterator[tuple[str, str]]:
     """(about, sentence) for each wrong track; `numbered`: whether `tables` have the order of the book."""
-    try:
-        rows = list(csv.reader(io.StringIO(content.decode("utf-8"), newline=""), strict=True))
-    except (UnicodeDecodeError, csv.Error) as fault:
-        raise DamagedError(f"it is no CSV: {fault}") from None
-    if not rows or rows[0] != HEAD:
-        raise DamagedError(f"its first line is not {','.join(HEAD)}")
+    rows = rows_below(HEAD, content)
     if any(len(row) != len(HEAD) for row in rows):
         raise DamagedError(f"one of its rows has not {len(HEAD)} fields")
     numbers = {table.id: number for number, table in enumerate(tables)}
     tracked = set()
-    for (track, number, name), group in groupby(rows[1:], lambda row: (row[0], row[1], row[2])):
+    for (track, number, name), group in groupby(rows, lambda row: (row[0], row[1], row[2])):
         samples = [sample_of(row) for row in group]
         if name not in numbers or (numbered and number != str(numbers[name])):
             yield "", f"track {shown(track)} is of table {shown(number)}, {shown(name)}, which is not there"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import struct
 from collections.abc import Iterator, Sequence
 from typing import Any, Final
@@ -15,6 +13,7 @@ from synth.checker.canonical import canonical_form, crc32
 from synth.checker.csv_export import Rows, rows_of, same
 from synth.checker.finding import DamagedError, shown
 from synth.checker.float32 import bits, from_bits, rounded
+from synth.checker.source_file import rows_below
 
 COLUMNS: Final = ("cars", "free_distance_m", "resistance_n_per_kn", "exit_speed_m_s", *FIGURES)
 GOLDEN_HEAD: Final = [
@@ -60,16 +59,11 @@ def same_cells(record: str, cells: tuple[str, ...], values: list[Any]) -> bool:
 
 def golden_differences(content: bytes, aims: Sequence[Aim]) -> Iterator[tuple[str, str]]:
     """(about, sentence) for tables with wrong golden aims, the first of each; each answer is worked out anew."""
-    try:
-        rows = list(csv.reader(io.StringIO(content.decode("utf-8"), newline=""), strict=True))
-    except (UnicodeDecodeError, csv.Error) as fault:
-        raise DamagedError(f"it is no CSV: {fault}") from None
-    if not rows or rows[0] != GOLDEN_HEAD:
-        raise DamagedError(f"its first line is not {','.join(GOLDEN_HEAD)}")
+    rows = rows_below(GOLDEN_HEAD, content)
     by_id = {aim.id: aim for aim in aims}
     seen: set[str] = set()
     wrong: set[str] = set()
-    for place, row in enumerate(rows[1:], start=2):
+    for place, row in enumerate(rows, start=2):
         try:
             name, cars = row[1], int(row[2])
             distance, resistance = (from_bits(int(cell, 16)) for cell in row[3:5])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import struct
 from collections.abc import Iterator, Sequence
 from typing import Final
@@ -12,22 +10,18 @@ from synth.checker.finding import DamagedError
 from synth.checker.float32 import from_bits
 from synth.checker.passages.reading import PassageTable
 from synth.checker.passages.rule import wanted
+from synth.checker.source_file import rows_below
 
 HEAD: Final = ["table", "id", "passage", "stage", "reading_m_s_bits", "wanted", "reading_m_s"]
 
 
 def differences(content: bytes, tables: Sequence[PassageTable]) -> Iterator[tuple[str, str]]:
     """(about, sentence) for tables with wrong stages, the first of each."""
-    try:
-        rows = list(csv.reader(io.StringIO(content.decode("utf-8"), newline=""), strict=True))
-    except (UnicodeDecodeError, csv.Error) as fault:
-        raise DamagedError(f"it is no CSV: {fault}") from None
-    if not rows or rows[0] != HEAD:
-        raise DamagedError(f"its first line is not {','.join(HEAD)}")
+    rows = rows_below(HEAD, content)
     by_id = {table.id: table for table in tables}
     seen: set[str] = set()
     wrong: set[str] = set()
-    for place, row in enumerate(rows[1:], start=2):
+    for place, row in enumerate(rows, start=2):
         try:
             name, passage, stage, answer = row[1], int(row[2]), int(row[3]), int(row[5])
             v_m_s, table = from_bits(int(row[4], 16)), by_id[name]
