@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
-from typing import Final, TypeVar
+from collections.abc import Iterable
+from typing import Any, Final, TypeVar
+
+import pytest
 
 _T = TypeVar("_T")
 
@@ -14,6 +17,14 @@ IS_LONG: Final = os.environ.get("RETARDER_SYNTH_TESTS") == "long"
 def sized(short: _T, long: _T) -> _T:
     """How many questions, passes or trains a test takes: `short`, or `long` where there is time."""
     return long if IS_LONG else short
+
+
+def every(step: int, cases: Iterable[Any]) -> list[Any]:
+    """For `parametrize`: the first of each `step` cases; the others are long tests."""
+    return [
+        pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.long if number % step else ())
+        for number, case in enumerate(cases)
+    ]
 
 
 FEW, MANY = 40_000, 1_000_000

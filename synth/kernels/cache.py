@@ -29,6 +29,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import ParamSpec, TypeVar
 
+from synth.kernels.plain import IS_PLAIN
+
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
 
@@ -119,6 +121,7 @@ def compiling_facts() -> list[str]:
     """What compiled kernels depend on besides their sources: versions of the compilers, settings, the processor."""
     facts = [f"{name} {version(name)}" for name in _COMPILERS]
     facts += [platform.python_implementation(), platform.python_version(), sys.platform, _processor()]
+    facts += ["plain"] * IS_PLAIN
     settings = (f"{k}={v}" for k, v in os.environ.items() if k.startswith("NUMBA_") and k not in _HARMLESS_SETTINGS)
     return [*facts, *sorted(settings)]
 
@@ -219,6 +222,8 @@ def _processor() -> str:
 
 
 def _raised_in_numba_cache(traceback: TracebackType | None) -> bool:
+    if IS_PLAIN:
+        return False
     from synth.kernels.vector.numba_internals import (
         CACHE_READER,  # start-up: numba, which is there when a kernel failed
     )

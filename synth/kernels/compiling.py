@@ -7,7 +7,22 @@ from typing import Any, Final
 
 from numba import njit
 
-from synth.kernels.vector.numba_internals import WITHOUT_CALLBACK, WITHOUT_REFERENCE_COUNTS, compiled_part
+from synth.kernels.plain import IS_PLAIN
+
+if IS_PLAIN:
+    from synth.kernels.vector.plain_numba import (
+        IN_ITS_CALLERS,
+        WITHOUT_CALLBACK,
+        WITHOUT_REFERENCE_COUNTS,
+        compiled_part,
+    )
+else:
+    from synth.kernels.vector.numba_internals import (
+        IN_ITS_CALLERS,
+        WITHOUT_CALLBACK,
+        WITHOUT_REFERENCE_COUNTS,
+        compiled_part,
+    )
 
 KEPT: Final[dict[str, Any]] = {"cache": True, "nogil": True, **WITHOUT_CALLBACK}
 BARE: Final[dict[str, Any]] = {**KEPT, "error_model": "numpy"}
@@ -28,7 +43,7 @@ raising: Final[Any] = njit(**KEPT)
 borrowing: Final[Any] = njit(**BORROWED)
 """A kernel that only borrows memory: it neither makes an array nor keeps one."""
 
-borrowing_inline: Final[Any] = njit(**BORROWED, forceinline=True)
+borrowing_inline: Final[Any] = njit(**BORROWED, **IN_ITS_CALLERS)
 """The same, put into the kernels that call it."""
 
 
@@ -39,4 +54,4 @@ def part(function: Callable[..., Any]) -> Any:
 
 def part_inline(function: Callable[..., Any]) -> Any:
     """The same, put into the kernels that call it."""
-    return compiled_part(function, {**BORROWED, "forceinline": True})
+    return compiled_part(function, {**BORROWED, **IN_ITS_CALLERS})

@@ -71,15 +71,14 @@ def drawing(asked: AskedTune) -> int:
 
 def compute(asked: AskedTune, work: Work) -> FoundBook:
     """The book; its tables are written as they are made. `InputError` where no case has a table."""
-    from synth.kernels.cache import first_time, guarded
+    from synth.kernels.cache import guarded
     from synth.retarder.acceptance import judged
+    from synth.retarder.first_run import compiled_beside
     from synth.retarder.found_book import FoundBook
     from synth.retarder.tables_refused import require_a_table, tables_refused
     from synth.retarder.tune import tune
 
-    if first_time():
-        work.progress.note("compiling the kernels for this machine, once; this takes about a minute")
-    with tables_refused(asked.place, asked.config):
+    with compiled_beside(work.progress.note), tables_refused(asked.place, asked.config):
         store = partial(stored, directory=work.directory)
         book = guarded(tune, asked.config, store, work.progress, asked.workers, drawn(work), asked.pareto)
         require_a_table(book.cases, book.failed)

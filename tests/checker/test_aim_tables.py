@@ -261,6 +261,7 @@ def test_more_over_speeds_than_required_are_a_claim_that_is_not_confirmed(tmp_pa
     assert found(judged(tmp_path), Kind.CLAIM, words)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [

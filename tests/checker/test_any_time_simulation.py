@@ -101,6 +101,7 @@ def test_the_rule_in_double_precision_is_the_rule() -> None:
     assert len(answers) == 7
 
 
+@pytest.mark.long
 def test_a_tune_at_any_time_passes(any_time_once: Path) -> None:
     verdict = verify(any_time_once, 300, 1)
     assert verdict.findings == ()
@@ -166,6 +167,7 @@ def better_figures(document: Document) -> None:
     document["validated"]["rms_ci95_m_s"] = [0.7 * x for x in document["validated"]["rms_ci95_m_s"]]
 
 
+@pytest.mark.long
 def test_figures_at_seven_tenths_are_not_confirmed(gauged: Path) -> None:
     file = claimed(gauged, better_figures)
     for name in ("predicted", "validated"):

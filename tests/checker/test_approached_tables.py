@@ -29,6 +29,7 @@ from tuning_tables.rule import decide_many
 from tuning_tables.st_source import TABLE_FILE, st_files
 
 
+@pytest.mark.long
 def test_a_tune_with_an_approach_passes(approached_once: Path) -> None:
     verdict = verify(approached_once, 300, 1)
     assert verdict.findings == ()

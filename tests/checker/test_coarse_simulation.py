@@ -274,5 +274,6 @@ def test_without_a_speed_the_stage_stays(table: Table, unknown_m_s: float) -> No
     assert decision(table, 1, 1.0, 0.0) == 0
 
 
+@pytest.mark.long
 def test_agrees_with_the_production_simulator_from_before_the_entrance(far_plant: Plant, far_table: Table) -> None:
     test_agrees_with_the_production_simulator(simulate(far_plant, far_table, 4000, 9), far_table)

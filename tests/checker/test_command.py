@@ -84,6 +84,7 @@ def broken(content: bytes, chance: random.Random) -> bytes:
     return bytes(found[: chance.randrange(1, len(found))]) if chance.random() < 0.1 else bytes(found)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "comments"),
     [("tables/*1.5*.json", False), ("tables/*1.5*.csv", False), ("book.h5", False), ("c/retarder_table.c", False),
@@ -104,6 +105,7 @@ def test_broken_bytes_never_raise(tuned: Path, name: str, comments: bool) -> Non
         assert set(codes) == {3}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["tables/*1.5*.json", "book.h5", "c/retarder_table.c", "c/golden_tracks.csv"])
 def test_broken_bytes_of_an_estimator_never_raise(estimated: Path, name: str) -> None:
     (file,) = estimated.glob(name)

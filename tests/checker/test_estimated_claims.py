@@ -34,6 +34,7 @@ def many(summary: Summary, table: Table) -> Passes:
     return simulate(summary.plant(table), table, 1200, 9)
 
 
+@pytest.mark.long
 def test_the_closed_loop_with_the_estimator_is_that_of_the_simulator(many: Passes, table: Table) -> None:
     """Two samples, within four standard errors and two percent of coarseness."""
     found_figures = figures_of(many, table.target_m_s)

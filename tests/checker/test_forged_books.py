@@ -72,7 +72,7 @@ def test_an_axis_that_does_not_number_from_0(mixed: Path, layout: Layout, tmp_pa
         lambda n: np.arange(float(n)),
         lambda n: "none",
     )
-    for axis in layout.axes:
+    for axis in list(layout.axes)[:: sized(3, 1)]:
         for values in makers:
             refused(mixed, tmp_path / "book.h5", numbered(axis, values))
 
@@ -94,7 +94,7 @@ def test_a_column_of_another_type_unit_or_length(mixed: Path, layout: Layout, tm
 
         return edit
 
-    for column in layout.columns[:: sized(3, 1)]:
+    for column in layout.columns[:: sized(8, 1)]:
         dtype = {"S": "S90", "<f8": "<f4", "<f4": "<f8"}.get(column.dtype, "<i2")
         edits = [other_unit(column.name), wider(column.name, dtype)]
         for edit in (*edits, *(longer(column.name, axis) for axis in range(len(column.axes)))):
@@ -137,7 +137,7 @@ def test_nothing_stands_beside_the_tables(
 
 @pytest.mark.parametrize("value", [-0.0, np.inf, -np.inf])
 def test_a_number_that_is_none(mixed: Path, layout: Layout, tmp_path: Path, value: float) -> None:
-    for column in layout.columns:
+    for column in layout.columns[:: sized(4, 1)]:
         if "f" in column.dtype and "slope" not in column.name:
             index = (0, 1, *(0 for _ in column.axes[2:])) if "stage" in column.axes else (0,) * len(column.axes)
             refused(mixed, tmp_path / "book.h5", cell(column.name, index, value))

@@ -142,6 +142,7 @@ def test_compilers_have_nothing_to_say(compiler: str, measured: bool, tmp_path: 
         assert said == ""
 
 
+@pytest.mark.long
 def test_analysers_have_nothing_to_say(aims: AimTables, tmp_path: Path, tool: Tool) -> None:
     written(aim_c_files(aims), tmp_path)
     weak = ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage", "-Wno-unknown-warning-option",

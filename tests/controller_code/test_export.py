@@ -58,6 +58,7 @@ def test_compilers_have_nothing_to_say(
         assert said == ""
 
 
+@pytest.mark.long
 def test_the_analyzer_has_nothing_to_say(book: TableBook, tmp_path: Path, tool: Tool) -> None:
     """Of all the code, but with few numbers: it goes through each row anew for every function that reads rows."""
     few = TableBook(tuple(table for table in book.tables if table.id in ANALYZED))
@@ -69,6 +70,7 @@ def test_the_analyzer_has_nothing_to_say(book: TableBook, tmp_path: Path, tool: 
         assert compile_with(analyze) == ""
 
 
+@pytest.mark.long
 def test_cppcheck_has_nothing_to_say(book: TableBook, tmp_path: Path, tool: Tool) -> None:
     write_sources(book, tmp_path)
     # The interface is the same in every export; without estimators retarder_observe leaves the estimate alone.

@@ -111,6 +111,7 @@ def another(text: str, pattern: re.Pattern[str], number: int, value: str) -> str
     return text[: found.start(1)] + value + text[found.end(1) :]
 
 
+@pytest.mark.long
 def test_the_checker_finds_the_same_families_and_every_wrong_one() -> None:
     tables, files = read_pairs(), {**c_files(pairs(), self_test=SMALL), **st_files(pairs(), self_test=SMALL)}
     assert [family for each in held_of(tables) for family in each["familyno"]] == [*pairs().families]

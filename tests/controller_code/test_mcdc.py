@@ -111,6 +111,7 @@ def measured(name: str) -> Coverage | None:
         return coverage_of(EXPORTS[name](), Path(folder), release)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", EXPORTS)
 def test_what_is_not_reached_is_declared_and_what_is_declared_is_not_reached(name: str) -> None:
     found = measured(name)

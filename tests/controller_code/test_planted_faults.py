@@ -54,7 +54,7 @@ def test_the_self_test_finds_every_fault(part: str, tmp_path: Path, to_change: T
     to = text.index(end, at) if end else len(text)
     faults = list(planted_faults(text[at:to]))
     assert len(faults) > 10
-    faults = faults[:: sized(4, 1)]
+    faults = faults[:: sized(8, 1)]
 
     def self_test(number: int) -> str:
         folder = tmp_path / str(number)

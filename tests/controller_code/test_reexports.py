@@ -71,6 +71,7 @@ def test_numbers_and_golden_choices_stay(after: tuple[str, ...]) -> None:
         assert len(now[FIXED[category]]) > 5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("after", AFTER, ids="-".join)
 def test_the_same_commands_choose_the_same_tables_in_c(after: tuple[str, ...], tmp_path: Path, tool: Tool) -> None:
     tool("gcc")

@@ -57,6 +57,7 @@ def stalled_by_scenario(chain: Chain, found: Polish) -> np.ndarray:
     return forward_all(chain, policy, slice(None), nothing, band)[1][:, 0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("resistances", [1, 3])
 def test_no_negative_share_of_the_cuts_stalls(resistances: int) -> None:
     """With two linear cells it was −7e-3: the cost of the design was 0.056² m²/s² where the truth was 0.263²."""
@@ -69,6 +70,7 @@ def test_no_negative_share_of_the_cuts_stalls(resistances: int) -> None:
     assert Evaluation(chain, Aim(TARGET_M_S, criterion)).cost(lines) == pytest.approx(cost, rel=1e-4)
 
 
+@pytest.mark.long
 def test_finer_steps_of_path_change_nothing() -> None:
     """It was 0.178 and 0.084 m/s: worse with every interpolation more."""
     simulated = []

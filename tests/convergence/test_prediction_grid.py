@@ -40,6 +40,7 @@ def resolution() -> Resolution:
     return finer_for_check(load_config(None).resolution)
 
 
+@pytest.mark.long
 def test_prediction_of_a_polished_table_is_resolved(case: tuple[Plant, ControllerTable]) -> None:
     """20 cells within ±3 standard deviations, nothing negative; the figures are those of a whole chain that fine.
 

@@ -22,6 +22,7 @@ from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve, true_speed_weights
 from synth.solver.chain.chain import Chain, persistent_chain
+from tests.effort import every
 
 Row = list[float]
 
@@ -320,13 +321,16 @@ def noisy(plant_with: Callable[..., Plant], stages_kpa: tuple[float, ...], perio
 
 @pytest.mark.parametrize(
     ("stages_kpa", "period_s", "target_m_s", "price", "time_price", "w_std"),
-    [
-        ((0.0, 300.0), 0.25, 2.2, 1e-5, 0.0, 0.0),
-        ((0.0, 200.0, 400.0), 0.1, 2.6, 0.0, 0.0, 0.0),
-        ((0.0, 150.0, 300.0), 0.3, 1.2, 1e-3, 0.0, 0.8),
-        ((0.0, 150.0, 300.0), 0.3, 1.2, 1e-3, 0.1, 0.8),
-        ((0.0, 200.0, 400.0), 0.1, 1.0, 0.0, 0.02, 0.0),
-    ],
+    every(
+        2,
+        [
+            ((0.0, 200.0, 400.0), 0.1, 2.6, 0.0, 0.0, 0.0),
+            ((0.0, 300.0), 0.25, 2.2, 1e-5, 0.0, 0.0),
+            ((0.0, 150.0, 300.0), 0.3, 1.2, 1e-3, 0.1, 0.8),
+            ((0.0, 150.0, 300.0), 0.3, 1.2, 1e-3, 0.0, 0.8),
+            ((0.0, 200.0, 400.0), 0.1, 1.0, 0.0, 0.02, 0.0),
+        ],
+    ),
 )
 def test_solve_agrees_with_plain_loops(
     plant_with: Callable[..., Plant],

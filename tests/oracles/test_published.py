@@ -216,6 +216,7 @@ def noisy(plant_with: Callable[..., Plant]) -> Plant:
     return plant_with(friction=Friction(0.12, 0.05, 0.10, 1.5), sensor=DopplerSensor(0.05, 0.04, 0.15, 0.02))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("target_m_s", "tolerance"), [(2.4, 1e-5), pytest.param(3.2, 0.0, marks=pytest.mark.long)])
 def test_solve_agrees_with_numpy(plant_with: Callable[..., Plant], target_m_s: float, tolerance: float) -> None:
     """The same lines and values to 1e-9: only the order of additions differs."""

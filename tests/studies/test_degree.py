@@ -15,6 +15,7 @@ def found() -> Degrees:
     return METHOD.run(smallest, lambda _: None)
 
 
+@pytest.mark.long
 def test_the_polish_lowers_the_prediction_of_every_degree(found: Degrees) -> None:
     (case,) = found.cases
     *tables, lines = case.rows

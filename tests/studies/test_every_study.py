@@ -48,6 +48,7 @@ def smallest(study: Study, folder: Path) -> Any:
     return replace(options, config=folder / "coarse.toml")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "study",
     [pytest.param(each, marks=() if each.name in QUICK else pytest.mark.long, id=each.name) for each in STUDIES],

@@ -85,6 +85,7 @@ def test_paired_differences_are_those_of_students_test_where_all_trains_are_alik
     assert difference(one, base, one, base) == Value(0.0, (0.0, 0.0))
 
 
+@pytest.mark.long
 def test_trials_of_a_group_come_to_what_each_comes_to_alone(trial: HumpTrial) -> None:
     worse = with_stds(trial, (0.35, 0.35, 0.35))
     group = Group({"open": replace(trial, control=OPEN), "feedback": replace(worse, control=FEEDBACK)})
@@ -180,6 +181,7 @@ def test_feedback_that_is_worse_is_told(trial: HumpTrial) -> None:
     assert found.fewer.ci95[1] < 0.0
 
 
+@pytest.mark.long
 def test_tables_on_a_weaker_plant_brake_less_and_stay_the_same_tables() -> None:
     """A brake of less friction takes the same share less work, at all stages; the energy it takes tells."""
     classes = coarse_classes()

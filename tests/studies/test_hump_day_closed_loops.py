@@ -57,6 +57,7 @@ class Slower:
         return replace(passed, time_s=1.08 * passed.time_s)
 
 
+@pytest.mark.long
 def test_errors_of_normal_positions_are_found_again(trial: HumpTrial) -> None:
     """In the last position not all cuts are held."""
     found = exits_of({"normal": with_stds(trial, (0.1, 0.2, 0.05))}, 60)
@@ -104,6 +105,7 @@ def made_up(trial: HumpTrial, names: list[str], controls: tuple[str, ...]) -> Fr
     return Frontier(outcomes, lines, (1.0, 0.0), (1.0 / 16.0,), (), 1)
 
 
+@pytest.mark.long
 def test_gains_are_differences_of_the_curves_that_they_name(trial: HumpTrial, loops: ClosedLoops) -> None:
     names = [*map(sigma, STDS_M_S), *REGULATORS, loops.commanded]
     frontier = made_up(trial, names, tuple(CONTROLS))

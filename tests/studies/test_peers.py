@@ -89,6 +89,7 @@ class TableAsPeer:
         return Peer(BY_TABLE, table, NO_PREDICTION, NO_PULSES, at_rest, rule.table)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("make", CONTROLLERS.values(), ids=CONTROLLERS)
 def test_with_a_table_the_loop_is_the_simulator_bit_for_bit(
     make: Callable[[Plant], Controller], passes: CommonPasses, loop: PeerLoop

@@ -154,6 +154,7 @@ def test_an_equal_table_takes_over_without_a_trace(plant: Plant, loop: ClosedLoo
         assert np.array_equal(both.at_end, alone.at_end)
 
 
+@pytest.mark.long
 def test_the_lines_in_force_are_those_of_the_table_that_took_over(
     plant: Plant, loop: ClosedLoop, passes: RandomPasses
 ) -> None:

@@ -38,6 +38,7 @@ def test_the_table_of_a_study_is_that_of_a_tune() -> None:
         assert ours.stages == tuned_table_of_a_tune(setup, solution).table.stages
 
 
+@pytest.mark.long
 def test_what_is_told_is_simulated_as_the_check_grid_predicts() -> None:
     """Passes in time, and Chapman–Kolmogorov on a finer grid than the lines were polished on, friction by friction."""
     config = load_config(None)

@@ -55,6 +55,7 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[int]]]:
         process.communicate("", timeout=60)
 
 
+@pytest.mark.long
 def test_killed_worker_and_killed_driver(
     config: Path, serial: Path, tmp_path: Path, cluster: tuple[str, list[int]]
 ) -> None:

@@ -118,6 +118,7 @@ def test_the_results_of_something_else_are_left_alone(
     assert (out / "dry" / "book.h5").read_bytes() == b"mine"
 
 
+@pytest.mark.long
 def test_no_book_of_other_conditions_stays(
     command: Callable[..., Ran], config: Path, serial: Path, tmp_path: Path
 ) -> None:

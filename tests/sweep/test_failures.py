@@ -22,6 +22,7 @@ from tests.sweep.conftest import COMMAND, Ran, contents, events, run
 from tuning_tables import read_book
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("work", "reason"),
     [

@@ -73,6 +73,7 @@ def test_a_unit_needs_no_file_and_a_book_keeps_the_types_beside_it(
     assert (dry["slope_kn_per_kpa"], other["slope_kn_per_kpa"]) == (0.0442, 0.06)
 
 
+@pytest.mark.long
 def test_types_of_an_earlier_run_do_not_stay_beside_the_book(config: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     run(config, out, InThisProcess(answer))

@@ -100,6 +100,7 @@ def test_lines_between_are_those_that_a_controller_takes() -> None:
     assert exact == pytest.approx(math.sqrt(square.mean()), rel=0.1 + half / square.mean())
 
 
+@pytest.mark.long
 def test_a_refined_book_keeps_its_loss(tmp_path: Path) -> None:
     config = tmp_path / "refined.toml"
     coarse = SWEEP.replace("{ from = 1.5, to = 2.0, step = 0.5 }", "[1.0, 3.0]").replace("to = 30", "to = 22")

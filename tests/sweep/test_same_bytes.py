@@ -41,6 +41,7 @@ def test_worker_processes_give_the_bytes_of_this_process(
     assert contents(tmp_path / "out") == contents(serial)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("regulator", ["", MEASURED])
 def test_tables_are_those_of_a_tune(command: Callable[..., Ran], serial: Path, tmp_path: Path, regulator: str) -> None:
     # The same steps, but a tune solves each target beside other ones.
@@ -57,6 +58,7 @@ def test_tables_are_those_of_a_tune(command: Callable[..., Ran], serial: Path, t
     assert all(one == other for one, other in zip(swept, tuned, strict=True))
 
 
+@pytest.mark.long
 def test_the_other_commands_take_what_a_sweep_leaves(command: Callable[..., Ran], serial: Path, tmp_path: Path) -> None:
     code, said, _ = command("inspect", serial)
     assert code == 0
@@ -70,6 +72,7 @@ def test_the_other_commands_take_what_a_sweep_leaves(command: Callable[..., Ran]
     assert code in (0, 1), said
 
 
+@pytest.mark.long
 def test_a_grown_grid_keeps_what_is_there(config: Path, serial: Path, tmp_path: Path) -> None:
     larger, smaller = tmp_path / "larger.toml", tmp_path / "smaller.toml"
     larger.write_text(config.read_text(), encoding="utf-8")

@@ -42,6 +42,7 @@ def files_in(out: Path, trial: Path) -> Iterator[BatchFiles]:
         yield BatchFiles(directory, TrialTrains(config.routes, config.trains_sha256))
 
 
+@pytest.mark.long
 def test_workers_change_no_byte(command: Callable[..., Ran], trial: Path, humped: Path, tmp_path: Path) -> None:
     for workers in (1, 3):
         out = tmp_path / f"out-{workers}"
@@ -60,6 +61,7 @@ def test_batches_of_any_size_are_the_same_trains(trial: Path, humped: Path) -> N
     assert to_npz(some, of_trial) == to_npz(first, of_trial)
 
 
+@pytest.mark.long
 def test_a_killed_run_goes_on_to_the_same_bytes(trial: Path, humped: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     run = begin("hump", "simulate", trial, "-o", out, "--workers", "1")

@@ -52,6 +52,7 @@ def test_a_design_that_both_grids_agree_on_is_taken(problem: Problem) -> None:
     assert found.grid.independent_rms_m_s == found.verdict.table.predicted.rms_m_s
 
 
+@pytest.mark.long
 def test_lines_that_live_on_their_scenarios_are_designed_again(problem: Problem) -> None:
     """Two frictions can be told apart by few samples: on their grid the lines cost next to nothing."""
     solution, check = designs(problem, FEW_FRICTIONS)
@@ -63,6 +64,7 @@ def test_lines_that_live_on_their_scenarios_are_designed_again(problem: Problem)
     assert second.verdict.rms_m_s < first.verdict.rms_m_s
 
 
+@pytest.mark.long
 def test_a_grid_too_coarse_for_lines_is_made_finer(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
     solution, check = designs(problem, ENOUGH)
 

@@ -17,6 +17,7 @@ from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
+from tests.effort import every
 from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange
 
 control = pytest.importorskip("control")
@@ -75,7 +76,7 @@ def commands_of(events: PassTrace) -> list[tuple[float, int]]:
     return [(float(events.time_s[i]), int(events.stage[i])) for i in changed]
 
 
-@pytest.mark.parametrize("law", ["table", "lines, one stage a command", "energy rule", "relay with lead"])
+@pytest.mark.parametrize("law", every(3, ["table", "lines, one stage a command", "energy rule", "relay with lead"]))
 def test_passes_are_the_simulators(quiet: Plant, law: str) -> None:
     controller = controller_for(quiet, law)
     passes = random_passes(7, 0, 3)

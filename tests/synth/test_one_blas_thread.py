@@ -83,6 +83,7 @@ def test_what_was_is_restored_after_a_fault() -> None:
     assert threads() == before
 
 
+@pytest.mark.long
 def test_polished_lines_are_the_same_to_the_bit_whatever_blas_is_told() -> None:
     one = printed(POLISHED, OPENBLAS_NUM_THREADS="1")
     assert len(one) > 1000

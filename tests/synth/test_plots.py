@@ -103,6 +103,7 @@ def test_no_text_leaves_the_figure(cases: list[CaseResult]) -> None:
                 assert min(box.x0, box.y0, width - box.x1, height - box.y1) > -1.0, (name, text)
 
 
+@pytest.mark.long
 def test_hard_cases_are_drawn_too(cases: list[CaseResult]) -> None:
     hard = {
         "two stages, no passes, no baselines": replace(

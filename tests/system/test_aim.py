@@ -236,6 +236,7 @@ drag_coefficient = {{ value = 0.01, range = [0, 9], source = "test", confidence 
 """
 
 
+@pytest.mark.long
 def test_the_same_bytes_twice_and_for_any_number_of_threads(
     aimed_once: tuple[Path, int], small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -307,6 +307,7 @@ def test_a_correction_that_cannot_be_is_refused(
     assert sentence in ran.sentence
 
 
+@pytest.mark.long
 def test_export_takes_a_prefix_a_small_self_test_and_splits(
     command: Command, tuned: Path, measured_once: Path, tmp_path: Path
 ) -> None:

@@ -77,6 +77,7 @@ def test_the_published_computer_is_the_default(first: tuple[Path, str]) -> None:
     assert tables["needed_speed"][-1]["speed_op_s"] == pytest.approx(1e6)
 
 
+@pytest.mark.long
 def test_the_same_configuration_gives_the_same_bytes(first: tuple[Path, str]) -> None:
     folder, _ = first
     assert run("computer", str(folder / "c.toml"), "-o", str(folder / "again")).returncode == 0

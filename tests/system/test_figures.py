@@ -96,6 +96,7 @@ def require_agreement(one: Revalidation, other: Revalidation, name: str) -> None
     assert abs(a - b) <= 4.0 / 1.96 * apart + 1e-12, (one.table.id, name, a, b)
 
 
+@pytest.mark.long
 def test_the_documents_tell_the_figures_of_the_default_book() -> None:
     """README and the page of results show what is kept (tests/studies); what is kept is what a tune gives now."""
     book = study_named("book")

@@ -173,6 +173,7 @@ def test_stale_pages_and_pictures_go(command: Command, humped: Path, tmp_path: P
     assert not (out / "hump.html").exists()
 
 
+@pytest.mark.long
 def test_its_own_inputs_repeat_every_byte_elsewhere(command: Command, humped: Path, tmp_path: Path) -> None:
     """From what a run has left all is made anew, and no train is humped."""
     out = Path(shutil.copytree(humped, tmp_path / "elsewhere"))
@@ -214,6 +215,7 @@ cut,cars,axles,mass_t,category,track,length_m,marks
 """
 
 
+@pytest.mark.long
 def test_a_sorting_list_is_every_train(command: Command, small: Path, tmp_path: Path) -> None:
     (tmp_path / "train.csv").write_text(LIST, encoding="utf-8")
     ran = command("hump", "speed", small, "--list", tmp_path / "train.csv", "-o", tmp_path / "speed", "--json")

@@ -29,6 +29,7 @@ pytest.importorskip("control")
 TABLE = "gondola-4-22t-to-1.5-m-s"
 
 
+@pytest.mark.long
 def test_a_directory_gives_pictures_figures_and_a_table(
     command: Command, measured_once: Path, measured_classes: Path, tmp_path: Path, pages: list[Page]
 ) -> None:

@@ -29,6 +29,7 @@ mass_t = 22
 """
 
 
+@pytest.mark.long
 def test_time_falls_with_its_price(tmp_path: Path, pages: list[Page]) -> None:
     """The dearest table is quicker and no more accurate; the cheapest is the one that the tune exports."""
     (tmp_path / "c.toml").write_text(COARSE, encoding="utf-8")

@@ -11,6 +11,7 @@ import pytest
 
 from tests.controller_code.passage_tables import passage_book, passage_table
 from tests.controller_code.sample_book import sample_book
+from tests.effort import every
 from tests.frame.results import results_in
 from tests.system.conftest import Command
 from tests.system.test_start_up import HEAVY, modules_after
@@ -38,7 +39,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize(
     ("options", "expected"),
-    [
+    every(3, [
         (("--format", "c"), lambda: passage_c_files(BOOK)),
         (("--format", "c", "--prefix", "Dumper", "--self-test", "small"),
          lambda: passage_c_files(BOOK, ExportPrefix("Dumper"), SMALL)),
@@ -49,7 +50,7 @@ def folder(tmp_path: Path) -> Path:
                                         for table in BOOK.tables}),
         (("--format", "csv"), lambda: {f"{table.id.replace(' ', '-')}.csv": to_csv(table)
                                        for table in BOOK.tables}),
-    ],
+    ]),
 )  # fmt: skip
 def test_export_of_a_directory_and_of_a_book(
     command: Command, folder: Path, tmp_path: Path, options: tuple[str, ...], expected: Callable[[], dict[str, bytes]]

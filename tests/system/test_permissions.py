@@ -157,6 +157,7 @@ def test_the_same_bytes_with_two_workers_and_as_json(
     assert set(told) == {*ASKED, "approach of 4 m", AS_CONFIGURED} - {"without the approach"}
 
 
+@pytest.mark.long
 def test_the_table_as_configured_is_that_of_a_tune_which_tells_how_to_ask(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

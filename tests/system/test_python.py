@@ -194,6 +194,7 @@ def test_the_example_of_the_readme_runs_and_makes_the_table_of_the_default_book(
     assert coefficients_sha256(read_json(tmp_path / "table.json")) == expected
 
 
+@pytest.mark.long
 def test_the_examples_of_the_page_run(tmp_path: Path) -> None:
     printed = run(blocks("docs/python.md"), tmp_path)
     assert "within ±" in printed

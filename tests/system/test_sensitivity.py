@@ -122,6 +122,7 @@ def test_files_are_those_of_the_summary_and_csv_says_what_it_says(ran: Path) -> 
     assert "measure first, for the rms exit error" in page
 
 
+@pytest.mark.long
 def test_a_table_of_a_tune_gives_the_shares_of_the_table_made_here(
     ran: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -124,6 +124,7 @@ def test_tables_say_what_was_predicted_and_simulated(tuned_points: Path) -> None
         assert (table.switching_m_s[:, 3, 3] == np.inf).all()  # stage 4 is not allowed
 
 
+@pytest.mark.long
 def test_one_worker_gives_the_bytes_of_two(
     command: Command, tuned_points: Path, config: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -15,6 +15,7 @@ import pytest
 
 from synth.cli import TRACEBACK
 from synth.cli import init as init_module
+from tests.effort import every
 from tests.frame.results import results_in
 from tests.system.conftest import CLASS, Command
 
@@ -45,14 +46,17 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize(
     ("line", "code", "said"),
-    [
-        ("$tool >&-", 0, ""),
-        ("$tool 2>&-", 0, ""),
-        ("$tool >&- 2>&- <&-", 0, ""),
-        ("$tool 2>/dev/full", 0, ""),
-        ("{ sleep 0.5; $tool 2>&1 >/dev/null; echo code $? >&2; } | true", None, "code 141"),
-        ("$tool >/dev/full", 74, "standard output: No space left on device; make room"),
-    ],
+    every(
+        2,
+        [
+            ("$tool >&- 2>&- <&-", 0, ""),
+            ("$tool >&-", 0, ""),
+            ("{ sleep 0.5; $tool 2>&1 >/dev/null; echo code $? >&2; } | true", None, "code 141"),
+            ("$tool 2>&-", 0, ""),
+            ("$tool >/dev/full", 74, "standard output: No space left on device; make room"),
+            ("$tool 2>/dev/full", 0, ""),
+        ],
+    ),
 )
 def test_a_stream_that_takes_nothing_costs_no_result(
     plain: Path, tmp_path: Path, line: str, code: int | None, said: str
@@ -182,6 +186,7 @@ def test_want_of_memory_is_74(command: Command, monkeypatch: pytest.MonkeyPatch)
     assert "not enough memory" in ran.sentence
 
 
+@pytest.mark.long
 def test_nothing_is_left_in_the_temporary_directory(two_classes: Path, tmp_path: Path) -> None:
     (tmp_path / "tmp").mkdir()
     ran = shell(

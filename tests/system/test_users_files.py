@@ -20,6 +20,7 @@ from synth.cli import main
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import results_directory
 from synth.hump.hump_file import hump_text
+from tests.effort import IS_LONG
 from tests.system.conftest import CLASS, SECOND_CLASS, Command, changed
 
 SENSORS = """\
@@ -75,7 +76,7 @@ class Writing:
 
 
 DIRECTORIES = (
-    Writing(("tune", "yard.toml"), "report.html", quick=True),
+    Writing(("tune", "yard.toml"), "report.html", quick=IS_LONG),
     Writing(("sensors", "tune", "points.toml"), "report.html"),
     Writing(("sensors", "plan", "yard.toml"), "sensors.toml"),
     Writing(("permissions", "yard.toml"), "summary.json"),

@@ -11,11 +11,12 @@ from pathlib import Path
 
 import pytest
 
+from tests.effort import sized
 from tests.tuning_tables.damaged_inputs import Attempt, attempts
 from tests.tuning_tables.reader_trial import Finding, outcome_of
 from tuning_tables import ControllerTable, from_json, to_json
 
-COUNT, FIRST_SEED = int(os.environ.get("FUZZ_COUNT", "1200")), int(os.environ.get("FUZZ_SEED", "0"))
+COUNT, FIRST_SEED = int(os.environ.get("FUZZ_COUNT", sized(400, 1200))), int(os.environ.get("FUZZ_SEED", "0"))
 
 
 @pytest.mark.parametrize(

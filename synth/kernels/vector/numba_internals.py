@@ -7,11 +7,14 @@ releases alone.
 
 - `WITHOUT_REFERENCE_COUNTS`, an undocumented option of `njit`: without it kernels give the same bits, but slower;
 - `WITHOUT_CALLBACK`, another one: without it kernels do the same, but take longer to compile;
+- `IN_ITS_CALLERS`, another one: without it kernels give the same bits, but slower;
 - `compiled_part`, which keeps numba from making a function that Python can call: the same, they only take longer;
 - `CACHE_READER`, the name of numba's module for cached kernels: without it `guarded` mends no damaged cache;
 - `ir`, llvmlite's builders of machine code, and `intrinsic`, `register_vector`, `infer_operation`, `lower_operation`,
   `declared_function`, `array_data`, from numba's registries and code generator: without them there are no packs, and
   hardly a kernel compiles.
+
+With `RETARDER_SYNTH_PLAIN_KERNELS=1` nothing of this is imported (`kernels.plain`).
 
 A new release of numba: read its list of changes, run `.ci/newest`, raise the cap in pyproject.toml, and lock anew.
 """
@@ -28,6 +31,7 @@ from numba.core.typing.templates import AbstractTemplate, infer_global, signatur
 
 __all__ = [
     "CACHE_READER",
+    "IN_ITS_CALLERS",
     "WITHOUT_CALLBACK",
     "WITHOUT_REFERENCE_COUNTS",
     "array_data",
@@ -51,6 +55,10 @@ WITHOUT_CALLBACK: dict[str, Any] = {"no_cfunc_wrapper": True}
 
 Nothing here is handed to C, and to make these took a sixth of the time of compiling.
 """
+
+
+IN_ITS_CALLERS: dict[str, Any] = {"forceinline": True}
+"""Option of `njit`, also undocumented: the machine code is put into the callers whatever its size."""
 
 
 def compiled_part(function: Callable[..., Any], options: Mapping[str, Any]) -> Any:

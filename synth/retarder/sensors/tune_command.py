@@ -89,14 +89,13 @@ def drawing(asked: AskedSensors) -> int:
 
 def compute(asked: AskedSensors, work: Work) -> FoundPassages:
     """The book; its tables are written as they are made. `InputError` where no case has a table."""
-    from synth.kernels.cache import first_time, guarded
+    from synth.kernels.cache import guarded
+    from synth.retarder.first_run import compiled_beside
     from synth.retarder.sensors.found_passages import found_passages
     from synth.retarder.sensors.sensor_tune import tune_sensors
     from synth.retarder.tables_refused import require_a_table, tables_refused
 
-    if first_time():
-        work.progress.note("compiling the kernels for this machine, once; this takes a few minutes")
-    with tables_refused(asked.place, asked.config):
+    with compiled_beside(work.progress.note), tables_refused(asked.place, asked.config):
         store = partial(stored, directory=work.directory)
         book = guarded(tune_sensors, asked.config, asked.sensors, store, work.progress, asked.workers)
         require_a_table(book.cases, book.failed)

@@ -8,7 +8,7 @@ import pytest
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
 from scripts.studies.rolling.by_scipy import Floats, acceleration, solved
-from tests.effort import sized
+from tests.effort import every, sized
 from tests.oracles.rolling.made_cuts import random_cuts, random_track, rolling
 
 YARD_FROM_M, SNOW = 400.0, 0.3
@@ -16,7 +16,7 @@ SLOW_M_S = 0.3
 
 
 @pytest.mark.parametrize(
-    ("law", "cars"), [(HumpNormLaw(), 2), (HumpNormLaw(), 5), (Tb10062Law(), 1), (Tb10062Law(), 8)]
+    ("law", "cars"), every(2, [(HumpNormLaw(), 2), (HumpNormLaw(), 5), (Tb10062Law(), 1), (Tb10062Law(), 8)])
 )
 def test_the_roll_is_that_of_the_equation_of_motion(law: ResistanceLaw, cars: int) -> None:
     """Speeds above 0.3 m/s to 1 mm/s, stops to 0.1 m, times to 0.1 % and 0.03 s: some cuts on a track."""
@@ -45,7 +45,7 @@ def test_the_roll_is_that_of_the_equation_of_motion(law: ResistanceLaw, cars: in
             assert np.isinf(rolled.time_s[i][behind]).all()
 
 
-@pytest.mark.parametrize("cars", [1, 4])
+@pytest.mark.parametrize("cars", every(2, [1, 4]))
 def test_the_speed_rolled_backwards_arrives_by_the_equation_of_motion(cars: int) -> None:
     rng, n = np.random.default_rng(300 + cars), 6
     track = random_track(rng)

@@ -57,6 +57,7 @@ def test_intervals_are_those_of_paired_differences() -> None:
     assert half95(found["couplings above 2 m/s"]) == pytest.approx(on_track * half95(linear), rel=0.12)
 
 
+@pytest.mark.long
 def test_intervals_cover_the_truth() -> None:
     """100 sets of 100 trains: 95 % less three standard errors and what percentile intervals miss with 100 trains."""
     truth = benefits(BEFORE, AFTER, YARD)

@@ -111,6 +111,7 @@ def test_a_prediction_is_what_passes_find(plant: Plant, ahead_m: float) -> None:
     assert time_s == pytest.approx(float(np.average(transit, weights=sample.weight)), rel=2e-3)
 
 
+@pytest.mark.long
 def test_stage_locked_lines_cost_what_the_locked_solver_says(plant: Plant) -> None:
     """Two discretisations of one process: transients as one step, or sample by sample with the pressure as a state.
 

@@ -53,6 +53,7 @@ def lawful(yard: Yard) -> FittingPasses:
     return yard.passes(TRUTHS[0], PASSES, SEED)
 
 
+@pytest.mark.long
 def test_logs_of_the_simulator_are_of_the_model(yard: Yard, lawful: FittingPasses) -> None:
     for passes in (lawful, yard.passes(TRUTHS[0], PASSES, SEED + 1)):
         tests = told_by(passes, yard)

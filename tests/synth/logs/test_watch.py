@@ -60,6 +60,7 @@ def watched(config: ResolvedConfig, log: PassLog) -> Watch:
     return watch(passes, values, slope_key)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("change", "size"), [(0, 0.7), (2, 1.5), (3, 0.1)])
 def test_what_was_changed_is_named_with_its_size(
     config: ResolvedConfig, table: ControllerTable, change: int, size: float

@@ -96,6 +96,7 @@ FIGURES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_is_drawn_twice_alike_and_holds_its_text(name: str) -> None:
     assert draw(FIGURES[name]()) == draw(FIGURES[name]())

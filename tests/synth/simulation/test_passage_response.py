@@ -104,6 +104,7 @@ def test_the_impulse_element_finds_the_time_of_a_place(plant: Plant) -> None:
     assert rolled(motion, start, -4.0, resting_train(0.0)).shape == (4, 1)
 
 
+@pytest.mark.long
 def test_a_stall_is_reported(plant: Plant) -> None:
     sensors = quantised(first_axle)
     loop = close_passage_loop(plant, sensors, plant.top_stage + 1)

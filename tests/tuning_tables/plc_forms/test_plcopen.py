@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from tests.effort import every
 from tests.tuning_tables.plc_forms.exports import KINDS, PARK, exported, failed, self_test_of
 from tests.tuning_tables.plc_forms.plcopen_reader import TC6, structured_text
 from tests.tuning_tables.st.syntax import faults, parse
@@ -74,7 +75,7 @@ def test_the_head_is_the_comment_of_the_project() -> None:
     assert all(line in comment.split("\n") for part in exported("book") for line in part.head)
 
 
-@EACH
+@pytest.mark.parametrize("kind", every(4, KINDS))
 def test_the_schema_takes_the_xml(kind: str, tmp_path: Path) -> None:
     if os.environ.get("RETARDER_SYNTH_TOOLCHAIN") != "complete":
         pytest.importorskip("xmlschema")

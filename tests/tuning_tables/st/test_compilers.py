@@ -21,8 +21,19 @@ def right(form: Form) -> Outcome:
     return self_tested(form, text_of(form), BINARY32)
 
 
-@pytest.mark.parametrize("compiler", COMPILERS, ids=name_of)
-@pytest.mark.parametrize("form", FORMS, ids=lambda form: form.name)
+@pytest.mark.parametrize(
+    ("form", "compiler"),
+    [
+        pytest.param(
+            form,
+            compiler,
+            marks=() if (i + j) % len(COMPILERS) in (0, 3) else pytest.mark.long,
+            id=f"{form.name}-{name_of(compiler)}",
+        )
+        for i, form in enumerate(FORMS)
+        for j, compiler in enumerate(COMPILERS)
+    ],
+)
 def test_every_form_finds_nothing_wrong_under_every_compiler(form: Form, compiler: Compiler) -> None:
     """And executes the same operations: a self-test that leaves out what it should ask would find nothing either."""
     found = right(form) if compiler is BINARY32 else self_tested(form, text_of(form), compiler)

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from tests.controller_code.sample_book import estimator_of, with_slopes
 from tests.tuning_tables.aim.hard_questions import hard_questions, sample_set
@@ -194,6 +195,7 @@ def measured(book: TableBook) -> Mapping[str, tuple[int, ...]]:
     }
 
 
+@pytest.mark.long
 def test_the_figures_of_the_page(default_book: TableBook) -> None:
     found = measured(default_book)
     assert {label: tuple(stated(label)) for label in found} == found

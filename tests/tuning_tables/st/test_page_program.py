@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from tests.controller_code.weighed_cuts import SAMPLES, TARGET_M_S, braked_by, weighed_book, weighed_cuts
 from tests.tuning_tables.st.evaluator import Program
@@ -40,6 +41,7 @@ def block_of_the_page() -> str:
     return f"{HEAD}{own}END_VAR\nIF Begins THEN\n{once}END_IF;\n{at_every_sample}END_FUNCTION_BLOCK\n"
 
 
+@pytest.mark.long
 def test_the_page_goes_over_to_the_tables_that_python_does() -> None:
     book, cuts = weighed_book(), list(weighed_cuts(CUTS))
     program = Program(st_files(book)[TABLE_FILE] + block_of_the_page().encode("ascii"))

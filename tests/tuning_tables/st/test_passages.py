@@ -198,6 +198,7 @@ def test_a_changed_constant_is_found() -> None:
         assert self_tested(f"{changed}\n{test}")[0] >= 1, literal
 
 
+@pytest.mark.long
 def test_the_text_is_plain_and_fits_beside_all_others() -> None:
     others = [*st_files(shaped_book(3, 1)).values(), *correction_st_files(CORRECTION).values()]
     together = b"\n".join([*FILES.values(), *others])
@@ -213,6 +214,7 @@ def test_the_text_is_plain_and_fits_beside_all_others() -> None:
     assert b"retarder_" not in longest.lower().replace(b"tenletters", b"")
 
 
+@pytest.mark.long
 def test_a_file_each_unit_holds_the_same() -> None:
     units = unit_files(passage_export(BOOK, RETARDER, SMALL))
     assert len(units) == 16 + 4 * len(TABLES) + 3

@@ -40,6 +40,7 @@ def played(plant: ForeignPlant, draw: ForeignDraw, step_s: float) -> tuple[Plant
     return moving, status, now + used
 
 
+@pytest.mark.long
 def test_a_free_roll_is_the_closed_form_of_quadratic_resistance() -> None:
     plant = level(PLANT)
     moving = plant_at_rest(plant, DRAW)

@@ -30,6 +30,7 @@ def seen_through(plant: ForeignPlant) -> ForeignPlant:
     return replace(plant, sensor=OPEN_GAUGE, drive=replace(plant.drive, gauge_lag_s=SHORTEST_LAG_S))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("label", ["empty", "half"])
 def test_the_table_decides_and_only_at_rest(label: str, foreign_plants: Plants, assumed_tables: Tables) -> None:
     plant, table = seen_through(foreign_plants[label]), assumed_tables[label]

@@ -10,7 +10,7 @@ from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10
 from plant_models.rolling.weather import Weather
 from synth.hump.trains.hump_routes import Mark
 from synth.hump.trains.train_memory import TrainMemory
-from tests.effort import sized
+from tests.effort import every, sized
 from tests.plant_models.rolling.populations import MIX, population
 from tests.synth.hump.trains.agreement import agreement, judged
 from tests.synth.hump.trains.fast_and_slow import HARD, ORDINARY, BothTrains, Hardness, both_trains
@@ -25,7 +25,7 @@ NEAR_S = 0.03
 
 @pytest.mark.parametrize(
     ("law", "weather", "seed"),
-    [(HumpNormLaw(), Weather(), 0), (Tb10062Law(), Weather(temperature_c=20.0, snow_n_per_kn=0.1), 1)],
+    every(2, [(HumpNormLaw(), Weather(), 0), (Tb10062Law(), Weather(temperature_c=20.0, snow_n_per_kn=0.1), 1)]),
     ids=["hump-norm", "tb-10062"],
 )
 def test_both_simulators_tell_the_same_of_small_trains(law: ResistanceLaw, weather: Weather, seed: int) -> None:
@@ -58,6 +58,7 @@ def many_trains(seed: int, hardness: Hardness) -> tuple[BothTrains, TrainMemory]
     return both, both.fast()
 
 
+@pytest.mark.long
 def test_both_simulators_see_the_same_cuts_foul() -> None:
     """Cuts that stop short of a fouling point are rare, so the layered simulator looks for them first."""
     both, memory = many_trains(5, HARD)
@@ -84,6 +85,7 @@ def compared_trains(both: BothTrains, memory: TrainMemory, trains: list[int]) ->
     return compared
 
 
+@pytest.mark.long
 def test_both_simulators_tell_the_same_of_cuts_behind_cuts_in_contact() -> None:
     """A third cut meets the tail of one that follows the tail of the first since it met it at the end of a section."""
     both, memory = many_trains(6, HARD)
@@ -94,6 +96,7 @@ def test_both_simulators_tell_the_same_of_cuts_behind_cuts_in_contact() -> None:
     assert compared_trains(both, memory, np.flatnonzero(meets.any(axis=1)).tolist()[:8]) >= 4
 
 
+@pytest.mark.long
 def test_a_position_stays_as_it_is_through_a_cut_in_contact() -> None:
     """A cut comes on the position where one rolls in contact with another: the mode of the first of them rules."""
     both, memory = many_trains(7, HARD)

@@ -64,6 +64,7 @@ def texts(figure: Figure) -> list[Text]:
     return [text for text in (*figure.texts, *inside) if text.get_text()]
 
 
+@pytest.mark.long
 def test_pictures_repeat_to_the_byte(humped: HumpedTrains, trace: TrainTrace, found: TrainOutcomes) -> None:
     def once() -> list[object]:
         counts = by_element(humped.hump.routes, found.contact)

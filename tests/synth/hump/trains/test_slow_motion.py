@@ -123,6 +123,7 @@ def compared(found: SlowRun, finer: SlowRun) -> float:
     return max(abs(passage.time_s - finer.passages[key].time_s) for key, passage in found.passages.items())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(4))
 def test_half_the_step_gives_the_same_events_and_times(seed: int) -> None:
     train = crowded_train(seed)

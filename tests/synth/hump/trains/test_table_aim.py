@@ -177,6 +177,7 @@ def test_measured_cuts_are_commanded_by_their_reading(tmp_path: Path) -> None:
     assert np.corrcoef(last[alike], ahead[alike])[0, 1] > 3.5 / np.sqrt(alike.sum())
 
 
+@pytest.mark.long
 def test_an_exported_aim_agrees_with_the_one_that_is_designed_for_the_trial(tmp_path: Path) -> None:
     """Same cuts, same nodes, other draws: same trains come to the same gaps and over-speeds within what 2000 and 4000
     drawn cuts tell of a quantile; the difference is taken train by train."""

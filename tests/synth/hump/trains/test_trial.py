@@ -16,7 +16,7 @@ from synth.hump.trains.hump_speed import PairByPair
 from synth.hump.trains.outcomes import TrainOutcomes, joined
 from synth.hump.trains.train_figures import ratio, train_figures
 from synth.hump.trains.trial import ConstantSpeed, Control, Sensing
-from tests.effort import sized
+from tests.effort import every, sized
 from tests.plant_models.hump.random_humps import random_hump
 from tests.synth.hump.trains.made_trials import Day
 
@@ -79,7 +79,7 @@ ODD = {
 
 
 @pytest.mark.parametrize("name", ODD)
-@pytest.mark.parametrize("hump", ["large", "dumper"])
+@pytest.mark.parametrize("hump", every(2, ["large", "dumper"]))
 def test_odd_days_are_humped(name: str, hump: str) -> None:
     found = ODD[name].on(hump).batch(0, 20)
     balanced(found)
@@ -98,6 +98,7 @@ def test_all_humps_of_the_library_are_humped(hump: str, lead: int) -> None:
 HUMPS = sized(50, 150)
 
 
+@pytest.mark.long
 def test_random_humps_are_humped() -> None:
     """Ways with fewer positions than others, or with none, among them; a hump without any position is refused."""
     humped, uneven = 0, 0
@@ -137,6 +138,7 @@ def test_a_feedback_only_slows_the_train_down_and_within_what_the_locomotive_can
     assert (gain >= -2.0 * day.acceleration_m_s2 * apart - 1e-9).all()
 
 
+@pytest.mark.long
 def test_at_too_high_a_speed_a_feedback_catches_less() -> None:
     """The same trains at a speed that is too high: commanded anew they are caught less, and slowed down still less."""
     caught = {}

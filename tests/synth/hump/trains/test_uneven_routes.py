@@ -163,6 +163,7 @@ def test_a_cut_rolls_freely_from_its_last_position_to_the_standing_cars(name: st
     assert seen >= 10
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", NAMES)
 def test_the_aim_of_each_route_keeps_its_probability(name: str, tmp_path: Path) -> None:
     """Slowly humped, so that hardly any cut is disturbed: over-speeds on short routes are as many as was asked for."""

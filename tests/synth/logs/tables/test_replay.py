@@ -79,6 +79,7 @@ def test_one_wrong_command_is_found_where_it_is(assumed: Yard) -> None:
     assert np.all(np.delete(found.first_differing, 4) == -1)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("which", ["own", "other"])
 def test_predicted_exits_are_those_that_the_same_cuts_really_get(
     which: str, replayed: list[Replay], assumed: Yard, worn: Yard
@@ -115,6 +116,7 @@ def test_measured_exits_are_the_true_ones(replayed: list[Replay], assumed: Yard)
     assert 0.8 < surprise.std() < 1.3
 
 
+@pytest.mark.long
 def test_ranks_are_uniform_where_the_configuration_is_true_and_not_elsewhere(
     replayed: list[Replay], assumed: Yard, worn: Yard
 ) -> None:

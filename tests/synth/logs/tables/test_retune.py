@@ -104,6 +104,7 @@ def test_what_a_log_gave_is_not_offered_again(
     assert {"report.html", "plots/retune-gains.png"} <= set(summary["files"])
 
 
+@pytest.mark.long
 def test_a_replay_of_the_own_tables_commands_what_they_did(assumed: Yard, tmp_path: Path) -> None:
     write_log(log_of(assumed, assumed, 3), tmp_path / "log.h5")
     write_book(tuple(assumed.tables.values()), tmp_path / "old.h5")
