@@ -7,22 +7,12 @@ from typing import Any, Final
 
 from numba import njit
 
-from synth.kernels.plain import IS_PLAIN
-
-if IS_PLAIN:
-    from synth.kernels.vector.plain_numba import (
-        IN_ITS_CALLERS,
-        WITHOUT_CALLBACK,
-        WITHOUT_REFERENCE_COUNTS,
-        compiled_part,
-    )
-else:
-    from synth.kernels.vector.numba_internals import (
-        IN_ITS_CALLERS,
-        WITHOUT_CALLBACK,
-        WITHOUT_REFERENCE_COUNTS,
-        compiled_part,
-    )
+from synth.kernels.vector.numba_internals import (
+    IN_ITS_CALLERS,
+    WITHOUT_CALLBACK,
+    WITHOUT_REFERENCE_COUNTS,
+    compiled_part,
+)
 
 KEPT: Final[dict[str, Any]] = {"cache": True, "nogil": True, **WITHOUT_CALLBACK}
 BARE: Final[dict[str, Any]] = {**KEPT, "error_model": "numpy"}

@@ -120,7 +120,7 @@ def test_what_these_rules_are_to_find_they_find() -> None:
 def test_a_diagram_is_drawn_the_same_again(drawn: dict[str, tuple[Sketch, Routes]], kind: str) -> None:
     first, second = (draw(block_diagram(*drawn[kind], "subject")) for _ in range(2))
     assert first == second
-    assert first.png[:4] == b"\x89PNG"
+    assert b"<svg" in first[:500]
     shown = block_diagram(*drawn[kind]).findobj(Text)
     texts = {each.get_text() for each in shown if isinstance(each, Text)}
     for part in drawn[kind][0].boxes:

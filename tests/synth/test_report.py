@@ -17,7 +17,7 @@ from synth.frame.command import Verdict
 from synth.frame.exhibits import Chart, Sentence, Table, exhibits_of
 from synth.frame.page.markup import VOID, Markup, element
 from synth.frame.page.told_page import page_of
-from synth.frame.picture.picture import Drawing, Picture
+from synth.frame.picture.picture import Picture
 from synth.frame.printed_numbers import counted, percent, span
 from synth.frame.told import Told
 from synth.retarder.acceptance import judged
@@ -114,7 +114,7 @@ def told_of(found: FoundBook) -> Told:
 
 def html_of(found: FoundBook, hashes: Mapping[str, str] = HASHES) -> str:
     """Its page; every chart is the same empty picture."""
-    told, drawing = told_of(found), Drawing(b"png", SVG)
+    told, drawing = told_of(found), SVG
     charts = (each for each in exhibits_of(told.chapters) if isinstance(each, Chart))
     return page_of(
         told, {each.name: Picture(each.name, "", each.title, each.caption, drawing) for each in charts}, hashes

@@ -131,7 +131,7 @@ def test_inspect_tells_when_they_decide_and_how_lines_rise(
 def test_they_are_drawn_and_simulated_again_from_the_file(folder: Path) -> None:
     table = next((folder / "one" / "tables").glob("*.json"))
     assert main(["plot", str(table), "-o", str(folder / "plots")]) == 0
-    assert {path.name.rpartition("-")[2] for path in (folder / "plots").iterdir()} >= {"surfaces.png", "lines.png"}
+    assert {path.name.rpartition("-")[2] for path in (folder / "plots").iterdir()} >= {"surfaces.svg", "lines.svg"}
     asked = [
         "validate",
         str(table),

@@ -39,7 +39,7 @@ def test_tune_leaves_what_the_contract_says(tuned_once: tuple[Path, int]) -> Non
     assert code == 0
     files = set(results_in(directory))
     assert {"book.h5", "report.html", "summary.json", f"tables/{ID}.json", f"tables/{ID}.csv"} <= files
-    assert {"plots/rms-by-controller.png", "plots/rms-by-controller.svg", "plots/feasibility.svg"} <= files
+    assert {"plots/rms-by-controller.svg", "plots/feasibility.svg"} <= files
     assert {path.name for path in (directory / "c").iterdir()} == C_FILES
     summary = summary_of(directory)
     assert set(summary["files"]) == files - {"summary.json"}
@@ -441,7 +441,7 @@ def test_plot_draws_without_solving(command: Command, tuned: Path, two_classes: 
     assert ran.code == 0
     names = {Path(name).name for name in json.loads(ran.out)["files"]}
     kinds = ("lines", "surfaces", "passes")
-    assert names == {f"{i}-{kind}.{form}" for i in (ID, HEAVIER) for kind in kinds for form in ("png", "svg")}
+    assert names == {f"{i}-{kind}.svg" for i in (ID, HEAVIER) for kind in kinds}
     assert names == set(results_in(tmp_path / "plots"))
     without = command("plot", tuned / "tables" / f"{ID}.json", "-o", tmp_path / "bare")
     assert without.code == 0

@@ -67,7 +67,7 @@ def test_draw(command: Command, file: Path, tmp_path: Path) -> None:
     run = command("hump", "draw", file, "-o", tmp_path / "out", "--track", "2", "--json")
     assert run.code == 0
     assert json.loads(run.out)["track"] == 2
-    assert set(results_in(tmp_path / "out")) == {"small-hump.png", "small-hump.svg"}
+    assert set(results_in(tmp_path / "out")) == {"small-hump.svg"}
     refused = command("hump", "draw", file, "-o", tmp_path / "none", "--track", "3")
     assert refused.code == 2
     assert refused.sentence == "--track is 3; the hump has the tracks 1 to 2"

@@ -135,7 +135,7 @@ def test_commands_at_any_time_gain_and_no_approach_and_the_measured_speed_lose(r
 def test_all_files_are_named_with_their_hashes(ran: Path) -> None:
     files = summary(ran / "one")["files"]
     assert set(files) == {
-        "configuration.toml", "plots/permissions.png", "plots/permissions.svg", "report.html", "sheets/figures.csv",
+        "configuration.toml", "plots/permissions.svg", "report.html", "sheets/figures.csv",
         "sheets/permissions.csv",
     }  # fmt: skip
     for name, digest in files.items():

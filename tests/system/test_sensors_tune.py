@@ -201,14 +201,14 @@ def test_plot_draws_switching_speeds_and_passes_where_the_plant_is_known(
 ) -> None:
     ran = command("plot", tuned_points, "-o", tmp_path / "all", "--config", config)
     assert ran.code == 0, ran.err
-    assert {path.name.removeprefix("gondola-4-22t-to-") for path in (tmp_path / "all").glob("*.png")} == {
-        "2-m-s-switching-speeds.png", "2-m-s-passes.png", "2.5-m-s-switching-speeds.png", "2.5-m-s-passes.png",
+    assert {path.name.removeprefix("gondola-4-22t-to-") for path in (tmp_path / "all").glob("*.svg")} == {
+        "2-m-s-switching-speeds.svg", "2-m-s-passes.svg", "2.5-m-s-switching-speeds.svg", "2.5-m-s-passes.svg",
     }  # fmt: skip
     unknown = command("plot", tuned_points / "tables" / f"{TABLE}.json", "-o", tmp_path / "one")
     assert unknown.code == 0
     assert "no passes are drawn" in unknown.sentence
     assert set(results_in(tmp_path / "one")) == {
-        f"{TABLE}-switching-speeds.png", f"{TABLE}-switching-speeds.svg",
+        f"{TABLE}-switching-speeds.svg",
     }  # fmt: skip
 
 

@@ -86,7 +86,7 @@ DIRECTORIES = (
     Writing(("computer", "computer.toml"), "report.html"),
     Writing(("hump", "simulate", "trial.toml", "--list", "train.csv"), "inputs/config.toml"),
     Writing(("hump", "speed", "trial.toml"), "sheets/program.csv"),
-    Writing(("hump", "draw", "hump.toml"), "hump-hump.png"),
+    Writing(("hump", "draw", "hump.toml"), "hump-hump.svg"),
     Writing(("identify", "log.csv", "--config", "own.toml", "--mapping", "mapping.toml"), "config.toml"),
     Writing(("watch", "log.csv", "--config", "yard.toml", "--reference", "log.h5"), "sheets/passes.csv"),
     Writing(("retune", "log.csv", "--config", "yard.toml", "--table", "book.h5"), "book.h5"),
@@ -94,7 +94,7 @@ DIRECTORIES = (
     Writing(("export", "book.h5", "--format", "c"), "retarder_table.c", quick=True),
     Writing(("export", "table.json", "--format", "json"), f"{TABLE}.json", quick=True),
     Writing(("validate", "book.h5", "--config", "yard.toml", "--passes", "1000", "--log", "new.csv"), "new.csv"),
-    Writing(("plot", "table.json", "--config", "yard.toml"), f"{TABLE}-lines.png"),
+    Writing(("plot", "table.json", "--config", "yard.toml"), f"{TABLE}-lines.svg"),
     Writing(("loop", "table.json", "--config", "yard.toml"), "loops.json"),
 )
 FILES = (Writing(("hump", "export", "hump.toml")),)

@@ -45,7 +45,7 @@ def document(stamp: Stamp, verdict: Markup, sections: Sequence[tuple[str, str, M
 
 def figure(picture: Picture) -> Markup:
     """A picture as an image of its own: the identifiers of one SVG cannot meet those of another."""
-    data = b64encode(picture.drawing.svg).decode()
+    data = b64encode(picture.svg).decode()
     image = element("img", src=f"data:image/svg+xml;base64,{data}", alt=f"{picture.title}. {picture.caption}")
     return element("figure", image, element("figcaption", picture.caption))
 

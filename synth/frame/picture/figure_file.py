@@ -1,4 +1,8 @@
-"""A figure as the bytes of a PNG and an SVG file: the same figure gives the same bytes."""
+"""A figure as the bytes of an SVG file: the same figure gives the same bytes.
+
+One form, so that nothing is drawn twice: it is sharp at every size, browsers and word processors take it, and the page
+of a command holds the same bytes.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,6 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from synth.frame.picture.house_style import DOTS_PER_INCH, MATHEMATICS
-from synth.frame.picture.picture import Drawing, drawing_files
 
 IDENTIFIER_SALT = "retarder-synth"
 """Makes the identifiers inside an SVG a hash of what they name instead of random."""
@@ -18,9 +21,9 @@ IDENTIFIER_SALT = "retarder-synth"
 _drawing = threading.Lock()
 
 
-def draw(figure: Figure) -> Drawing:
-    """Both forms of `figure`, without dates; a `$` in its texts is a `$`, but in `mathematics`."""
-    png, svg = io.BytesIO(), io.BytesIO()
+def draw(figure: Figure) -> bytes:
+    """The SVG of `figure`, without dates; a `$` in its texts is a `$`, but in `mathematics`."""
+    svg = io.BytesIO()
     for text in figure.findobj(Text):
         text.set_parse_math(text.get_label() == MATHEMATICS)
     # Settings of matplotlib are global: one thread at a time. That of mathematics is for what is written while drawing.
@@ -30,13 +33,10 @@ def draw(figure: Figure) -> Drawing:
             {"svg.hashsalt": IDENTIFIER_SALT, "svg.fonttype": "path", "text.parse_math": False},
         ),
     ):
-        figure.savefig(
-            png, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None}, pil_kwargs={"compress_level": 3}
-        )
         figure.savefig(svg, format="svg", dpi=DOTS_PER_INCH, metadata={"Date": None, "Creator": None})
-    return Drawing(png.getvalue(), svg.getvalue())
+    return svg.getvalue()
 
 
-def figure_files(figure: Figure, name: str, folder: str = "") -> dict[str, bytes]:
-    """`figure`, drawn as `folder/name.png` and `.svg`: what is to be written under each name."""
-    return drawing_files(draw(figure), name, folder)
+def figure_files(figure: Figure, name: str) -> dict[str, bytes]:
+    """`figure`, drawn: what is to be written under `name.svg`."""
+    return {f"{name}.svg": draw(figure)}

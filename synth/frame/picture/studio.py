@@ -19,7 +19,6 @@ from types import TracebackType
 from typing import Final
 
 from synth.frame.exhibits import Chart
-from synth.frame.picture.picture import Drawing
 
 NICENESS: Final = 5
 """Drawing gives way to computing."""
@@ -36,7 +35,7 @@ class Studio:
         self._processes = processes
         self._mine = threading.local()
         self._pool = ThreadPoolExecutor(max(processes, 1))
-        self._begun: dict[str, Future[Drawing]] = {}
+        self._begun: dict[str, Future[bytes]] = {}
         if processes > 1:
             together = threading.Barrier(processes)
             for _ in range(processes):  # the barrier gives every thread one of them, so that all processes start now
@@ -55,12 +54,12 @@ class Studio:
         if self._processes > 1:
             self._begun[chart.name] = self._pool.submit(self._order, chart)
 
-    def drawing(self, chart: Chart) -> Future[Drawing]:
+    def drawing(self, chart: Chart) -> Future[bytes]:
         """The drawing of `chart`, to come."""
         begun = self._begun.pop(chart.name, None)
         return begun or self._pool.submit(draw_chart if self._processes < 2 else self._order, chart)
 
-    def _order(self, chart: Chart) -> Drawing:
+    def _order(self, chart: Chart) -> bytes:
         """Have this thread's process draw `chart`; if that process is dead, somebody has to."""
         try:
             pipe = self._pipe()
@@ -70,7 +69,7 @@ class Studio:
             return draw_chart(chart)
         if isinstance(answer, Exception):
             raise answer
-        drawing: Drawing = answer
+        drawing: bytes = answer
         return drawing
 
     def _pipe(self) -> Connection:
@@ -89,7 +88,7 @@ class Studio:
         return pipe
 
 
-def draw_chart(chart: Chart) -> Drawing:
+def draw_chart(chart: Chart) -> bytes:
     """The drawing of one chart."""
     from synth.frame.picture.figure_file import draw  # matplotlib only where it is needed
 

@@ -1,20 +1,21 @@
-"""Everything that this program takes from the inside of numba and llvmlite, which may change without notice.
+"""The door to numba's extension interface and to llvmlite, and all that is undocumented in what stands on them.
 
 No other file may import `llvmlite`, `numba.core` or the low-level part of `numba.extending`; tests/architecture holds
 that. The tests pass with numba 0.68.1 and llvmlite 0.50.0, which requirements.lock names. With numba 0.68.0 the tests
 of packs and closed loop pass, and the coefficients of 86 tables are the same. pyproject.toml allows these minor
 releases alone.
 
-- `WITHOUT_REFERENCE_COUNTS`, an undocumented option of `njit`: without it kernels give the same bits, but slower;
-- `WITHOUT_CALLBACK`, another one: without it kernels do the same, but take longer to compile;
-- `IN_ITS_CALLERS`, another one: without it kernels give the same bits, but slower;
-- `compiled_part`, which keeps numba from making a function that Python can call: the same, they only take longer;
-- `CACHE_READER`, the name of numba's module for cached kernels: without it `guarded` mends no damaged cache;
-- `ir`, llvmlite's builders of machine code, and `intrinsic`, `register_vector`, `infer_operation`, `lower_operation`,
-  `declared_function`, `array_data`, from numba's registries and code generator: without them there are no packs, and
-  hardly a kernel compiles.
+What packs need is in numba's documented low-level interface: `intrinsic`, `register_model`, `type_callable`,
+`lower_builtin`, `create_struct_proxy`; and llvmlite's builders of machine code, `ir`.
 
-With `RETARDER_SYNTH_PLAIN_KERNELS=1` nothing of this is imported (`kernels.plain`).
+Undocumented are four options and a name. `RETARDER_SYNTH_PLAIN_KERNELS=1` (`kernels.plain`) leaves the options out, so
+that a numba that no longer has them stops nobody: kernels give the same bits, but slower.
+
+- `WITHOUT_REFERENCE_COUNTS`: without it kernels take longer;
+- `IN_ITS_CALLERS`: without it too;
+- `WITHOUT_CALLBACK`: without it kernels do the same, but take longer to compile;
+- `compiled_part`, which keeps numba from making a function that Python can call: without it too;
+- `CACHE_READER`, the name of numba's module for cached kernels: without it `guarded` mends no damaged cache.
 
 A new release of numba: read its list of changes, run `.ci/newest`, raise the cap in pyproject.toml, and lock anew.
 """
@@ -27,7 +28,8 @@ from typing import Any
 from llvmlite import ir
 from numba import extending, njit
 from numba.core import cgutils
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+
+from synth.kernels.plain import IS_PLAIN
 
 __all__ = [
     "CACHE_READER",
@@ -44,21 +46,26 @@ __all__ = [
     "register_vector",
 ]
 
-WITHOUT_REFERENCE_COUNTS: dict[str, Any] = {"_nrt": False}
-"""Option of `njit` for kernels that neither make an array nor keep one: numba's runtime is left out.
 
-An unknown option is refused when the kernel is decorated, so a numba without it cannot go unnoticed.
-"""
+def undocumented(**options: Any) -> dict[str, Any]:
+    """Options of `njit` that numba does not promise; none where its inside is left alone.
 
-WITHOUT_CALLBACK: dict[str, Any] = {"no_cfunc_wrapper": True}
-"""Option of `njit` and `overload`: numba makes no second function of it that C could call back.
+    An unknown option is refused when the kernel is decorated, so a numba without it cannot go unnoticed.
+    """
+    return {} if IS_PLAIN else options
+
+
+WITHOUT_REFERENCE_COUNTS = undocumented(_nrt=False)
+"""For kernels that neither make an array nor keep one: numba's runtime is left out."""
+
+WITHOUT_CALLBACK = undocumented(no_cfunc_wrapper=True)
+"""Also for `overload`: numba makes no second function of it that C could call back.
 
 Nothing here is handed to C, and to make these took a sixth of the time of compiling.
 """
 
-
-IN_ITS_CALLERS: dict[str, Any] = {"forceinline": True}
-"""Option of `njit`, also undocumented: the machine code is put into the callers whatever its size."""
+IN_ITS_CALLERS = undocumented(forceinline=True)
+"""The machine code is put into the callers, whatever its size."""
 
 
 def compiled_part(function: Callable[..., Any], options: Mapping[str, Any]) -> Any:
@@ -72,6 +79,8 @@ def compiled_part(function: Callable[..., Any], options: Mapping[str, Any]) -> A
         raise TypeError(f"{function.__name__} is a part of kernels; from Python call {function.__name__}.py_func")
 
     compiler: Any = njit
+    if IS_PLAIN:
+        return compiler(**options)(function)
     made = compiler(**options, no_cpython_wrapper=True)(function)
     made._insert = lambda *_arguments, **_named: None
     made._compile_for_args = refused
@@ -100,12 +109,8 @@ def register_vector(kind: type, machine_type: Callable[[Any], Any]) -> None:
 
 def infer_operation(symbol: Callable[..., Any], result: Callable[[Any, Any], Any]) -> None:
     """Have the binary operation `symbol` give the type `result(a, b)` of its operands' types; None: not ours."""
-
-    @infer_global(symbol)
-    class Typed(AbstractTemplate):
-        def generic(self, args: Any, kws: Any) -> Any:
-            found = result(*args) if len(args) == 2 else None
-            return None if found is None else signature(found, *args)
+    typed: Any = extending.type_callable(symbol)
+    typed(lambda context: lambda a, b: result(a, b))
 
 
 def lower_operation(symbol: Callable[..., Any], kinds: tuple[type, type], code: Callable[..., Any]) -> None:
@@ -115,9 +120,10 @@ def lower_operation(symbol: Callable[..., Any], kinds: tuple[type, type], code: 
 
 def declared_function(builder: Any, name: str, result: Any, arguments: list[Any]) -> Any:
     """The function `name` of LLVM or of the C library, declared in the module that is being built."""
-    return cgutils.get_or_insert_function(builder.module, ir.FunctionType(result, arguments), name)
+    known = builder.module.globals.get(name)
+    return known or ir.Function(builder.module, ir.FunctionType(result, arguments), name)
 
 
 def array_data(context: Any, builder: Any, array_type: Any, array: Any) -> Any:
     """Code for the address of the first element of an array."""
-    return context.make_array(array_type)(context, builder, array).data
+    return cgutils.create_struct_proxy(array_type)(context, builder, value=array).data

@@ -6,16 +6,19 @@ the same order as the scalar form, so results do not depend on how wide the mach
 
 A pack is loaded from, and stored to, a contiguous array at a flat index; arithmetic, comparison, `least`, `greatest`
 and `choose` work lane by lane, with plain numbers standing for equal lanes. Nothing checks bounds. Below stands what
-each function means, in numpy: it is what runs without the compiler, and what numba compiles where its inside is left
-alone (`kernels.plain`). `pack_code` has what the machine does.
+each function means, in numpy, which is also what runs without the compiler; `pack_code` has what the machine does.
 """
 
 from __future__ import annotations
 
-import numpy as np
-from numba.extending import register_jitable
+from functools import partial
+from typing import Any
 
-from synth.kernels.plain import IS_PLAIN
+import numpy as np
+from numba.extending import overload
+
+from synth.kernels.vector import mask_code, pack_code, pack_memory
+from synth.kernels.vector.numba_internals import WITHOUT_CALLBACK
 
 SIXTEEN, EIGHT = 16, 8
 """Lanes of a pack: two packs of energies at once; energies or targets."""
@@ -62,16 +65,12 @@ def gather(array, where):
 
 def gather_four(array, where):
     """Of each flat index in a pack of eight the element there, and its next three: four packs."""
-    flat = array.reshape(-1)
-    return flat[where], flat[where + 1], flat[where + 2], flat[where + 3]
+    return tuple(array.reshape(-1)[where + i] for i in range(4))
 
 
 def scatter(array, where, mask, pack):
     """Write the lanes in which the mask holds to the flat indices of a pack of whole numbers, no two the same."""
-    flat = array.reshape(-1)
-    for lane in range(len(mask)):
-        if mask[lane]:
-            flat[where[lane]] = pack[lane]
+    array.reshape(-1)[where[mask]] = pack[mask]
 
 
 def keep(array, at, mask, pack):
@@ -143,52 +142,41 @@ def nearest(pack):
 
 def first_lane(mask):
     """The first lane of eight in which the mask holds, 8 if there is none."""
-    lane = 0
-    while lane < len(mask) and not mask[lane]:
-        lane += 1
-    return lane
+    return int(np.argmax(np.append(mask, True)))
 
 
 def last_lane(mask, count):
     """The last of the first `count` lanes of eight in which the mask holds, −1 if there is none."""
-    lane = count - 1
-    while lane >= 0 and not mask[lane]:
-        lane -= 1
-    return lane
+    return int(np.max(np.flatnonzero(mask[:count]), initial=-1))
 
 
-DEFINITIONS = (
-    item,
-    add_to,
-    fetch,
-    eight,
-    load16,
-    load8,
-    store,
-    gather,
-    gather_four,
-    scatter,
-    keep,
-    choose,
-    least,
-    greatest,
-    magnitude,
-    opposite,
-    holds_anywhere,
-    whole,
-    fraction,
-    narrow,
-    wide,
-    root,
-    nearest,
-    first_lane,
-    last_lane,
+overloaded: Any = overload
+compiled = partial(overloaded, jit_options=WITHOUT_CALLBACK)
+
+compiled(item)(lambda array, at: lambda array, at: pack_memory.item(array, at))
+compiled(add_to)(lambda array, at, number: lambda array, at, number: pack_memory.add_to(array, at, number))
+compiled(fetch)(lambda array, at: lambda array, at: pack_memory.fetch(array, at))
+compiled(eight)(lambda number: lambda number: pack_code.eight(number))
+compiled(load16)(lambda array, at: lambda array, at: pack_memory.load16(array, at))
+compiled(load8)(lambda array, at: lambda array, at: pack_memory.load8(array, at))
+compiled(store)(lambda array, at, pack: lambda array, at, pack: pack_memory.store(array, at, pack))
+compiled(gather)(lambda array, where: lambda array, where: pack_memory.gather(array, where))
+compiled(gather_four)(lambda array, where: lambda array, where: pack_memory.gather_four(array, where))
+compiled(choose)(lambda mask, yes, no: lambda mask, yes, no: pack_code.choose(mask, yes, no))
+compiled(least)(lambda a, b: lambda a, b: pack_code.choose(b < a, b, a))
+compiled(greatest)(lambda a, b: lambda a, b: pack_code.choose(b > a, b, a))
+compiled(magnitude)(lambda pack: lambda pack: pack_code.choose(pack < 0.0, pack * -1.0, pack))
+compiled(holds_anywhere)(lambda mask: lambda mask: pack_code.holds_anywhere(mask))
+compiled(whole)(lambda pack: lambda pack: pack_code.whole(pack))
+compiled(fraction)(lambda pack: lambda pack: pack_code.fraction(pack))
+compiled(scatter)(
+    lambda array, where, mask, pack: lambda array, where, mask, pack: pack_memory.scatter(array, where, mask, pack)
 )
-
-if IS_PLAIN:
-    for definition in DEFINITIONS:
-        register_jitable(definition)
-else:
-    from synth.kernels.vector.pack_overloads import overload_all
-
-    overload_all({each.__name__: each for each in DEFINITIONS})
+compiled(keep)(lambda array, at, mask, pack: lambda array, at, mask, pack: pack_memory.keep(array, at, mask, pack))
+compiled(opposite)(lambda mask: lambda mask: pack_code.opposite(mask))
+compiled(narrow)(lambda pack: lambda pack: pack_code.narrow(pack))
+compiled(wide)(lambda pack: lambda pack: pack_code.wide(pack))
+compiled(root)(lambda pack: lambda pack: pack_code.root(pack))
+compiled(nearest)(lambda pack: lambda pack: pack_code.nearest(pack))
+compiled(first_lane)(lambda mask: lambda mask: mask_code.first_lane(mask))
+compiled(last_lane)(lambda mask, count: lambda mask, count: mask_code.last_lane(mask, count))

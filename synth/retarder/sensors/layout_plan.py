@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from plant_models import PointSensors
 from synth.problem.resolution import Resolution
 from synth.retarder.sensors.candidate_places import LayoutCase, candidate_places
 from synth.retarder.sensors.layout import LAST_SECTION_M, equal_layout, first_sensor_m, with_layout
-from synth.retarder.sensors.layout_search import LayoutSearch
+from synth.retarder.sensors.layout_search import LayoutSearch, Tell, silent
 from synth.retarder.sensors.tuned_passages import TunedPassages, passage_chains, tuned_passages
 from synth.solver.chain.sensor_passages import with_point_sensors
 
@@ -86,17 +87,27 @@ class LayoutProblem:
 
 
 def plan_layouts(
-    problem: LayoutProblem, counts: Sequence[int], threads: int = 1, tell: Callable[[str], None] = lambda _: None
+    problem: LayoutProblem, counts: Sequence[int], threads: int = 1, tell: Tell = silent
 ) -> tuple[PlannedLayout, ...]:
     """The best layout found for each number of deciding sensors, never worse than equal sections by its prediction."""
-    asked = [*found_layouts(problem, counts, threads)]
-    tell(f"places found for {len(asked)} numbers of sensors")
+    asked = [*found_layouts(problem, counts, threads, tell)]
     asked += [equal_layout(problem.first_m, problem.exit_m, count) for count in counts]
     with ThreadPoolExecutor(max_workers=threads) as pool:
-        judged = list(pool.map(problem.judged, asked))
-    tell(f"{len(asked)} layouts tuned")
+        judged = list(pool.map(partial(told_judged, problem, tell), asked))
     pairs = zip(judged[: len(counts)], judged[len(counts) :], strict=True)
     return tuple(PlannedLayout(min(pair, key=lambda each: each.rms_m_s), pair[1]) for pair in pairs)
+
+
+def steps_of_plan(counts: Sequence[int]) -> int:
+    """How many steps `plan_layouts` tells of."""
+    return max(counts) + 2 * len(counts)
+
+
+def told_judged(problem: LayoutProblem, tell: Tell, deciding_m: tuple[float, ...]) -> JudgedLayout:
+    """A layout judged, and told of."""
+    found = problem.judged(deciding_m)
+    tell(f"{len(deciding_m) + 1} sensors, the first at {deciding_m[0]:g} m: rms {found.rms_m_s:.4f} m/s predicted")
+    return found
 
 
 def best_places(problem: LayoutProblem, counts: Sequence[int]) -> tuple[tuple[float, ...], ...]:
@@ -104,14 +115,16 @@ def best_places(problem: LayoutProblem, counts: Sequence[int]) -> tuple[tuple[fl
     return tuple(plan.best.deciding_m for plan in plan_layouts(problem, counts))
 
 
-def found_layouts(problem: LayoutProblem, counts: Sequence[int], threads: int = 1) -> tuple[tuple[float, ...], ...]:
+def found_layouts(
+    problem: LayoutProblem, counts: Sequence[int], threads: int = 1, tell: Tell = silent
+) -> tuple[tuple[float, ...], ...]:
     """Places of the deciding sensors, for each of their numbers, of least expected cost before any polish."""
     if not counts:
         return ()
     places = np.arange(-problem.farthest_m, problem.exit_m - LAST_SECTION_M, PLACE_STEP_M)
     cases = tuple(candidate_places(case, problem.sensors, problem.farthest_m) for case in problem.cases)
     search = LayoutSearch(cases, tuple(places.tolist()), problem.first_m, problem.exit_m, threads)
-    found = search.best_layouts(counts)
+    found = search.best_layouts(counts, tell)
     return tuple(search.places_m(found[count]) for count in counts)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -16,6 +16,7 @@ from synth.retarder.sensors.anywhere import policy_anywhere
 from synth.retarder.sensors.candidate_places import LayoutCase
 from synth.retarder.sensors.layout import rule_layout, with_layout
 from synth.retarder.sensors.layout_plan import JudgedLayout, LayoutProblem, PlannedLayout, fewest_for, plan_layouts
+from synth.retarder.sensors.layout_search import Tell
 from synth.solver.chain.chain import check_chain, persistent_chain
 from synth.solver.resolved_density import resolved_density
 from synth.solver.tuned_lines import tuned_lines
@@ -72,7 +73,7 @@ def layout_results(
     sensors: Sequence[int],
     wanted_rms_m_s: float | None,
     threads: int,
-    tell: Callable[[str], None],
+    tell: Tell,
 ) -> LayoutResults:
     """Plans for each of these numbers of `sensors`, the one behind the exit counted, with what stands beside them."""
     plans = plan_layouts(problem, [number - 1 for number in sensors], threads, tell)

@@ -6,7 +6,7 @@ of all; for three sensors exhaustive search finds the same (tests).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -16,6 +16,9 @@ import numpy as np
 from plant_models.point_sensors import SHORTEST_SECTION_M
 from synth.retarder.sensors.candidate_places import CandidatePlaces
 from synth.retarder.sensors.layout import equal_layout
+
+Tell = Callable[[str], None]
+"""Is told a sentence when a step has ended."""
 
 PlaceNumbers = tuple[int, ...]
 """PlaceNumbers of the places at which deciding sensors stand, rising."""
@@ -28,6 +31,10 @@ STARTS_AHEAD = 2
 
 LEAST_GAIN = 1e-4
 """A move must lower the cost by this part of it."""
+
+
+def silent(_sentence: str) -> None:
+    """Nobody wants to know."""
 
 
 @dataclass(frozen=True)
@@ -66,8 +73,8 @@ class LayoutSearch:
         """The numbers of the places next to these."""
         return tuple(int(np.argmin(np.abs(np.array(self.path_m) - place))) for place in places_m)
 
-    def best_layouts(self, counts: Sequence[int]) -> dict[int, PlaceNumbers]:
-        """The best layout found for each of the `counts` of deciding sensors."""
+    def best_layouts(self, counts: Sequence[int], tell: Tell = silent) -> dict[int, PlaceNumbers]:
+        """The best layout found for each of the `counts` of deciding sensors; each number up to the most is told."""
         found: dict[int, PlaceNumbers] = {}
         equal: dict[int, Future[PlaceNumbers]] = {}
         most = max(counts)
@@ -83,6 +90,7 @@ class LayoutSearch:
                     descents.append(pool.submit(self.descended, start))
                 ends = [each.result() for each in descents]
                 found[count] = ends[int(np.argmin(self.costs(ends)))]
+                tell(f"places of {count + 1} sensors found")
         return {count: found[count] for count in counts}
 
     def inserted(self, layout: PlaceNumbers) -> list[PlaceNumbers]:

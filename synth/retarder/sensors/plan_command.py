@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
+from synth.frame.printed_numbers import counted
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
@@ -47,18 +48,24 @@ def head(asked: AskedPlan) -> Head:
 
 
 def steps(asked: AskedPlan) -> Steps:
-    """The search, the tables of all layouts, and what stands beside them."""
-    return Steps(3, "planning", "steps")
+    """Each number of sensors, each layout, and what stands beside them."""
+    from synth.retarder.sensors.layout_plan import steps_of_plan
+
+    return Steps(steps_of_plan([number - 1 for number in asked.options.sensors]) + 1, "planning", "steps")
 
 
 def compute(asked: AskedPlan, work: Work) -> LayoutResults:
     """The plans, the rule and the radar."""
+    from synth.retarder.first_run import compiled_beside
     from synth.retarder.sensors.layout_results import layout_results
 
-    options = asked.options
-    return layout_results(
-        asked.problem, asked.labels, options.sensors, options.rms_m_s, options.workers, work.progress.done
-    )
+    options, progress = asked.options, work.progress
+    classes = counted(len(asked.problem.cases), "cut class", "cut classes")
+    progress.note(f"looking for the places of up to {max(options.sensors)} sensors, for {classes}")
+    with compiled_beside(progress.note):
+        return layout_results(
+            asked.problem, asked.labels, options.sensors, options.rms_m_s, options.workers, progress.done
+        )
 
 
 def limits(found: LayoutResults) -> Iterator[Limit]:

@@ -43,7 +43,7 @@ def test_a_log_becomes_a_configuration(
     assert main(words(tmp_path)) == 0
     summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
     assert summary["figures"]["passes"] == len(passes)
-    assert {"config.toml", "report.html", "plots/identify-numbers.png"} <= summary["files"].keys()
+    assert {"config.toml", "report.html", "plots/identify-numbers.svg"} <= summary["files"].keys()
     numbers = {each["key"]: each["value"] for each in summary["tables"]["numbers"]}
     assert numbers["sensor.noise_m_s"]["low95"] < 0.05 < numbers["sensor.noise_m_s"]["high95"]
     assert {each["n"] for each in numbers.values()} == {len(passes)}

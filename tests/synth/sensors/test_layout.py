@@ -17,7 +17,7 @@ from synth.problem.resolution import Resolution
 from synth.retarder.sensors.anywhere import policy_anywhere
 from synth.retarder.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places
 from synth.retarder.sensors.layout import equal_layout, fastest_m_s, first_sensor_m, longest_change_s, rule_layout
-from synth.retarder.sensors.layout_plan import LayoutProblem, fewest_for, plan_layouts
+from synth.retarder.sensors.layout_plan import LayoutProblem, fewest_for, plan_layouts, steps_of_plan
 from synth.retarder.sensors.layout_results import layout_results
 from synth.retarder.sensors.layout_search import LayoutSearch
 from synth.retarder.sensors.plan_command import COMMAND
@@ -148,7 +148,7 @@ def test_what_is_shown_of_a_plan(plant_22t: Plant) -> None:
     problem = LayoutProblem((LayoutCase(plant_22t, AIMS),), SENSORS, COARSE)
     told: list[str] = []
     found = layout_results(problem, ("light",), (3,), None, 1, told.append)
-    assert len(told) == 3  # as many as the command counts
+    assert len(told) == steps_of_plan([2]) + 1 == 5  # as many as the command counts
     (chapter,) = COMMAND.show(found)
     layouts, cases = (each for each in chapter.exhibits if isinstance(each, Table))
     assert [row["layout"] for row in layouts.rows] == ["planned", "equal sections", "by the rule", "radar"]

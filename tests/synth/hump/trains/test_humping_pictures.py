@@ -55,7 +55,7 @@ def figures(humped: HumpedTrains, trace: TrainTrace, found: TrainOutcomes) -> di
 
 def test_the_title_of_a_hump_may_have_any_letters(humped: HumpedTrains) -> None:
     entry = replace(humped.entry, title="".join(map(chr, range(0x20, 0x7F))) + r" a $\frac{1}$ b $x^$")
-    assert draw(catch_ups(entry, {}, 1)).png
+    assert draw(catch_ups(entry, {}, 1))
 
 
 def texts(figure: Figure) -> list[Text]:

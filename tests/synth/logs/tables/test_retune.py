@@ -101,7 +101,7 @@ def test_what_a_log_gave_is_not_offered_again(
     assert not summary["accepted"]
     assert [case["table"] for case in summary["tables"]["cases"]] == ["kept: within noise"] * len(CASES)
     assert {case["ratio"]["n"] for case in summary["tables"]["cases"]} == {GainOrder().sets}
-    assert {"report.html", "plots/retune-gains.png"} <= set(summary["files"])
+    assert {"report.html", "plots/retune-gains.svg"} <= set(summary["files"])
 
 
 @pytest.mark.long
