@@ -446,7 +446,7 @@ def test_plot_draws_without_solving(command: Command, tuned: Path, two_classes: 
     without = command("plot", tuned / "tables" / f"{ID}.json", "-o", tmp_path / "bare")
     assert without.code == 0
     assert "no passes are drawn" in without.sentence
-    assert len(results_in(tmp_path / "bare")) == 4
+    assert len(results_in(tmp_path / "bare")) == 2
 
 
 def test_init_prints_what_tune_reads(command: Command) -> None:
