@@ -37,6 +37,13 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "scripts.studies.book",
     ),
     Study(
+        "command-times",
+        "How long do whole commands take, on a first run and on later ones?",
+        2400.0,
+        "speed.md",
+        "scripts.studies.command_times",
+    ),
+    Study(
         "controller-agreement",
         "Does the exported C decide, choose and estimate as Python does, however it is compiled?",
         50.0,

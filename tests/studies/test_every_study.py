@@ -1,6 +1,6 @@
 """Every study runs, in its smallest form, and what it leaves can be read back and drawn.
 
-Those that take longer run with the long tests; of them the kept result is drawn.
+They run with the long tests; the kept results are drawn.
 """
 
 from __future__ import annotations
@@ -15,15 +15,9 @@ from scripts.studies.documents import result_of
 from scripts.studies.registry import STUDIES
 from scripts.studies.result import Result, read_result, run_study
 from scripts.studies.study import Study
+from tests.effort import every
 
 ROOT = Path(__file__).parents[2]
-QUICK = frozenset(
-    ("aim-tables", "aimed-braking", "any-time", "benchmark", "book", "controller-agreement", "correction", "degree",
-     "estimator", "estimator-reserve", "estimator-wrong", "friction-known", "interpolation", "point-sensors",
-     "robustness", "rooms")
-)  # fmt: skip
-"""Studies whose smallest form takes less than ten seconds."""
-
 COARSE = """\
 [targets]
 exit_speeds_m_s = [2.0, 3.0]
@@ -49,10 +43,7 @@ def smallest(study: Study, folder: Path) -> Any:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    "study",
-    [pytest.param(each, marks=() if each.name in QUICK else pytest.mark.long, id=each.name) for each in STUDIES],
-)
+@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
 def test_a_study_runs_and_its_result_reads_back(study: Study, tmp_path: Path) -> None:
     told: list[str] = []
     result = run_study(study, smallest(study, tmp_path), told.append)
@@ -80,7 +71,7 @@ def assert_drawn(result: Result, folder: Path) -> None:
         assert (folder / f"{name}.png").stat().st_size > 5000
 
 
-@pytest.mark.parametrize("name", [each.name for each in STUDIES if each.pictures and each.name not in QUICK])
+@pytest.mark.parametrize("name", every(3, [each.name for each in STUDIES if each.pictures]))
 def test_a_kept_result_is_drawn(name: str, tmp_path: Path) -> None:
     assert_drawn(result_of(ROOT, name), tmp_path)
 
@@ -88,7 +79,6 @@ def test_a_kept_result_is_drawn(name: str, tmp_path: Path) -> None:
 def test_names_are_sorted_and_questions_are_sentences() -> None:
     names = [study.name for study in STUDIES]
     assert names == sorted(set(names))
-    assert set(names) >= QUICK
     assert [study.name for study in STUDIES if not study.question.endswith("?") or study.seconds <= 0.0] == []
 
 

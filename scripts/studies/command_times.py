@@ -1,0 +1,167 @@
+"""How long whole commands take, as processes: with an empty kernel cache, with a full one, and without numba's inside.
+
+Every command runs once a round, in turns, so that a slow moment of the machine meets them all; with the program of
+another checkout, that one runs beside it in the same round.
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import subprocess
+import sys
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+
+from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
+from scripts.studies.options import option
+from scripts.studies.study import Findings, Method, Tell
+from scripts.studies.timing.machine import Machine, this_machine
+from scripts.studies.timing.turns import three_digits
+from synth.kernels.plain import VARIABLE
+
+PROGRAM = (sys.executable, "-c", "import sys; from synth.cli import main; sys.exit(main(sys.argv[1:]))")
+
+FILES: Mapping[str, str] = {
+    "any-time.toml": '[regulator]\ncommands = "any_time"\n',
+    "small.toml": '[[cut]]\ncar = "gondola-4"\nmass_t = 22.0\n[targets]\nexit_speeds_m_s = [2.0]\n[grid]\n'
+    "path_step_m = 1.0\nspeed_step_m_s = 0.06\n[validation]\npasses = 1000\n[output]\nplots = false\nreport = false\n",
+}
+"""What the commands read beside the defaults."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """A command, timed under `name`: its words, and whether the cache is empty or numba's inside is left alone."""
+
+    name: str
+    words: tuple[str, ...]
+    cold: bool = False
+    plain: bool = False
+
+
+ORDERS = (
+    Order("tune, first run", ("tune",), cold=True),
+    Order("tune", ("tune",)),
+    Order("tune, plain kernels", ("tune",), plain=True),
+    Order("aim", ("aim",)),
+    Order("hump simulate large, 1000 trains", ("hump", "simulate", "large", "--trains", "1000")),
+    Order("sensors plan", ("sensors", "plan")),
+    Order("permissions", ("permissions",)),
+    Order("tune, commands at any time", ("tune", "any-time.toml")),
+    Order("computer", ("computer",)),
+    Order("tune, one coarse case", ("tune", "small.toml")),
+)
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is timed."""
+
+    rounds: int = option(3, "turns", (1, 100))
+    commands: tuple[str, ...] = option((), "only these of the rows, by name")
+    before: Path | None = option(None, "Python of another checkout, timed beside this one")
+
+
+@dataclass(frozen=True)
+class Row:
+    """Seconds of the clock and of the processors (children counted) of one command, by round; of `before` likewise."""
+
+    name: str
+    wall_s: tuple[float, ...]
+    processor_s: tuple[float, ...]
+    before_wall_s: tuple[float, ...]
+    before_processor_s: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class CommandTimes(Findings):
+    """A row a command."""
+
+    machine: Machine
+    rows: tuple[Row, ...]
+
+    def tables(self) -> Mapping[str, MarkdownTable]:
+        """`times`: medians with extremes; the ratio to before is taken round by round."""
+        heads = ("command", "clock, s", "processors, s", "before: clock, s", "clock / before")
+        rows = [
+            (each.name, spread(each.wall_s), spread(each.processor_s), spread(each.before_wall_s), ratio(each))
+            for each in self.rows
+        ]
+        return {"times": table("Whole commands, as processes", heads, rows)}
+
+    def sentences(self) -> tuple[str, ...]:
+        """The machine."""
+        return (self.machine.sentence,)
+
+
+def spread(seconds: tuple[float, ...]) -> str:
+    """'8.2 (8.1 to 8.3, n = 3)'."""
+    if not seconds:
+        return ABSENT
+    low, middle, high = (three_digits(each) for each in (min(seconds), median(seconds), max(seconds)))
+    return f"{middle} ({low} to {high}, n = {len(seconds)})"
+
+
+def ratio(row: Row) -> str:
+    """This one's time over that of before, round by round."""
+    return spread(tuple(now / before for now, before in zip(row.wall_s, row.before_wall_s, strict=False)))
+
+
+def run(options: Options, tell: Tell) -> CommandTimes:
+    """Fill the caches by one round that counts for nothing, then time the rounds."""
+    machine = this_machine()
+    chosen = [each for each in ORDERS if not options.commands or each.name in options.commands]
+    programs = {"now": PROGRAM} | ({"before": (str(options.before), *PROGRAM[1:])} if options.before else {})
+    seconds: dict[tuple[str, str], list[tuple[float, float]]] = {
+        (which, each.name): [] for which in ("now", "before") for each in chosen
+    }
+    with TemporaryDirectory() as folder:
+        for name, text in FILES.items():
+            Path(folder, name).write_text(text, encoding="utf-8")
+        for turn in range(options.rounds + 1):
+            for order in chosen:
+                for which, program in programs.items():
+                    if turn == 0 and order.cold:
+                        continue
+                    taken = timed(program, order, Path(folder), which)
+                    tell(f"round {turn}, {which}: {order.name}: {taken[0]:.1f} s")
+                    seconds[which, order.name] += [taken] * (turn > 0)
+    return CommandTimes(machine, tuple(row_of(each.name, seconds) for each in chosen))
+
+
+def row_of(name: str, seconds: Mapping[tuple[str, str], list[tuple[float, float]]]) -> Row:
+    """All rounds of one command."""
+    now, before = (seconds[which, name] for which in ("now", "before"))
+    columns = [tuple(taken[place] for taken in rounds) for rounds in (now, before) for place in (0, 1)]
+    return Row(name, *columns)
+
+
+def timed(program: tuple[str, ...], order: Order, folder: Path, which: str) -> tuple[float, float]:
+    """Seconds of the clock and of the processors of one run; `RuntimeError` where it is refused."""
+    with TemporaryDirectory(dir=folder) as fresh:
+        cache = Path(fresh if order.cold else folder, f"cache-{which}")
+        environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+        environment |= {"RETARDER_SYNTH_CACHE": str(cache), VARIABLE: "1" if order.plain else "0"}
+        began, used = time.monotonic(), processors_s()
+        ran = subprocess.run(
+            [*program, *order.words, "-o", str(Path(fresh, "out"))],
+            cwd=folder, env=environment, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        taken = time.monotonic() - began, processors_s() - used
+    if ran.returncode not in (0, 1):
+        raise RuntimeError(f"{order.name} ended with {ran.returncode}: {ran.stderr}")
+    return taken
+
+
+def processors_s() -> float:
+    """Seconds that ended children have taken of all processors."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+METHOD = Method(Options, Options(rounds=1, commands=("tune, one coarse case",)), CommandTimes, run)
