@@ -68,7 +68,7 @@ def write_picture(file: Path, result: Result, name: str) -> None:
 
     figure = figure_of(result, name)
     end = end_of(figure)  # of the figure as `is_stale` sees it: drawing one makes its ticks
-    file.write_text(draw(figure).svg.decode().rstrip() + end, encoding="utf-8")
+    file.write_text(draw(figure).decode().rstrip() + end, encoding="utf-8")
 
 
 def end_of(figure: Figure) -> str:

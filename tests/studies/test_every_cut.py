@@ -22,16 +22,18 @@ from scripts.studies.result import Result, run_study
 from scripts.studies.study import Study, silent
 from synth.retarder.configuration.config_file import parse_config
 from synth.solver.one_blas_thread import one_blas_thread
+from tests.effort import sized
 
-MANY = [random_case(5, number) for number in range(400)]
+NUMBERS = range(sized(100, 400))
+MANY = [random_case(5, number) for number in NUMBERS]
 
 ORDINARY_SEED = 8
 """The least seed whose first 12 cases have every position and every car type, short passes and long ones."""
 
 ORDINARY = [random_case(ORDINARY_SEED, number) for number in range(12)]
 
-LONGEST = frozenset((4,))
-"""Of these the numbers of the longest pass of a bunch, a dumper and a park position."""
+IN_EACH_CHECK = 4
+"""Of these the number of the longest pass of a bunch position."""
 
 
 def length_m(case: RandomCase) -> float:
@@ -40,9 +42,9 @@ def length_m(case: RandomCase) -> float:
 
 
 def test_a_case_depends_on_seed_and_number_alone() -> None:
-    assert [random_case(5, number) for number in reversed(range(400))] == MANY[::-1]
+    assert [random_case(5, number) for number in reversed(NUMBERS)] == MANY[::-1]
     assert random_case(6, 17) != replace(MANY[17], number=17)
-    assert len({replace(case, number=0) for case in MANY}) == 400
+    assert len({replace(case, number=0) for case in MANY}) == len(NUMBERS)
     assert random_case(20_261_124, 0) == RandomCase(0, "knp-5-bunch", "hopper-4", 4, 288.5, 3.5)
 
 
@@ -210,7 +212,7 @@ def test_figures_do_not_depend_on_how_a_run_is_cut() -> None:
     [
         pytest.param(
             case,
-            marks=() if case.number in LONGEST else pytest.mark.long,
+            marks=() if case.number == IN_EACH_CHECK else pytest.mark.long,
             id=f"{case.number}-{case.position}-{case.cars}-{case.car}",
         )
         for case in ORDINARY
