@@ -15,7 +15,8 @@ from plant_models import Plant, PressingForce
 from plant_models.cut import ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
-from synth.kernels.loop import closed_loop as kernel
+from synth.kernels.loop.motion import brake_rows
+from synth.kernels.loop.passes import Draws
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.validation.revalidation import plant_for
 from synth.simulation.closed_loop import ClosedLoop, close_loop
@@ -66,7 +67,7 @@ class TableClass:
         path = self.loops[0].path
         factor, path_z = fixed(factor, np.float64), fixed(passes.path_z, np.float32)
         rows = np.empty((len(passes), len(path.gravity_m_s2)))
-        kernel.brake_rows(path, factor, path_z, rows)
+        brake_rows(path, factor, path_z, rows)
         return Brakes(factor, rows)
 
 
@@ -79,12 +80,10 @@ class Brakes:
     rows_m_s2_per_kpa: Floats
 
 
-def draws(
-    loop: ClosedLoop, passes: RandomPasses, brakes: Brakes, entry_m_s: Floats, resistance_n_kn: Floats
-) -> kernel.Draws:
+def draws(loop: ClosedLoop, passes: RandomPasses, brakes: Brakes, entry_m_s: Floats, resistance_n_kn: Floats) -> Draws:
     """`passes` with entry speed, resistance and brake of cuts (n,)."""
     start = loop.plant.start_speed_m_s(np.maximum(entry_m_s, SLOWEST_ENTRY_M_S), resistance_n_kn)
-    return kernel.Draws(
+    return Draws(
         fixed(brakes.factor, np.float64),
         fixed(resistance_n_kn, np.float64),
         fixed(start, np.float64),
@@ -96,10 +95,10 @@ def draws(
     )
 
 
-def chosen_draws(drawn: kernel.Draws, rows: Ints) -> kernel.Draws:
+def chosen_draws(drawn: Draws, rows: Ints) -> Draws:
     """Some of `drawn`."""
     arrays: Iterator[Any] = (fixed(values[rows], values.dtype.type) for values in drawn)
-    return kernel.Draws(*arrays)
+    return Draws(*arrays)
 
 
 def table_classes(tables: Sequence[ControllerTable], config: ResolvedConfig, source: str) -> tuple[TableClass, ...]:

@@ -14,14 +14,18 @@ from numpy.typing import NDArray
 from plant_models import Plant
 from plant_models.pads import overpressure_kpa
 from plant_models.stage_regulator import resting_modes, stage_locked_actuator
-from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, run_any_time_passes
-from synth.kernels.any_time.closed_loop_lanes import run_any_time_lanes
-from synth.kernels.loop import closed_loop as kernel
-from synth.kernels.loop import closed_loop_lanes as lanes
+from synth.kernels.any_time.any_time_law import AnyTimeLaw
+from synth.kernels.any_time.closed_loop import run_any_time_passes
+from synth.kernels.any_time.driven_period import SampledDrive
 from synth.kernels.loop import lane_places as places
-from synth.kernels.loop import regulator
+from synth.kernels.loop.closed_loop import run_passes
+from synth.kernels.loop.drive import Drive, Pieces
 from synth.kernels.loop.lane_estimator import FIELDS, Observed
-from synth.simulation.controllers import Controller, Law, LineController, Regulator, TableController, fixed
+from synth.kernels.loop.motion import Path, brake_rows
+from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
+from synth.kernels.loop.regulator import Rule, Sensor
+from synth.kernels.loop.trace import EVENT_FIELDS, Trace
+from synth.simulation.controllers import Controller, LineController, Regulator, TableController, fixed
 from synth.simulation.drive_pieces import drive_pieces, empty_periods
 from synth.simulation.lost_readings import readings_z
 from synth.simulation.passes import ExitSample, PassTrace
@@ -52,10 +56,14 @@ class ClosedLoop:
     """A plant made ready for the kernel: path cells, actuator, sensor. Build it with `close_loop`."""
 
     plant: Plant
-    path: kernel.Path
-    drive: kernel.Drive
-    sensor: regulator.Sensor
-    pieces: places.Pieces
+    path: Path
+    drive: Drive
+    sensor: Sensor
+
+    @cached_property
+    def pieces(self) -> Pieces:
+        """What the drive plays, piece by piece."""
+        return drive_pieces(self.drive, self.sensor.period_s)
 
     @property
     def stages(self) -> int:
@@ -69,7 +77,7 @@ class ClosedLoop:
         nominal = np.asarray(position.stage_pressures_kpa[: self.stages])
         return overpressure_kpa(nominal, position.force.touch_pressure_kpa)
 
-    def draws(self, passes: RandomPasses, cut_factor: float | None = None) -> kernel.Draws:
+    def draws(self, passes: RandomPasses, cut_factor: float | None = None) -> Draws:
         """What `passes` mean for this plant; `cut_factor` fixes ξ_cut (the friction is known), for all cuts alike."""
         plant = self.plant
         factor, weight = plant.friction.cut_factor(passes.cut_z, plant.friction_cv), passes.weight
@@ -77,7 +85,7 @@ class ClosedLoop:
             factor, weight = np.full(len(passes), cut_factor, dtype=np.float64), np.ones(len(passes))
         factor, path_z = fixed(factor, np.float64), fixed(passes.path_z, np.float32)
         resistance = self.resistance_n_kn(passes.resistance_u)
-        return kernel.Draws(
+        return Draws(
             factor,
             fixed(resistance, np.float64),
             fixed(plant.start_speed_m_s(plant.entry.speed_m_s(passes.entry_u), resistance), np.float64),
@@ -112,76 +120,52 @@ class ClosedLoop:
             self.drive.substeps,
         )
 
-    def run(self, controller: Regulator, draws: kernel.Draws) -> ExitSample:
+    def run(self, controller: Regulator, draws: Draws) -> ExitSample:
         """All passes of `draws` under `controller`; `PlantError` where it commands what valves cannot follow."""
-        law = self._law(controller)
-        if isinstance(law, AnyTimeLaw):
-            return self._at_any_time_in_lanes(law, draws)
-        passes = len(draws.cut_factor)
-        exits, memory = empty_exits(passes), (lane_memory(), empty_observed(law, passes))
-        lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, *memory)
-        return sample_of(exits, draws)
+        return self._run(controller, draws, empty_trace(0))
 
-    def follow(self, controller: Regulator, draws: kernel.Draws) -> PassTrace:
+    def follow(self, controller: Regulator, draws: Draws) -> PassTrace:
         """The only pass of `draws` under `controller`, event by event."""
-        samples = math.ceil(kernel.LONGEST_PASS_S / self.sensor.period_s + 2) + int(self.drive.chain_samples.max())
-        events = np.empty((samples * self.drive.substeps + 2, kernel.EVENT_FIELDS))
-        law = self._law(controller)
-        if isinstance(law, AnyTimeLaw):
-            sample, events = self._at_any_time(law, draws, events)
-        else:
-            sample, events = self._alone(law, draws, events)
-        return trace_of(events, bool(sample.stalled[0]))
+        samples = math.ceil(LONGEST_PASS_S / self.sensor.period_s + 2) + int(self.drive.chain_samples.max())
+        trace = empty_trace(samples * self.drive.substeps + 2)
+        sample = self._run(controller, draws, trace)
+        return trace_of(trace.events[: trace.noted[0]], bool(sample.stalled[0]))
 
-    def _law(self, controller: Regulator) -> Law:
+    def _run(self, controller: Regulator, draws: Draws, trace: Trace) -> ExitSample:
         if controller.stages != self.stages:
             raise ValueError(f"closed loop: the controller has {controller.stages} stages, the loop {self.stages}")
-        return controller.law()
-
-    def _alone(
-        self, law: regulator.Rule, draws: kernel.Draws, events: NDArray[np.float64]
-    ) -> tuple[ExitSample, NDArray[np.float64]]:
-        """One pass after the other, with the events of the last."""
-        exits = empty_exits(len(draws.cut_factor))
-        count = kernel.run_passes(self.path, self.drive, self.sensor, law, draws, exits, events)
-        return sample_of(exits, draws), events[:count]
-
-    def _at_any_time(
-        self, law: AnyTimeLaw, draws: kernel.Draws, events: NDArray[np.float64]
-    ) -> tuple[ExitSample, NDArray[np.float64]]:
-        """As `_alone`, with a command at any sample."""
-        exits = empty_exits(len(draws.cut_factor))
-        count = run_any_time_passes(self.path, self.sampled, self.sensor, law, draws, exits, events)
-        return sample_of(exits, draws), events[:count]
-
-    def _at_any_time_in_lanes(self, law: AnyTimeLaw, draws: kernel.Draws) -> ExitSample:
-        """As `_at_any_time`, without events."""
-        passes = len(draws.cut_factor)
-        exits = empty_exits(passes)
-        memory = lane_memory(), empty_periods(self.sampled), empty_observed(law.rule, passes)
-        run_any_time_lanes(self.path, self.sampled, self.sensor, law, draws, exits, *memory)
+        law, passes = controller.law(), len(draws.cut_factor)
+        exits, work = empty_exits(passes), lane_memory()
+        if isinstance(law, AnyTimeLaw):
+            memory = work, empty_periods(self.sampled), empty_observed(law.rule, passes)
+            run_any_time_passes(self.path, self.sampled, self.sensor, law, draws, exits, trace, *memory)
+        else:
+            run_passes(self.path, self.pieces, self.sensor, law, draws, exits, trace, work, empty_observed(law, passes))
         return sample_of(exits, draws)
 
 
-def pad_slopes(path: kernel.Path, factor: NDArray[np.float64], path_z: NDArray[np.float32]) -> NDArray[np.float64]:
+def pad_slopes(path: Path, factor: NDArray[np.float64], path_z: NDArray[np.float32]) -> NDArray[np.float64]:
     """Slope of the pads in every cell of n passes, (n, C): deceleration by one kPa of overpressure, m/s² per kPa.
 
     Its mean depends on the number N of braked wheel pairs (`path_coefficients`); `factor` (n,) is ξ_cut, `path_z` the
     standard normal numbers of η.
     """
     slopes = np.empty((len(factor), len(path.gravity_m_s2)))
-    kernel.brake_rows(path, factor, path_z, slopes)
+    brake_rows(path, factor, path_z, slopes)
     return fixed(slopes, np.float64)
 
 
-def empty_exits(passes: int) -> kernel.Exits:
+def empty_exits(passes: int) -> Exits:
     """Memory for the results of `passes` passes."""
-    return kernel.Exits(
-        np.empty(passes), np.empty(passes), np.empty(passes, dtype=np.bool_), np.empty(passes, dtype=np.int32)
-    )
+    return Exits(np.empty(passes), np.empty(passes), np.empty(passes, dtype=np.bool_), np.empty(passes, dtype=np.int32))
 
 
-def empty_observed(law: regulator.Rule, passes: int) -> Observed:
+def empty_trace(events: int) -> Trace:
+    """Memory for so many events of a pass, of which none is noted yet; 0: no trace is wanted."""
+    return Trace(np.empty((events, EVENT_FIELDS)), np.array([0, -1, -1]))
+
+
+def empty_observed(law: Rule, passes: int) -> Observed:
     """Memory of the estimator of `law` for `passes` passes that have not begun; none if it has no estimator."""
     passes = passes if law.table.breaks > 0 else 0
     return Observed(
@@ -193,20 +177,22 @@ def empty_observed(law: regulator.Rule, passes: int) -> Observed:
 
 
 def lane_memory() -> places.Work:
-    """Memory for one call of the kernel that runs passes side by side: one block that begins a page.
+    """Memory for one call of the kernels that run passes side by side: one block that begins a page.
 
     A pack is then one line of the cache, not two, and no load waits for a store that only looks like its own: the
     processor compares no more than the place within a page, and where numpy happens to put arrays cost up to half.
     """
     page, n = 4096 // 8, places.PLACES
-    sizes = (places.FLOATS * n, places.INTS * n, n, n, n, n)
+    sizes = (places.FLOATS * n, places.INTS * n, n, n, n, n, n)
     room = np.zeros(page + sum(sizes), dtype=np.int64)
     ends = accumulate(sizes, initial=-(room.ctypes.data // 8) % page)
-    floats, ints, waiting, ended, told, heard = (room[start:end] for start, end in pairwise(ends))
-    return places.Work(floats.view(np.float64), ints, waiting, ended, told, heard.view(np.float64))
+    floats, ints, waiting, read, ended, told, heard = (room[start:end] for start, end in pairwise(ends))
+    return places.Work(
+        floats.view(np.float64), ints, waiting, read.view(np.float64), ended, told, heard.view(np.float64)
+    )
 
 
-def sample_of(exits: kernel.Exits, draws: kernel.Draws) -> ExitSample:
+def sample_of(exits: Exits, draws: Draws) -> ExitSample:
     """What the kernel has filled in for `draws`, for reading."""
     return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight)
 
@@ -224,7 +210,7 @@ def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> Closed
     if substeps is None:
         substeps = math.ceil(plant.sensor.sample_period_s / SUBSTEP_S)
     actuator = stage_locked_actuator(plant.position, plant.sensor, stages - 1, substeps)
-    drive = kernel.Drive(
+    drive = Drive(
         fixed(actuator.mode_overpressure_kpa, np.float64),
         fixed(actuator.command, np.int64),
         fixed(actuator.chain_mode, np.int64),
@@ -237,13 +223,11 @@ def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> Closed
         plant.approach.entrance_stage,
     )
     sensor = plant.sensor
-    period = sensor.sample_period_s
     return ClosedLoop(
         plant=plant,
         path=path_cells(plant),
         drive=drive,
-        sensor=regulator.Sensor(period, sensor.noise_m_s, sensor.resolution_m_s),
-        pieces=drive_pieces(drive, period),
+        sensor=Sensor(sensor.sample_period_s, sensor.noise_m_s, sensor.resolution_m_s),
     )
 
 

@@ -9,7 +9,7 @@ from functools import cache, cached_property, partial
 import numpy as np
 
 from plant_models import Plant
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop, close_loop
 from synth.simulation.controllers import Regulator, fixed, full_brake
 from synth.simulation.exit_range import ExitRange, exit_range

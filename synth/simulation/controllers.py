@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.any_time.closed_loop import AnyTimeLaw
+from synth.kernels.any_time.any_time_law import AnyTimeLaw
 from synth.kernels.loop import regulator
 from synth.solver.switching_lines import SwitchingLines, always_up
 from tuning_tables.active_table import ActiveTable

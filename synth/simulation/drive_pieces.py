@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.any_time.closed_loop import SampledDrive
+from synth.kernels.any_time.driven_period import SampledDrive
 from synth.kernels.any_time.played_periods import PlayedPeriods
-from synth.kernels.loop.closed_loop import Drive
-from synth.kernels.loop.lane_places import LANES, Pieces
+from synth.kernels.loop.drive import Drive, Pieces
+from synth.kernels.loop.lane_places import LANES
 from synth.simulation.controllers import fixed
 
 STATES = 4096

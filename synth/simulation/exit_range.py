@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plant_models import Plant
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop, LineController, close_loop
 from synth.simulation.controllers import full_brake
 from synth.simulation.passes import ExitSample

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.loop.closed_loop import Draws
 from synth.kernels.loop.passage_loop import roll
+from synth.kernels.loop.passes import Draws
 from synth.simulation.passage_loop import PassageLoop
 from synth.simulation.passage_sample import PassageTrace
 

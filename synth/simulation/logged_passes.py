@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from plant_models import Plant
 from plant_models.pressure_gauge import PressureGauge
 from plant_models.stage_regulator import stage_locked_actuator
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.kernels.loop.regulator import measure
 from synth.simulation.closed_loop import ClosedLoop, close_loop
 from synth.simulation.controllers import Controller

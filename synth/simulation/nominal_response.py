@@ -25,7 +25,7 @@ from plant_models import Plant, RetarderPosition
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.pads import overpressure_kpa
 from plant_models.stage_regulator import reaches_valves_s
-from synth.kernels.loop import closed_loop as kernel
+from synth.kernels.loop.passes import LONGEST_PASS_S
 from synth.simulation.closed_loop import Controller
 from synth.simulation.control_system import nominal_loop, regulated_actuator, regulator_start, regulator_system
 from synth.simulation.impulse_train import ImpulseTrain, held, resting_train
@@ -86,7 +86,7 @@ def nominal_response(plant: Plant, controller: Controller, entry_speed_m_s: floa
     points = played(loop, np.array([plant.start_m, float(start_speed), initial_kpa]), 0.0, phase_s, schedule)
     stages = [np.full(points.shape[1], memory[0])]
     parts, sample = [points], 0
-    while points[1, -1] < plant.exit_m and points[2, -1] > 0.0 and points[0, -1] < kernel.LONGEST_PASS_S:
+    while points[1, -1] < plant.exit_m and points[2, -1] > 0.0 and points[0, -1] < LONGEST_PASS_S:
         now, state = phase_s + sample * sensor.sample_period_s, points[1:, -1]
         seen = [*state[:2], over_kpa]
         wanted = int(regulator.output(now, memory, seen)[0])

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from plant_models import Plant, PointSensors
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
-from synth.kernels.loop import closed_loop as radar_kernel
 from synth.kernels.loop import passage_loop as kernel
 from synth.kernels.loop import passage_pulses
 from synth.kernels.loop.passage_regulator import STATE_FIELDS
+from synth.kernels.loop.passes import Draws
+from synth.kernels.loop.trace import EVENT_FIELDS
 from synth.simulation.axle_pulses import deciding_pulses, every_pulse
 from synth.simulation.closed_loop import SUBSTEP_S, ClosedLoop, chunk_bounds, close_loop, empty_exits, trace_of
 from synth.simulation.controllers import fixed
@@ -28,7 +29,7 @@ from synth.simulation.stratified_passes import stratified_passes
 PATH_ERROR_M = 1e-3
 """How far the passages that a controller knows may lie from those of the loop, where it is told each of them."""
 
-Faults = Callable[[HeardPairs, radar_kernel.Draws], HeardPairs]
+Faults = Callable[[HeardPairs, Draws], HeardPairs]
 """What faults make of the pairs of the passes that were drawn (`sensor_faults`)."""
 
 
@@ -56,23 +57,19 @@ class PassageLoop:
         """Number of stages K + 1."""
         return int(self.drive.command.shape[1])
 
-    def draws(self, passes: RandomPasses, cut_factor: float | None = None) -> radar_kernel.Draws:
+    def draws(self, passes: RandomPasses, cut_factor: float | None = None) -> Draws:
         """What `passes` mean for this plant: the same as with the radar. `cut_factor` fixes ξ_cut for all cuts."""
         return self.radar.draws(passes, cut_factor)
 
-    def run(
-        self, controller: PassageController, draws: radar_kernel.Draws, faults: Faults | None = None
-    ) -> PassageSample:
+    def run(self, controller: PassageController, draws: Draws, faults: Faults | None = None) -> PassageSample:
         """All passes of `draws` under `controller`; with `faults` it must have the tracker."""
         nothing = np.empty((0, kernel.READING_FIELDS))
-        return self._alone(controller, draws, faults, np.empty((0, radar_kernel.EVENT_FIELDS)), nothing)[0]
+        return self._alone(controller, draws, faults, np.empty((0, EVENT_FIELDS)), nothing)[0]
 
-    def follow(
-        self, controller: PassageController, draws: radar_kernel.Draws, faults: Faults | None = None
-    ) -> PassageTrace:
+    def follow(self, controller: PassageController, draws: Draws, faults: Faults | None = None) -> PassageTrace:
         """The only pass of `draws` under `controller`, event by event."""
         pairs = len(pairs_of(self.pulses_of(controller), draws, faults).source)
-        events = np.empty(((pairs + 1) * (len(self.drive.kpa) + 1) + 2, radar_kernel.EVENT_FIELDS))
+        events = np.empty(((pairs + 1) * (len(self.drive.kpa) + 1) + 2, EVENT_FIELDS))
         seen = np.empty((pairs, kernel.READING_FIELDS))
         sample, events, seen = self._alone(controller, draws, faults, events, seen)
         motion = trace_of(events, bool(sample.stalled[0]))
@@ -85,7 +82,7 @@ class PassageLoop:
     def _alone(
         self,
         controller: PassageController,
-        draws: radar_kernel.Draws,
+        draws: Draws,
         faults: Faults | None,
         events: NDArray[np.float64],
         seen: NDArray[np.float64],
@@ -122,7 +119,7 @@ class PassageLoop:
             raise ValueError("passage loop: the passages of the controller are not those of sensors and cut")
 
 
-def pairs_of(pulses: passage_pulses.Pulses, draws: radar_kernel.Draws, faults: Faults | None) -> HeardPairs:
+def pairs_of(pulses: passage_pulses.Pulses, draws: Draws, faults: Faults | None) -> HeardPairs:
     """The pulse pairs that are heard in the passes of `draws`."""
     if faults is None:
         return as_given(pulses.sensor, 1)

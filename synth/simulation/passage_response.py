@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.stage_regulator import reaches_valves_s
-from synth.kernels.loop.closed_loop import LONGEST_PASS_S
 from synth.kernels.loop.passage_loop import WATCHED_FROM_S
 from synth.kernels.loop.passage_pulses import Pulses, coils_of
+from synth.kernels.loop.passes import LONGEST_PASS_S
 from synth.simulation.control_system import nominal_loop
 from synth.simulation.impulse_train import ImpulseTrain, held, resting_train
 from synth.simulation.nominal_response import CLOSED, NominalResponse, played, to_the_end, valve_schedule

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, path_breaks_m, path_coefficients
-from synth.kernels.loop import closed_loop as kernel
+from synth.kernels.loop.motion import Path
 from synth.simulation.controllers import fixed
 from synth.simulation.random_passes import PATH_CELLS
 
@@ -16,7 +16,7 @@ CELL_M = 0.5
 """Longest path cell, at most a quarter of the correlation length; η is constant in a cell."""
 
 
-def path_cells(plant: Plant) -> kernel.Path:
+def path_cells(plant: Plant) -> Path:
     """Cells with constant coefficients and constant η."""
     edges = cell_edges_m(plant)
     coefficients = path_coefficients(plant.position, plant.cut, plant.profile, edges)
@@ -24,7 +24,7 @@ def path_cells(plant: Plant) -> kernel.Path:
     memory = np.append(0.0, plant.friction.path_correlation(0.5 * (length[1:] + length[:-1])))  # none before the first
     before = int(np.searchsorted(edges, 0.0))
     memory[before] = 0.0
-    return kernel.Path(
+    return Path(
         fixed(edges, np.float64),
         fixed(coefficients.gravity_m_s2, np.float64),
         fixed(coefficients.brake_m_s2_per_kpa, np.float64),

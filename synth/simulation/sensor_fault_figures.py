@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from plant_models import PointSensors
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.simulation.exit_statistics import ExitStatistics, exit_statistics, rms_ratio
 from synth.simulation.passage_controller import PassageController
 from synth.simulation.passage_loop import PassageLoop

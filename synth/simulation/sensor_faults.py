@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from plant_models import PointSensors
 from plant_models.rolling.keyed_numbers import keyed_uniform
 from plant_models.rolling.random_numbers import Purpose
-from synth.kernels.loop.closed_loop import Draws
 from synth.kernels.loop.passage_loop import WATCHED_FROM_S
+from synth.kernels.loop.passes import Draws
 from synth.simulation.heard_pairs import BY_THE_CLOCK, HeardPairs
 from synth.simulation.passage_loop import Faults
 

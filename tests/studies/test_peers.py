@@ -20,8 +20,8 @@ from scripts.studies.peers.peer_loop import PeerLoop, peer_loop
 from scripts.studies.peers.peer_tuning import PREDICTIVE as PREDICTIVE_FAMILY
 from scripts.studies.peers.peer_tuning import PULSES_MEASURED, Aimed, Search, cost_of, tuned_peer
 from scripts.studies.peers.regulators import NO_PREDICTION, NO_PULSES, PredictiveController, PulseController, no_table
-from synth.kernels.any_time.closed_loop import AnyTimeLaw
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.any_time.any_time_law import AnyTimeLaw
+from synth.kernels.loop.passes import Draws
 from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.closed_loop import ClosedLoop, Controller, LineController, TableController
 from synth.simulation.common_passes import CommonPasses, common_passes

@@ -13,7 +13,7 @@ from plant_models import Friction, Plant, PlantError, WeightForce
 from scripts.studies.plant_changes import aged_valves, friction
 from scripts.studies.robustness.condition import conditions, out_of_service, shifted_stages
 from scripts.studies.robustness.perturbation import at_value, sensible_ends
-from synth.kernels.loop.closed_loop import brake_rows
+from synth.kernels.loop.motion import brake_rows
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.cut_class import CutClass
 from synth.retarder.configuration.plant_parameter import LEFT_OUT, Parameter, assumed_keys, parameters

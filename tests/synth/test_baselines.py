@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from synth.kernels.loop.closed_loop import LEFT, advance
+from synth.kernels.loop.motion import LEFT, advance
 from synth.retarder.comparison.baselines import (
     FAMILIES,
     TunedBaseline,

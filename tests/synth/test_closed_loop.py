@@ -14,7 +14,8 @@ from scipy.integrate import solve_ivp
 
 from plant_models import Cut, Friction, Plant, PressureHistory, RollingResistance
 from plant_models.stage_regulator import stage_locked_actuator
-from synth.kernels.loop.closed_loop import LEFT, MOVING, STALLED, Draws, advance
+from synth.kernels.loop.motion import LEFT, MOVING, STALLED, advance
+from synth.kernels.loop.passes import Draws
 from synth.retarder.comparison.baselines import energy_rule
 from synth.simulation.closed_loop import (
     ClosedLoop,

@@ -1,4 +1,4 @@
-"""Passes side by side are, to the bit, the passes one after the other: two kernels written apart."""
+"""Passes side by side are, to the bit, the passes one after the other: two loops written apart."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ import numpy as np
 import pytest
 
 from plant_models import EntrySpeed, Plant, RollingResistance, TrackProfile
-from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop.lane_places import LANES
+from synth.kernels.loop.passes import LONGEST_PASS_S, Draws
 from synth.retarder.comparison.baselines import energy_rule, relay
 from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import ClosedLoop, Controller, LineController, TableController, close_loop
-from synth.simulation.controllers import fixed
+from synth.simulation.controllers import Regulator, fixed
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines
+from tests.oracles.passes_one_by_one import events_of, one_by_one
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, ValidRange
 from tuning_tables.provenance import CutId, Generator, RetarderId
@@ -33,20 +34,20 @@ def passes() -> RandomPasses:
     return random_passes(seed=11, first_pass=0, count=3 * LANES + 7)
 
 
-def alone(loop: ClosedLoop, controller: Controller, draws: kernel.Draws) -> ExitSample:
-    """The same passes by the kernel that traces are made with."""
-    n = len(draws.cut_factor)
-    exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
-    none = np.empty((0, kernel.EVENT_FIELDS))
-    kernel.run_passes(loop.path, loop.drive, loop.sensor, controller.rule, draws, exits, none)
-    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight)
-
-
-def assert_same(loop: ClosedLoop, controller: Controller, draws: kernel.Draws) -> ExitSample:
-    by_lanes, one_by_one = loop.run(controller, draws), alone(loop, controller, draws)
-    for name, array in vars(one_by_one).items():
+def assert_same(loop: ClosedLoop, controller: Controller, draws: Draws) -> ExitSample:
+    by_lanes, apart = loop.run(controller, draws), one_by_one(loop, controller, draws)
+    for name, array in vars(apart).items():
         assert getattr(by_lanes, name).tobytes() == array.tobytes(), name
+    for i in range(0, len(by_lanes), 30):
+        assert_same_trace(loop, controller, draws.part(i, i + 1))
     return by_lanes
+
+
+def assert_same_trace(loop: ClosedLoop, controller: Regulator, draws: Draws) -> None:
+    """Of the only pass, every event and every bit of it."""
+    trace, events = loop.follow(controller, draws), events_of(loop, controller, draws)
+    columns = trace.time_s, trace.path_m, trace.speed_m_s, trace.overpressure_kpa, trace.stage, trace.measured_m_s
+    assert np.stack(columns, axis=1).tobytes() == events.tobytes()
 
 
 def constant_lines(plant: Plant, lower: list[float], upper: list[float], lead_s: float) -> LineController:
@@ -139,7 +140,7 @@ def test_a_creeping_cut_is_given_up(plant_22t: Plant, passes: RandomPasses, lead
     sample = assert_same(loop, constant_lines(crawl, [-math.inf] * 3, [math.inf] * 3, lead_s), draws)
     assert sample.stalled.all()
     assert not sample.exit_speed_m_s.any()
-    longest = kernel.LONGEST_PASS_S
+    longest = LONGEST_PASS_S
     assert np.all((sample.transit_time_s >= longest) & (sample.transit_time_s < longest + 0.11))
 
 
@@ -235,18 +236,15 @@ def exits_of_a_few_passes() -> str:
 
 
 WITHOUT_COMPILER = """
-import importlib.util, sys
-spec = importlib.util.spec_from_file_location("loaded", sys.argv[1])
-loaded = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(loaded)
-print(loaded.exits_of_a_few_passes())
+from tests.synth.test_closed_loop_lanes import exits_of_a_few_passes
+print(exits_of_a_few_passes())
 """
 
 
 def test_the_kernels_mean_the_same_without_the_compiler() -> None:
     plain = subprocess.run(
-        [sys.executable, "-c", WITHOUT_COMPILER, __file__],
-        env={**os.environ, "NUMBA_DISABLE_JIT": "1"}, capture_output=True, text=True, timeout=120, check=False,
+        [sys.executable, "-c", WITHOUT_COMPILER], env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        capture_output=True, text=True, timeout=120, check=False,
     )  # fmt: skip
     assert plain.returncode == 0, plain.stderr
     assert plain.stdout.strip() == exits_of_a_few_passes()

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Plant, PlantError
 from synth.frame.input_error import InputError
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.retarder.configuration.config_file import parse_config
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.common_passes import common_passes

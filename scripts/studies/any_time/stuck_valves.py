@@ -12,8 +12,9 @@ from scripts.studies.any_time.findings import Ratio, StuckFigures, Way, Ways
 from scripts.studies.any_time.kernels.stuck_valves import Asking, Stuck, run_stuck_passes
 from scripts.studies.near_target import near_target
 from scripts.studies.sensor_fault import at_random
-from synth.kernels.any_time.closed_loop import AnyTimeLaw
-from synth.kernels.loop import closed_loop as kernel
+from synth.kernels.any_time.any_time_law import AnyTimeLaw
+from synth.kernels.loop.passes import LONGEST_PASS_S, Draws
+from synth.kernels.loop.trace import EVENT_FIELDS
 from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, empty_exits, sample_of, trace_of
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.controllers import fixed
@@ -79,20 +80,18 @@ class StuckLoop:
         how = self.way is Ways.GAUGE, self.way is Ways.TIMES
         return Asking(*how, drive.command, drive.chain_mode, drive.chain_samples, drive.initial_mode)
 
-    def run(self, draws: kernel.Draws, stuck: StuckValves, starts_s: Floats) -> ExitSample:
+    def run(self, draws: Draws, stuck: StuckValves, starts_s: Floats) -> ExitSample:
         """All passes of `draws`; `starts_s` (n,): when valves get stuck."""
-        return self._passes(draws, stuck, starts_s, np.empty((0, kernel.EVENT_FIELDS)))[0]
+        return self._passes(draws, stuck, starts_s, np.empty((0, EVENT_FIELDS)))[0]
 
-    def follow(self, draws: kernel.Draws, stuck: StuckValves, start_s: float) -> PassTrace:
+    def follow(self, draws: Draws, stuck: StuckValves, start_s: float) -> PassTrace:
         """The only pass of `draws`, event by event."""
-        samples = math.ceil(kernel.LONGEST_PASS_S / self.loop.sensor.period_s + 2)
-        events = np.empty((samples * self.loop.drive.substeps + 2, kernel.EVENT_FIELDS))
+        samples = math.ceil(LONGEST_PASS_S / self.loop.sensor.period_s + 2)
+        events = np.empty((samples * self.loop.drive.substeps + 2, EVENT_FIELDS))
         sample, events = self._passes(draws, stuck, np.array([start_s]), events)
         return trace_of(events, bool(sample.stalled[0]))
 
-    def _passes(
-        self, draws: kernel.Draws, stuck: StuckValves, starts_s: Floats, events: Floats
-    ) -> tuple[ExitSample, Floats]:
+    def _passes(self, draws: Draws, stuck: StuckValves, starts_s: Floats, events: Floats) -> tuple[ExitSample, Floats]:
         loop, exits = self.loop, empty_exits(len(draws.cut_factor))
         count = run_stuck_passes(
             loop.path, loop.sampled, loop.sensor, self.law(), self.asking(), stuck.in_drive(loop, starts_s), draws,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop, TableController
 from synth.simulation.passes import PassTrace
 from tuning_tables.active_table import ActiveTable

@@ -10,11 +10,10 @@ import ctypes
 import os
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
-from types import FunctionType
 from typing import Any, Final
 
 import numpy as np
@@ -22,9 +21,21 @@ from numba import njit
 
 from plant_models import Plant
 from scripts.studies.in_the_loop.controller_process import Controller
-from synth.kernels.any_time import closed_loop as any_time
-from synth.kernels.loop import closed_loop as kernel
-from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
+from scripts.studies.regulated_lane import loop_at_any_time, loop_at_rest
+from synth.kernels.any_time.any_time_law import AnyTimeLaw
+from synth.kernels.loop.passes import Draws
+from synth.kernels.loop.regulator import measure
+from synth.simulation.closed_loop import (
+    ClosedLoop,
+    TableController,
+    close_loop,
+    empty_exits,
+    empty_observed,
+    empty_trace,
+    lane_memory,
+    sample_of,
+)
+from synth.simulation.drive_pieces import empty_periods
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from tuning_tables import ControllerTable
@@ -67,16 +78,19 @@ def closed_loop_with_process(
     return Comparison(inside, process, int(differs.sum()), turned - started, ended - turned)
 
 
-def run_passes(loop: ClosedLoop, controller: TableController, draws: kernel.Draws, line: PipeLine) -> ExitSample:
-    """All passes of `draws`, by the kernel that asks through `line`."""
+def run_passes(loop: ClosedLoop, controller: TableController, draws: Draws, line: PipeLine) -> ExitSample:
+    """All passes of `draws`, one after the other, by the kernel that asks through `line`."""
     n, law = len(draws.cut_factor), controller.law()
-    exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
-    events = np.empty((0, kernel.EVENT_FIELDS))
-    if isinstance(law, any_time.AnyTimeLaw):
-        line.run_any_time_passes(loop.path, loop.sampled, loop.sensor, law, draws, exits, events)
-    else:
-        line.run_passes(loop.path, loop.drive, loop.sensor, law, draws, exits, events)
-    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight)
+    exits, trace, work = empty_exits(n), empty_trace(0), lane_memory()
+    for i in range(n):
+        one, alone = draws.part(i, i + 1), exits.part(i, i + 1)
+        if isinstance(law, AnyTimeLaw):
+            memory = work, empty_periods(loop.sampled), empty_observed(law.rule, 1)
+            line.run_any_time_passes(loop.path, loop.sampled, loop.sensor, law, one, alone, trace, *memory)
+        else:
+            observed = empty_observed(law, 1)
+            line.run_passes(loop.path, loop.pieces, loop.sensor, law, one, alone, trace, work, observed)
+    return sample_of(exits, draws)
 
 
 class PipeLine:
@@ -91,16 +105,14 @@ class PipeLine:
         self._decide, self._observe = _controller_through(self._ask, self._hear)
 
     @cached_property
-    def run_passes(self) -> Callable[..., int]:
-        """`kernels.loop.closed_loop.run_passes` for tables that decide at rest."""
-        run: Callable[..., int] = run_passes_with(self._decide, self._observe)
-        return run
+    def run_passes(self) -> Any:
+        """`kernels.loop.closed_loop.run_passes` for tables that decide at rest, one pass at a time."""
+        return loop_at_rest(measure, self._observe, self._decide)
 
     @cached_property
-    def run_any_time_passes(self) -> Callable[..., int]:
-        """`kernels.any_time.closed_loop.run_any_time_passes` for tables that decide at any time."""
-        run: Callable[..., int] = run_any_time_passes_with(self._decide, self._observe)
-        return run
+    def run_any_time_passes(self) -> Any:
+        """`kernels.any_time.closed_loop.run_any_time_passes` for tables that decide at any time, likewise."""
+        return loop_at_any_time(measure, self._observe, self._decide)
 
     @contextmanager
     def connected(self, controller: Controller, number: int) -> Iterator[None]:
@@ -123,27 +135,6 @@ class PipeLine:
             raise RuntimeError(f"{' '.join(command)} ended with exit code {process.returncode}")
 
 
-def run_passes_with(decision: Any, estimated_speed: Any) -> Any:
-    """`kernel.run_passes`, the same text, with other functions in the place of the tables' own; compiled, not cached.
-
-    Both compiled, with arguments and answers of `decide` and `observe` of `tuning_tables.programs`. The loop around
-    them is no other.
-    """
-    compiled = njit(nogil=True, error_model="numpy")
-    scope = {**vars(kernel), "stage_by_table": decision, "estimated_speed": estimated_speed}
-    scope["run_pass"] = compiled(FunctionType(kernel.run_pass.py_func.__code__, scope))
-    return compiled(FunctionType(kernel.run_passes.py_func.__code__, scope))
-
-
-def run_any_time_passes_with(decision: Any, estimated_speed: Any) -> Any:
-    """`any_time.run_any_time_passes`, likewise."""
-    compiled = njit(nogil=True, error_model="numpy")
-    scope = {**vars(any_time), "stage_by_table": decision, "estimated_speed": estimated_speed}
-    for name in ("wanted_stage", "run_any_time_pass"):
-        scope[name] = compiled(FunctionType(getattr(any_time, name).py_func.__code__, scope))
-    return compiled(FunctionType(any_time.run_any_time_passes.py_func.__code__, scope))
-
-
 def _controller_through(ask: int, hear: int) -> tuple[Any, Any]:
     """A decision and an estimator that write a request to `ask` and read its answer at `hear`."""
     library = ctypes.CDLL(None)
@@ -152,8 +143,9 @@ def _controller_through(ask: int, hear: int) -> tuple[Any, Any]:
         call.argtypes = [ctypes.c_int, ctypes.c_void_p, ctypes.c_size_t]
         call.restype = ctypes.c_ssize_t
 
-    @njit
-    def answered(what, s, v, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
+    # Compiled here and now, as what calls it is compiled for making no array.
+    @njit("int32(int64, float64, float64, float64)")
+    def answered(what, s, v, kpa):  # type: ignore[no-untyped-def]  # as the line above tells
         request = np.empty(4, np.int32)
         reading = request.view(np.float32)
         request[0], reading[1], reading[2], reading[3] = what, s, v, kpa
@@ -161,17 +153,17 @@ def _controller_through(ask: int, hear: int) -> tuple[Any, Any]:
         # Writes and reads of sixteen and four bytes are never split in a pipe.
         if write(ask, request.ctypes.data, 16) != 16 or read(hear, answer.ctypes.data, 4) != 4:
             raise RuntimeError("the controller process does not answer")
-        return answer
+        return answer[0]
 
     @njit
     def decide(table, stage, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
-        return answered(stage, s, v, kpa)[0]
+        return answered(stage, s, v, kpa)
 
     @njit
     def observe(table, state, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
         # The process has the state; what the kernel holds only tells whether a pass begins.
         what = OBSERVE if state[0] != 0.0 else BEGIN
         state[0] = 1.0
-        return answered(what, s, v, kpa).view(np.float32)[0]
+        return np.int32(answered(what, s, v, kpa)).view(np.float32)
 
     return decide, observe

@@ -12,7 +12,8 @@ from plant_models.stage_regulator import resting_modes
 from scripts.studies.peers.kernels.peer_loop import Hardware, run_peer_passes
 from scripts.studies.peers.kernels.prediction import MeanPath
 from scripts.studies.peers.regulators import PeerRegulator
-from synth.kernels.loop import closed_loop as kernel
+from synth.kernels.loop.passes import LONGEST_PASS_S, Draws
+from synth.kernels.loop.trace import EVENT_FIELDS
 from synth.simulation.closed_loop import ClosedLoop, empty_exits, sample_of, trace_of
 from synth.simulation.controllers import fixed
 from synth.simulation.passes import ExitSample, PassTrace
@@ -26,19 +27,19 @@ class PeerLoop:
     hardware: Hardware
     path: MeanPath
 
-    def run(self, regulator: PeerRegulator, draws: kernel.Draws) -> ExitSample:
+    def run(self, regulator: PeerRegulator, draws: Draws) -> ExitSample:
         """All passes of `draws` under `regulator`."""
-        return self._passes(regulator, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
+        return self._passes(regulator, draws, np.empty((0, EVENT_FIELDS)))[0]
 
-    def follow(self, regulator: PeerRegulator, draws: kernel.Draws) -> PassTrace:
+    def follow(self, regulator: PeerRegulator, draws: Draws) -> PassTrace:
         """The only pass of `draws`, event by event."""
-        samples = math.ceil(kernel.LONGEST_PASS_S / self.loop.sensor.period_s + 2) + 1000
-        events = np.empty((samples * self.loop.drive.substeps + 2, kernel.EVENT_FIELDS))
+        samples = math.ceil(LONGEST_PASS_S / self.loop.sensor.period_s + 2) + 1000
+        events = np.empty((samples * self.loop.drive.substeps + 2, EVENT_FIELDS))
         sample, events = self._passes(regulator, draws, events)
         return trace_of(events, bool(sample.stalled[0]))
 
     def _passes(
-        self, regulator: PeerRegulator, draws: kernel.Draws, events: NDArray[np.float64]
+        self, regulator: PeerRegulator, draws: Draws, events: NDArray[np.float64]
     ) -> tuple[ExitSample, NDArray[np.float64]]:
         exits = empty_exits(len(draws.cut_factor))
         peer = regulator.peer(self.loop)

@@ -10,7 +10,7 @@ import numpy as np
 from scripts.studies.peers.kernels.peer_loop import BY_PREDICTION, BY_PULSES, Peer
 from scripts.studies.peers.kernels.prediction import Prediction
 from scripts.studies.peers.kernels.pulses import Pulses
-from synth.kernels.any_time.closed_loop import AnyTimeLaw
+from synth.kernels.any_time.any_time_law import AnyTimeLaw
 from synth.simulation.closed_loop import ClosedLoop, LineController
 from synth.simulation.controllers import fixed
 from synth.solver.switching_lines import SwitchingLines

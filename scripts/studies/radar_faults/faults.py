@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Plant
-from synth.kernels.loop.closed_loop import LONGEST_PASS_S
+from synth.kernels.loop.passes import LONGEST_PASS_S
 from synth.simulation.random_passes import RandomPasses
 
 Numbers = NDArray[np.float32]

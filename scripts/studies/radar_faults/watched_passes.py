@@ -1,8 +1,8 @@
 """The closed loop that can freeze its radar and go over to another table, and that tells the alarms of every pass.
 
-It is the kernel of the simulator, the same text compiled with other functions in the place of three of its own: the
-sensor's, which remembers its last reading; the estimator's, which runs one for each table, notes the alarms and chooses
-the table; the rule's, which takes that table. So the product's kernels know nothing of them, and with one table and
+It is the kernel of the simulator, the same text with other functions in the place of three of its own: the sensor's,
+which remembers its last reading; the estimator's, which runs one for each table, notes the alarms and chooses the
+table; the rule's, which takes that table. So the product's kernels know nothing of them, and with one table and
 without fault every pass is the simulator's to the last bit.
 """
 
@@ -12,18 +12,25 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from threading import Lock
-from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from scripts.studies.regulated_lane import compiled, loop_at_rest
 from synth.kernels.compiled_rules import compiled_rule
-from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop import regulator
-from synth.simulation.closed_loop import ClosedLoop, TableController, empty_exits, sample_of
+from synth.kernels.loop.lane_estimator import Observed
+from synth.kernels.loop.passes import Draws, Exits
+from synth.simulation.closed_loop import (
+    ClosedLoop,
+    TableController,
+    empty_exits,
+    empty_trace,
+    lane_memory,
+    sample_of,
+)
 from synth.simulation.passes import ExitSample
 from tuning_tables.estimator import STATE_SIZE
 from tuning_tables.programs.alarms import alarms, table_after
@@ -62,7 +69,7 @@ class WatchedPasses:
     table: NDArray[np.int64]
 
 
-def watched_passes(loop: ClosedLoop, controller: TableController, draws: kernel.Draws) -> WatchedPasses:
+def watched_passes(loop: ClosedLoop, controller: TableController, draws: Draws) -> WatchedPasses:
     """All passes of `draws`; a reading with z = `faults.FROZEN` is the one before it again (NaN: there was none).
 
     Raises `ValueError` for a table that is asked at any time.
@@ -71,7 +78,7 @@ def watched_passes(loop: ClosedLoop, controller: TableController, draws: kernel.
 
 
 def passes_by_weight(
-    loop: ClosedLoop, controllers: Sequence[TableController], told: int, draws: kernel.Draws
+    loop: ClosedLoop, controllers: Sequence[TableController], told: int, draws: Draws
 ) -> WatchedPasses:
     """The same, each cut told to be of table `told`; by `table_after` it goes over to others of `controllers`.
 
@@ -87,7 +94,10 @@ def passes_by_weight(
     with _COMPILING:
         run = _watching()
     law = together([each.rule for each in controllers], now)
-    run(loop.path, loop.drive, sensor, law, draws, exits, now, found)
+    known = np.empty((1, len(rules) * (STATE_SIZE + 1) + 2), np.float32)
+    observed = Observed(known, np.empty((1, 0), np.float32), np.zeros(1, np.int64), np.zeros(1))
+    memory = empty_trace(0), lane_memory(), observed
+    run(loop.path, loop.pieces, sensor, law, draws, exits, memory, found)
     return WatchedPasses(sample_of(exits, draws), *found)
 
 
@@ -107,10 +117,9 @@ _COMPILING = Lock()
 @cache
 def _watching() -> Callable[..., None]:
     """The loop over passes; compiled anew in a process, so that no stale cache is asked."""
-    compiled = njit(nogil=True, error_model="numpy")
     read, observe, decide = regulator.measure, regulator.estimated_speed, regulator.stage_by_table
     word_of, after = compiled_rule(alarms, fresh=True), compiled_rule(table_after, fresh=True)
-    size, left = STATE_SIZE, kernel.LEFT
+    size = STATE_SIZE
 
     @compiled
     def measure(v, z, sensor):  # type: ignore[no-untyped-def]  # numba infers the types
@@ -133,28 +142,24 @@ def _watching() -> Callable[..., None]:
     def stage_by_table(law, stage, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
         return decide(law.tables[law.now[0]], stage, s, v, kpa)
 
-    scope: dict[str, Any] = {
-        **vars(kernel), "measure": measure, "estimated_speed": estimated_speed, "stage_by_table": stage_by_table
-    }  # fmt: skip
-    run_pass = compiled(FunctionType(kernel.run_pass.py_func.__code__, scope))
+    run_one = loop_at_rest(measure, estimated_speed, stage_by_table)
 
     @compiled
-    def run(path, drive, sensor, law, draws, exits, now, found):  # type: ignore[no-untyped-def]  # as above
-        count = len(law.table.tables)
-        free, known = np.empty(path.gravity_m_s2.shape[0]), np.empty(count * (size + 1) + 2, np.float32)
-        events = np.empty((0, 6))
-        for i in range(draws.cut_factor.shape[0]):
-            drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
-            for j in range(free.shape[0]):
-                free[j] = path.gravity_m_s2[j] - drag
-            sensor.last_m_s[0], now[0] = np.nan, now[1]
-            v, time, status, switchings, _ = run_pass(
-                path.edges_m, free, draws.brake_m_s2_per_kpa[i], drive, sensor, law,
-                draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events, known,
+    def run(path, pieces, sensor, law, draws, exits, memory, found):  # type: ignore[no-untyped-def]  # as above
+        trace, work, observed = memory
+        factor, known, now = draws.cut_factor, observed.state[0], law.table.now
+        for i in range(factor.shape[0]):
+            sensor.last_m_s[0], now[0], known[:], observed.passed_kpa[0] = np.nan, now[1], 0.0, 0.0
+            one = Draws(
+                factor[i : i + 1], draws.resistance_n_kn[i : i + 1], draws.entry_m_s[i : i + 1],
+                draws.first_sample_s[i : i + 1], draws.path_z[i : i + 1], draws.noise_z[i : i + 1],
+                draws.brake_m_s2_per_kpa[i : i + 1], draws.weight[i : i + 1],
             )  # fmt: skip
-            exits.stalled[i] = status != left
-            exits.speed_m_s[i] = v if status == left else 0.0
-            exits.time_s[i], exits.switchings[i] = time, switchings
+            alone = Exits(
+                exits.speed_m_s[i : i + 1], exits.time_s[i : i + 1], exits.stalled[i : i + 1],
+                exits.switchings[i : i + 1],
+            )  # fmt: skip
+            run_one(path, pieces, sensor, law, one, alone, trace, work, observed)
             found[0, i], found[1, i], found[2, i] = int(known[-2]), int(known[-1]), now[0]
 
     watching: Callable[..., None] = run

@@ -8,7 +8,7 @@ import numpy as np
 
 from plant_models import Plant
 from scripts.studies.structure.wired_pressure import Signals, WiredPressure
-from synth.kernels.loop.closed_loop import MOVING, STALLED
+from synth.kernels.loop.motion import MOVING, STALLED
 from synth.simulation.closed_loop import SUBSTEP_S
 from synth.simulation.control_system import regulated_actuator
 from synth.simulation.controllers import TableController

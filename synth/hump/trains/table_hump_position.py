@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from synth.hump.trains.class_choice import ClassChoice
 from synth.hump.trains.hump_position import Arrivals, Floats, Ints, Passed
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.retarder.table_class import TableClass, chosen_draws, draws, taken
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.keyed_passes import keyed_passes

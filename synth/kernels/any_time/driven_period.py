@@ -6,11 +6,32 @@ the physics share one text. The kernels' fingerprint covers `plant_models`.
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
 from plant_models import valve_drive
 from synth.kernels.compiling import kernel, raising
 
 wait_after_command = raising(valve_drive.wait_after_command)
 drive_on = raising(valve_drive.drive_on)
+
+
+class SampledDrive(NamedTuple):
+    """`valves` (`plant_models.valve_drive.ValveDrive`), pressures of the stages (K + 1,).
+
+    A pass begins with `initial_stage` at rest at `initial_kpa`; before the entrance no higher stage than
+    `entrance_stage` is commanded.
+    """
+
+    valves: Any
+    stage_kpa: NDArray[np.float64]
+    initial_stage: int
+    initial_kpa: float
+    entrance_stage: int
+    computing_delay_s: float
+    parts: int
 
 
 @kernel

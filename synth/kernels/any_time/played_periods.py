@@ -12,10 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, joined_until
-from synth.kernels.any_time.driven_period import play_period
+from synth.kernels.any_time.any_time_law import AnyTimeLaw
+from synth.kernels.any_time.driven_period import SampledDrive, play_period
 from synth.kernels.compiling import part, part_inline
-from synth.kernels.loop.lane_places import LANES, Floats, Ints, Pieces
+from synth.kernels.loop.drive import Pieces
+from synth.kernels.loop.lane_places import LANES, Floats, Ints
 from synth.kernels.loop.regulator import pressure_above_stage
 
 STATES, PIECES = 0, 1
@@ -44,6 +45,15 @@ class PlayedPeriods(NamedTuple):
     slots: Ints
     taken: Ints
     over: Floats
+
+
+@part_inline
+def joined_until(over: Floats, begun: int) -> int:
+    """The part behind those that are played as one step with part `begun`: dead times and rests are one step."""
+    i = begun
+    while i < over.shape[0] and abs(over[i] - over[begun]) < 1e-9:
+        i += 1
+    return i
 
 
 @part_inline

@@ -1,4 +1,4 @@
-"""Kernel of the regulator for passes side by side: what `kernels.regulator` computes, for eight lanes at a time.
+"""Kernel of the regulator for passes side by side: what `regulator` says, for eight lanes at a time.
 
 The rule itself is only asked where it has a command to give: its branches are dear, and commands are few.
 """
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.kernels.compiling import part_inline
+from synth.kernels.loop.drive import Pieces
 from synth.kernels.loop.lane_estimator import Observed, estimated
 from synth.kernels.loop.lane_places import (
     BEFORE,
@@ -24,7 +25,6 @@ from synth.kernels.loop.lane_places import (
     SWITCHINGS,
     Floats,
     Ints,
-    Pieces,
     S,
     V,
     Work,
@@ -44,11 +44,13 @@ def listen(
         lane = packs.load8(waiting, k)
         s, stage = packs.gather(x, lane + S), packs.gather(n, lane + STAGE)
         read = measured(x, n, lane, sensor, noise_z)
-        speed, there = read, lane < LANES
+        speed, there, piece = read, lane < LANES, packs.gather(n, lane + PIECE)
         if law.table.breaks > 0:
-            i, kpa = packs.gather(n, lane + PASS), packs.gather(pieces.mean_kpa, packs.gather(n, lane + PIECE))
+            i = packs.gather(n, lane + PASS)
             speed = estimated(observed, law.table, there, i, s, read)
-            packs.scatter(observed.passed_kpa, i, there, kpa)  # if there is no command
+            speed = packs.choose(piece < pieces.resting, speed, math.nan)  # compared, and noted, only at rest
+            packs.scatter(observed.passed_kpa, i, there, packs.gather(pieces.mean_kpa, piece))  # if without a command
+        packs.store(work.read, k, speed)
         if law.table.stages > 0:
             speaks = speaks_by_table(law.table, stage, s, speed, 0.0, 0.0)
         else:
@@ -56,7 +58,7 @@ def listen(
             speaks = speaks_by_lines(law, stage, s, speed)
         if law.lead_s != 0.0 or law.table.breaks > 0:
             # These look at the sensor within a chain, too, but there is no command there.
-            speaks = there & speaks & (packs.gather(n, lane + PIECE) < pieces.resting)
+            speaks = there & speaks & (piece < pieces.resting)
         packs.keep(work.heard, told, speaks, speed)
         told += packs.keep(work.told, told, speaks, lane)
     return told
@@ -86,7 +88,7 @@ def foretold(x, lane, speed, sloping, sensor, law):
 
 @part_inline
 def slope(x, lane, speed, period_s, filter_s):
-    """Filtered slope of the measured speed (as in `closed_loop.run_pass`), noted for the next sample."""
+    """Filtered slope of the measured speed, noted for the next sample."""
     change = speed - packs.gather(x, lane + BEFORE)
     past = packs.gather(x, lane + SLOPE)
     known = change == change  # neither at the first sample nor beside a missing reading
@@ -131,7 +133,7 @@ def speaks_by_lines(law, stage, s, v):
 
 @part_inline
 def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, law: Rule, observed: Observed) -> None:
-    """What the regulator does where it has a command (as in `closed_loop.run_pass`)."""
+    """What the regulator does where it has a command."""
     s, stage, top = x[S + lane], n[STAGE + lane], pieces.command.shape[1] - 1
     if law.table.stages > 0:
         wanted = stage_by_table(law.table, stage, s, speed_m_s, math.nan)

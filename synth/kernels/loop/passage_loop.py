@@ -1,6 +1,6 @@
 """Kernel of the closed loop with point sensors: cut, valves, sensors and rule, from event to event.
 
-Motion is as exact as in `kernels.closed_loop`: a transient is played as its mean overpressure over equal parts, all
+Motion is as exact as in `motion`: a transient is played as its mean overpressure over equal parts, all
 else is closed form. The cut rolls to whatever comes first: a coil, the end of a piece of constant overpressure, or a
 pulse pair that is heard later than it was given. Coils lie anywhere in a path cell, so cells and η are those of the
 loop with a radar, number for number.
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.kernels.compiling import borrowing_inline, kernel, part, part_inline
-from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, STALLED, Draws, Exits, Path, note
+from synth.kernels.loop.motion import LEFT, MOVING, STALLED, Path
 from synth.kernels.loop.passage_pulses import (
     Heard,
     Memory,
@@ -28,6 +28,8 @@ from synth.kernels.loop.passage_pulses import (
     take_row,
 )
 from synth.kernels.loop.passage_regulator import NOT_HEARD, begin_cut, outcome_of, stage_after_pair
+from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
+from synth.kernels.loop.trace import note
 from tuning_tables.programs.passage_table import HeldPassages
 
 Floats = NDArray[np.float64]
@@ -67,7 +69,7 @@ def roll(
 ) -> Any:  # fmt: skip
     """Move for `duration_s` under constant overpressure, but no farther than `to_m`.
 
-    Returns (cell, s, v, time used, status): `closed_loop.advance` with one more end, `ON_COIL`.
+    Returns (cell, s, v, time used, status): `motion.advance` with one more end, `ON_COIL`.
     """
     left = duration_s
     while True:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from plant_models import Plant
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.speed_sensor import measured_speed_std
-from synth.kernels.loop import closed_loop as kernel
+from synth.kernels.loop.motion import brake_rows
+from synth.kernels.loop.passes import Draws
 from synth.kernels.measured.pass_filter import SLOWEST_M_S
 from synth.logs import unknowns as asked
 from synth.logs.likelihood import Likelihood, Surprises
@@ -89,7 +90,7 @@ def mean_of_class(values: Mapping[str, float], label: str, plant: Plant) -> floa
     return values.get(asked.RESISTANCE + label, plant.resistance.mean_n_per_kn)
 
 
-def draws_of(loop: ClosedLoop, cuts: KnownCuts, passes: RandomPasses, fresh: bool) -> kernel.Draws:
+def draws_of(loop: ClosedLoop, cuts: KnownCuts, passes: RandomPasses, fresh: bool) -> Draws:
     """One pass of the closed loop for each of `cuts` (n,) and `passes` (n,).
 
     The cut comes as it was measured, with friction and resistance as the log knows them, or, if `fresh`, as those of
@@ -105,9 +106,9 @@ def draws_of(loop: ClosedLoop, cuts: KnownCuts, passes: RandomPasses, fresh: boo
         friction = np.maximum(friction + cuts.friction_std * passes.cut_z, plant.friction.floor)
     factor, path_z = fixed(friction * cuts.force, np.float64), fixed(passes.path_z, np.float32)
     rows = np.empty((len(passes), len(loop.path.gravity_m_s2)))
-    kernel.brake_rows(loop.path, factor, path_z, rows)
+    brake_rows(loop.path, factor, path_z, rows)
     start, first = begin(loop, cuts, resistance, passes.entry_u)
-    return kernel.Draws(
+    return Draws(
         factor, fixed(resistance, np.float64), fixed(start, np.float64), fixed(first, np.float64), path_z,
         fixed(readings_z(passes, plant.sensor), np.float32), fixed(rows, np.float64), fixed(passes.weight, np.float64),
     )  # fmt: skip

@@ -8,7 +8,7 @@ from dataclasses import fields
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop, Controller, LineController
 from synth.simulation.controllers import fixed
 from synth.simulation.passes import ExitSample

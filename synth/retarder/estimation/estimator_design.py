@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Plant, path_breaks_m, path_coefficients
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import Controller
 from synth.simulation.passes import PassTrace
@@ -109,6 +108,5 @@ def decisions(
 ) -> Iterator[tuple[int, PassTrace, NDArray[np.bool_]]]:
     """Every pass with the number of its draw, and which of its events are decisions."""
     for index in range(len(draws.cut_factor)):
-        one: Any = (each[index : index + 1] for each in draws)
-        trace = loop.follow(controller, Draws(*one))
+        trace = loop.follow(controller, draws.part(index, index + 1))
         yield index, trace, ~np.isnan(trace.measured_m_s)

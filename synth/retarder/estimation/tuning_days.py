@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from plant_models import Plant
 from plant_models.friction import Friction
 from plant_models.frozen_arrays import frozen_arrays
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.problem.criterion import SQUARED_ERROR
 from synth.problem.terminal_cost import TerminalCost
 from synth.simulation.closed_loop import ClosedLoop, close_loop

@@ -9,7 +9,7 @@ import numpy as np
 
 from plant_models import Plant, PointSensors
 from plant_models.cut import Cut
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.problem.resolution import Resolution
 from synth.retarder.class_setup import Origin
 from synth.retarder.configuration.point_sensors.resolved_sensors import ResolvedSensors

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from plant_models import Plant
-from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop import regulator
+from synth.kernels.loop.motion import advance
 from synth.simulation.closed_loop import ClosedLoop, close_loop
 from synth.simulation.control_system import regulated_actuator, stage_by_table
 from synth.simulation.controllers import TableController
@@ -39,7 +39,7 @@ def radar_diagram(plant: Plant, controller: TableController, first_sample_s: flo
             *command_parts(plant, plant.sensor),
             *pressure_parts(plant),
             *pad_parts(plant, loop.path),
-            *integrators(plant, kernel.advance, (("edges_m", loop.path.edges_m), ("free", free))),
+            *integrators(plant, advance, (("edges_m", loop.path.edges_m), ("free", free))),
         ),
     )
 

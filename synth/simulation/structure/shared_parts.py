@@ -8,7 +8,7 @@ from typing import Any
 from plant_models import Plant, pads, pressure_regulator
 from plant_models.stage_regulator import Actuator, RegulatorClock, reaches_valves_s
 from plant_models.valve_drive import wait_after_command
-from synth.kernels.loop.closed_loop import Path
+from synth.kernels.loop.motion import Path
 from synth.simulation.closed_loop import pad_slopes
 from synth.simulation.impulse_train import held, with_command
 from synth.simulation.structure.part import Block, Number, Part

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance, TrackProfile
-from synth.kernels.any_time.closed_loop import AnyTimeLaw, run_any_time_passes
-from synth.kernels.any_time.closed_loop_lanes import run_any_time_lanes
+from synth.kernels.any_time.any_time_law import AnyTimeLaw
+from synth.kernels.any_time.closed_loop import run_any_time_passes
 from synth.kernels.any_time.played_periods import PlayedPeriods
-from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop.lane_places import LANES
+from synth.kernels.loop.passes import LONGEST_PASS_S, Draws
 from synth.retarder.comparison.baselines import energy_rule, relay
 from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import (
@@ -26,6 +26,7 @@ from synth.simulation.closed_loop import (
     close_loop,
     empty_exits,
     empty_observed,
+    empty_trace,
     lane_memory,
     sample_of,
 )
@@ -34,8 +35,9 @@ from synth.simulation.drive_pieces import STATES, empty_periods
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines
+from tests.oracles.passes_one_by_one import one_by_one
 from tests.synth.simulation.passage_cases import with_approach
-from tests.synth.test_closed_loop_lanes import rough_estimator, wavy_table, with_gaps
+from tests.synth.test_closed_loop_lanes import assert_same_trace, rough_estimator, wavy_table, with_gaps
 from tuning_tables import Approach, ControllerTable, Decisions
 
 PASSES = 3 * LANES + 7
@@ -46,23 +48,16 @@ def passes() -> RandomPasses:
     return random_passes(seed=11, first_pass=0, count=PASSES)
 
 
-def alone(loop: ClosedLoop, law: AnyTimeLaw, draws: kernel.Draws) -> ExitSample:
-    """The same passes by the kernel that traces are made with."""
-    exits = empty_exits(len(draws.cut_factor))
-    run_any_time_passes(loop.path, loop.sampled, loop.sensor, law, draws, exits, np.empty((0, kernel.EVENT_FIELDS)))
-    return sample_of(exits, draws)
-
-
-def assert_same(loop: ClosedLoop, controller: Regulator, draws: kernel.Draws) -> ExitSample:
-    law = controller.law()
-    assert isinstance(law, AnyTimeLaw)
-    by_lanes, one_by_one = loop.run(controller, draws), alone(loop, law, draws)
-    assert_equal(by_lanes, one_by_one)
+def assert_same(loop: ClosedLoop, controller: Regulator, draws: Draws) -> ExitSample:
+    by_lanes = loop.run(controller, draws)
+    assert_equal(by_lanes, one_by_one(loop, controller, draws))
+    for i in range(0, len(by_lanes), 30):
+        assert_same_trace(loop, controller, draws.part(i, i + 1))
     return by_lanes
 
 
-def assert_equal(by_lanes: ExitSample, one_by_one: ExitSample) -> None:
-    for name, array in vars(one_by_one).items():
+def assert_equal(by_lanes: ExitSample, apart: ExitSample) -> None:
+    for name, array in vars(apart).items():
         assert getattr(by_lanes, name).tobytes() == array.tobytes(), name
 
 
@@ -181,7 +176,7 @@ def test_a_creeping_cut_is_given_up(plant_22t: Plant, passes: RandomPasses, peri
     sample = assert_same(loop, constant_lines(crawl, [-math.inf] * 3, [math.inf] * 3, 0.0), draws)
     assert sample.stalled.all()
     assert not sample.exit_speed_m_s.any()
-    assert np.all(np.abs(sample.transit_time_s - kernel.LONGEST_PASS_S) <= period_s)
+    assert np.all(np.abs(sample.transit_time_s - LONGEST_PASS_S) <= period_s)
 
 
 def observing(plant: Plant, target_m_s: float) -> TableController:
@@ -202,13 +197,13 @@ def test_an_estimator(plant_52t: Plant, passes: RandomPasses, gaps: bool, period
         assert_same(loop, replace(by_lines, lead_s=lead_s, estimator=controller.table.estimator), draws)
 
 
-def in_lanes(loop: ClosedLoop, controller: Regulator, draws: kernel.Draws, played: PlayedPeriods) -> None:
+def in_lanes(loop: ClosedLoop, controller: Regulator, draws: Draws, played: PlayedPeriods) -> None:
     """The passes of `draws` with this memory for the drive are those one after the other."""
     law, n = controller.law(), len(draws.cut_factor)
     assert isinstance(law, AnyTimeLaw)
-    exits, memory = empty_exits(n), (lane_memory(), played, empty_observed(law.rule, n))
-    run_any_time_lanes(loop.path, loop.sampled, loop.sensor, law, draws, exits, *memory)
-    assert_equal(sample_of(exits, draws), alone(loop, law, draws))
+    exits, memory = empty_exits(n), (empty_trace(0), lane_memory(), played, empty_observed(law.rule, n))
+    run_any_time_passes(loop.path, loop.sampled, loop.sensor, law, draws, exits, *memory)
+    assert_equal(sample_of(exits, draws), one_by_one(loop, controller, draws))
 
 
 @pytest.mark.parametrize("states", [2, 3, 30, 100])

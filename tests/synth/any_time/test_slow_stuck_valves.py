@@ -11,7 +11,7 @@ import pytest
 from plant_models import Plant
 from scripts.studies.any_time.findings import Ways
 from scripts.studies.any_time.stuck_valves import STUCK, StuckLoop, StuckValves
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.random_passes import random_passes
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces

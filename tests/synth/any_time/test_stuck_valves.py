@@ -22,7 +22,7 @@ from scripts.studies.any_time.findings import (
 )
 from scripts.studies.any_time.stuck_valves import NOTHING, STUCK, StuckLoop, StuckValves, where_stuck
 from scripts.studies.any_time.wrong_plants import waiting_table, with_a_silent_gauge
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, close_loop
 from synth.simulation.common_passes import common_passes
 from synth.simulation.passes import PassTrace

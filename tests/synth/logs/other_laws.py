@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import Controller
 from synth.simulation.logged_passes import rows_of_pass

@@ -22,7 +22,7 @@ from plant_models import (
     first_axle,
 )
 from plant_models.point_sensors import Axles
-from synth.kernels.loop.closed_loop import Draws
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import LineController, close_loop
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passage_controller import PassageController, of_speeds

@@ -12,11 +12,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, roll_period, wanted_stage
-from synth.kernels.any_time.driven_period import play_period, wait_after_command
+from scripts.studies.any_time.kernels.rolled_period import roll_period
+from synth.kernels.any_time.any_time_law import AnyTimeLaw, wanted_stage
+from synth.kernels.any_time.driven_period import SampledDrive, play_period, wait_after_command
 from synth.kernels.compiling import kernel
-from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, Draws, Exits, Floats, Ints, Path, advance, note
+from synth.kernels.loop.lane_places import Floats, Ints
+from synth.kernels.loop.motion import LEFT, MOVING, Path, advance
+from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.regulator import Sensor, admitted, measure
+from synth.kernels.loop.trace import note
 
 
 class Stuck(NamedTuple):
@@ -35,7 +39,7 @@ class Asking(NamedTuple):
 
     `by_gauge`: only where the gauge shows that the pressure commanded is reached. `by_times`: only where a drive
     without fault would have reached it, by `command`, `chain_mode`, `chain_samples`, `initial_mode` of
-    `kernels.loop.closed_loop.Drive`.
+    `kernels.loop.drive.Drive`.
     """
 
     by_gauge: bool

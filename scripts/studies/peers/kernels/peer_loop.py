@@ -12,25 +12,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from scripts.studies.any_time.kernels.rolled_period import roll_period
 from scripts.studies.peers.kernels.observed_motion import KNOWN, observed
 from scripts.studies.peers.kernels.prediction import MeanPath, Prediction, stage_by_prediction
 from scripts.studies.peers.kernels.pulses import STATE, Pulses, begin_pulses, stage_by_pulses
-from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, roll_period, wanted_stage
-from synth.kernels.any_time.driven_period import play_period
+from synth.kernels.any_time.any_time_law import AnyTimeLaw, wanted_stage
+from synth.kernels.any_time.driven_period import SampledDrive, play_period
 from synth.kernels.compiling import kernel, part
-from synth.kernels.loop.closed_loop import (
-    LEFT,
-    LONGEST_PASS_S,
-    MOVING,
-    Draws,
-    Drive,
-    Exits,
-    Floats,
-    Path,
-    advance,
-    note,
-)
+from synth.kernels.loop.drive import Drive
+from synth.kernels.loop.lane_places import Floats
+from synth.kernels.loop.motion import LEFT, MOVING, Path, advance
+from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.regulator import Sensor, admitted, measure
+from synth.kernels.loop.trace import note
 from tuning_tables.programs.line_table import LineTable
 
 BY_TABLE, BY_PREDICTION, BY_PULSES = 0, 1, 2

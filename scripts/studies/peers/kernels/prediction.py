@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from synth.kernels.any_time.closed_loop import SampledDrive
-from synth.kernels.any_time.driven_period import play_period
+from synth.kernels.any_time.driven_period import SampledDrive, play_period
 from synth.kernels.compiling import part
-from synth.kernels.loop.closed_loop import MOVING, Floats, advance
+from synth.kernels.loop.lane_places import Floats
+from synth.kernels.loop.motion import MOVING, advance
 from synth.kernels.loop.regulator import admitted
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from scripts.studies.peers.kernels.prediction import MeanPath, line_square
 from synth.kernels.compiling import part
-from synth.kernels.loop.closed_loop import Floats
+from synth.kernels.loop.lane_places import Floats
 
 INTEGRAL, CLOCK, LOW, SHARE, HIGH_FIRST = range(5)
 """Places of the state: integral of the error, m/s; time in the pulse period, s (negative: none has begun); the lower of
