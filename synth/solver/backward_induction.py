@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.kernels.sweep.bellman import sweep
+from synth.kernels.sweep.bellman import Entrance, Readings, sweep
+from synth.kernels.sweep.pass_time import Costs, Prices
 from synth.kernels.vector.packs import EIGHT
 from synth.problem.aim import Aim
 from synth.solver.chain.chain import Chain
-from synth.solver.pass_times import pass_times
+from synth.solver.chain.kernel_arrays import chain_arrays, pass_times, scenario_arrays
 from synth.solver.switching_lines import SwitchingLines
 
 TIE_M2_S2 = 1e-9
@@ -86,8 +87,8 @@ def solve_all(
     exit_costs, stall_costs = zip(*priced, strict=True)
     change_costs = [each.criterion.switching_tolerance_m2_s2 for each in aims]
     time_prices = [each.criterion.time_price_m2_s3 for each in aims]
-    nodes, stages, points, width = len(c.drive_m_s2), c.actuator.stages, len(c.grid.speed_m_s), len(aims)
-    kept = nodes + 1 if nodes_kept is None else nodes_kept
+    stages, points, width = c.actuator.stages, len(c.grid.speed_m_s), len(aims)
+    kept = len(c.drive_m_s2) + 1 if nodes_kept is None else nodes_kept
     states = (len(c.actuator.mode_stage), len(c.path_noise.levels), points)
     values = np.empty((len(c.scenarios.factor), kept, *states, width), value_type)
     shape = (2 * c.decisions.swept, len(c.decisions), stages, width)
@@ -96,17 +97,20 @@ def solve_all(
     readings, noise = c.measurement.readings(c.grid.speed_m_s), c.measurement.std
     smear_start, smear = true_speed_weights(c.grid.speed_m_s, readings, noise)
     costs = (np.stack(exit_costs, axis=1), stall_costs, change_costs, time_prices)
-    terminal, stalled, *prices = (in_packs_of_targets(each, value_type).ravel() for each in costs)
-    arguments = (
-        terminal, stalled, (*prices, *pass_times(c)),
-        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), readings, (noise, heard), smear_start,
-        smear.astype(value_type), hidden_prior(c).astype(value_type), c.decisions.at_nodes(nodes), *sweep_arguments(c),
-        c.scenarios.factor, c.scenarios.extra_m_s2,
-        c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s, len(c.entry),
-        c.approach_nodes, c.plant.entrance_stage,
-        values, lines, gain,
-    )  # fmt: skip
-    sweep(*arguments)
+    terminal, stalled, of_change, of_second = (in_packs_of_targets(each, value_type).ravel() for each in costs)
+    sweep(
+        chain_arrays(c, 2 * c.decisions.swept),
+        scenario_arrays(c),
+        hidden_prior(c).astype(value_type),
+        Costs(terminal, stalled, Prices(of_change, of_second, pass_times(c))),
+        TIE_M2_S2,
+        ROUNDINGS * float(np.finfo(value_type).eps),
+        Readings(readings, noise, heard, smear_start, smear.astype(value_type)),
+        Entrance(c.approach_nodes, c.plant.entrance_stage),
+        values,
+        lines,
+        gain,
+    )
     return tuple(
         Solution(
             chain=c,
@@ -124,18 +128,6 @@ def in_packs_of_targets(by_target: ArrayLike, value_type: type[np.floating[Any]]
     numbers = np.asarray(by_target, dtype=value_type)
     missing = -numbers.shape[-1] % EIGHT
     return np.pad(numbers, [(0, 0)] * (numbers.ndim - 1) + [(0, missing)])
-
-
-def sweep_arguments(c: Chain) -> Any:
-    """The plant's arrays, a tuple in the order in which `sweep` takes them."""
-    a = c.landings
-    return (
-        c.grid.speed_m_s, c.actuator.mode_stage, c.actuator.mode_overpressure_kpa,
-        a.change_chain[: 2 * c.decisions.swept], a.end_mode, a.ends, a.factors,
-        c.transient_noise.probability, c.transient_noise.mean, c.transient_noise.std,
-        c.path_noise.levels, c.path_noise.transition,
-        c.drive_m_s2, c.brake_m_s2_per_kpa,
-    )  # fmt: skip
 
 
 def hidden_prior(c: Chain) -> NDArray[np.float64]:

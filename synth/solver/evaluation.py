@@ -12,18 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.sweep.pass_time import Costs, Prices
 from synth.kernels.sweep.policy_value import backward
 from synth.problem.aim import Aim
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.epochs import Policy
+from synth.solver.chain.kernel_arrays import chain_arrays, pass_times
 from synth.solver.exit_density import ExitDensity
-from synth.solver.pass_times import pass_times
 from synth.solver.policy_density import (
     CommandChances,
     commands,
     exit_density,
     forward_one,
-    shared_arguments,
     slopes_of_commands,
 )
 
@@ -117,13 +117,8 @@ class Evaluation:
         """Backward recursion in scenario `i`; with derivatives by command if `density`, `band` are its forward ones."""
         c, criterion = self.chain, self.aim.criterion
         by_lines = np.zeros(policy.shape[:3])
-        prices = (np.full(1, each) for each in (criterion.switching_tolerance_m2_s2, criterion.time_price_m2_s3))
-        arguments = (
-            policy, slopes, c.decisions.at_nodes(len(c.drive_m_s2)),
-            *criterion.exit_costs(c.grid.speed_m_s, self.aim.target_speed_m_s),
-            (*prices, *pass_times(c)), c.entry, c.entry_mode,
-            *shared_arguments(c), c.scenarios.factor[i],
-            c.scenarios.extra_m_s2[i], c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s,
-            density, band, by_lines,
-        )  # fmt: skip
-        return backward(*arguments), by_lines
+        of_change, of_second = np.full(1, criterion.switching_tolerance_m2_s2), np.full(1, criterion.time_price_m2_s3)
+        terminal, stalled = criterion.exit_costs(c.grid.speed_m_s, self.aim.target_speed_m_s)
+        costs = Costs(terminal, stalled, Prices(of_change, of_second, pass_times(c)))
+        scenario = c.scenarios.factor[i], c.scenarios.extra_m_s2[i]
+        return backward(policy, slopes, chain_arrays(c), *scenario, costs, density, band, by_lines), by_lines

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,7 @@ from synth.kernels.vector.packs import EIGHT
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.decisions import steps_of
 from synth.solver.chain.epochs import Policy
+from synth.solver.chain.kernel_arrays import chain_arrays, scenario_arrays
 from synth.solver.exit_density import ExitDensity
 
 CommandChances = NDArray[np.float64]
@@ -129,23 +129,7 @@ def forward_all(
     c: Chain, policy: CommandChances, scenarios: slice, density: NDArray[np.float64], band: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forward recursion in several scenarios: exit probabilities (I, E) and the kernel's totals (I, 4)."""
-    factor = c.scenarios.factor[scenarios]
-    exits, totals = np.empty((len(factor), len(c.grid.speed_m_s))), np.empty((len(factor), 4))
-    arguments = (
-        policy, c.decisions.at_nodes(len(c.drive_m_s2)), c.entry, c.entry_mode, *shared_arguments(c),
-        factor, c.scenarios.extra_m_s2[scenarios],
-        c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s, density, band, exits, totals,
-    )  # fmt: skip
-    forward(*arguments)
+    hidden = scenario_arrays(c, scenarios)
+    exits, totals = np.empty((len(hidden.factor), len(c.grid.speed_m_s))), np.empty((len(hidden.factor), 4))
+    forward(policy, chain_arrays(c), hidden, density, band, exits, totals)
     return exits, totals
-
-
-def shared_arguments(c: Chain) -> Any:
-    """The plant's arrays, a tuple in the order in which `forward` and `backward` take them."""
-    a = c.landings
-    return (
-        c.grid.speed_m_s, c.actuator.mode_stage, c.actuator.mode_overpressure_kpa,
-        a.change_chain[: c.decisions.commands], a.end_mode, a.ends, a.factors,
-        c.transient_noise.probability, c.transient_noise.mean, c.transient_noise.std,
-        c.path_noise.levels, c.path_noise.transition, c.path_noise.stationary, c.drive_m_s2, c.brake_m_s2_per_kpa,
-    )  # fmt: skip

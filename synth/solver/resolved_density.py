@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.kernels.sweep.finer_end import forward_to_finer_end
+from synth.kernels.sweep.finer_end import HandOver, forward_to_finer_end
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.epochs import Policy
 from synth.solver.chain.finer_end import FinerEnd, finer_end, finer_length_m, times_as_fine
+from synth.solver.chain.kernel_arrays import chain_arrays, scenario_arrays
 from synth.solver.exit_density import ExitDensity, without_negative
-from synth.solver.policy_density import commands, exit_density, shared_arguments
+from synth.solver.policy_density import commands, exit_density
 
 NEGLIGIBLE = 3e-11
 """A state of less probability is left out; in all less than 2e-6 is lost."""
@@ -33,17 +34,13 @@ def density_by_end(chain: Chain, lines: Policy, end: FinerEnd) -> ExitDensity:
     at_decisions = lines.at_decisions(c.decisions)
     late = at_decisions[:, len(c.decisions) - len(last.decisions) :]
     policy, late_policy = commands(c, at_decisions), commands(last, late)
-    nodes, late_nodes = len(c.drive_m_s2), len(last.drive_m_s2)
     points, weight = end.times * len(c.grid.speed_m_s), c.scenarios.weight
     negligible = np.clip(NEGLIGIBLE / np.maximum(np.abs(weight), 1e-12), NEGLIGIBLE, 1e-7)
     exits, totals = np.empty((len(weight), points)), np.empty((len(weight), 4))
-    arguments = (
-        end.node, end.handed, end.times, late_policy, last.decisions.at_nodes(late_nodes), last.grid.speed_m_s,
-        last.landings.ends, negligible, policy, c.decisions.at_nodes(nodes), c.entry, c.entry_mode,
-        *shared_arguments(c), c.scenarios.factor, c.scenarios.extra_m_s2, c.grid.path_step_m, c.grid.energy_step_m2_s2,
-        c.epochs.hold_period_s, exits, totals,
+    forward_to_finer_end(
+        HandOver(end.node, end.handed, end.times), policy, chain_arrays(c), late_policy, chain_arrays(last),
+        scenario_arrays(c), negligible, exits, totals,
     )  # fmt: skip
-    forward_to_finer_end(*arguments)
     probability = (weight[:, None] * exits).sum(axis=0)
     stalled, escaped, lowered, raised = (float(each) for each in (weight[:, None] * totals).sum(axis=0))
     speed = np.sqrt(2.0 * c.grid.energy_step_m2_s2 / end.times * np.arange(points))

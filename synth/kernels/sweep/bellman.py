@@ -9,9 +9,13 @@ side in memory.
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from synth.kernels.compiling import kernel, part
+from synth.kernels.sweep.chain_arrays import Floats, Ints, Scenario, change_at
 from synth.kernels.sweep.commands import normal_cdf
 from synth.kernels.sweep.flow import in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import find_runs, landing_scratch, landing_tables
@@ -22,85 +26,91 @@ from synth.kernels.sweep.transient_sweep import add_transient_values
 from synth.kernels.vector.packs import EIGHT, choose, load8, magnitude, store
 
 
+class Readings(NamedTuple):
+    """`reading` (E,): what is measured of the speeds, with errors of std `noise`; `heard` (R, T): probability that
+    there is one at a decision, else the stage is held.
+
+    `smear_start` (E,), `smear` (E, W): probability of true speeds given a measured one.
+    """
+
+    reading: Floats
+    noise: float
+    heard: Floats
+    smear_start: Ints
+    smear: NDArray[Any]
+
+
+class Entrance(NamedTuple):
+    """No node below `approach_nodes` raises beyond `stage`."""
+
+    approach_nodes: int
+    stage: int
+
+
 @kernel
-def sweep(
-    terminal, stalled, prices, tolerance, rounding, reading, errors, smear_start, smear, prior, decision_at,
-    speed, stage, pressure, change_chain, chain_mode,
-    ends, factors, probability, mean, std, levels, transition,
-    drive, brake, factor, extra, path_step, energy_step, period, reach, approach_nodes, entrance_stage,
-    values, lines, gain,
-):  # fmt: skip
+def sweep(chain, scenarios, prior, costs, tolerance, rounding, readings, entrance, values, lines, gain):
     """One backward sweep over all path quanta.
 
-    `terminal` (E·T',) cost by exit energy and target, `stalled` (T',) cost of a stall, `prices` (T',) as in
-    `pass_time`, where T' ≥ T are whole packs of eight; values are computed in the type of `terminal`. `tolerance`: an
-    averaged gain of less is none; `rounding`: so is one of less than this part of the cost. I scenarios: `factor`,
-    `extra` (I,); `prior` (I, H, L) weights of what is hidden; `reading` (E,) what is measured of the speeds;
-    `errors`: std of a reading, and the probability (R, T) that there is one at a decision, else the stage is held;
-    `smear_start` (E,), `smear` (E, W): probability of true speeds given a measured one. `decision_at` (N,): number of
-    the decision at a node, R or more where there is none. Of the commands 2·d − 2 goes down, 2·d − 1 up by d stages;
-    `change_chain` (C, H) their transients, −1: none. No node below `approach_nodes` raises beyond `entrance_stage`.
+    `costs` of T' ≥ T targets, whole packs of eight; values are computed in the type of the terminal cost. `prior`
+    (I, H, L): weights of what is hidden. `tolerance`: an averaged gain of less is none; `rounding`: so is one of less
+    than this part of the cost. The rest as in `chain_arrays`.
     Outputs: `values` (I, N + 1, H, L, E, T), or of the first nodes only, `lines` (C, R, K + 1, T) in readings, `gain`
     (C, R, K + 1, T, E): averaged cost saved by the change, by measured speed.
     """
-    count, nodes, width = factor.shape[0], drive.shape[0], stalled.shape[0]
-    modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
-    commands, decisions, stages = lines.shape[0], lines.shape[1], lines.shape[2]
-    ring, row, kind = probability.shape[1] + 3, points * width, terminal.dtype
+    terminal, stalled, prices = costs
+    factor, extra = scenarios
+    grid, landings, stage, transition = chain.grid, chain.landings, chain.modes.stage, chain.noise.transition
+    count, nodes, width = factor.shape[0], chain.track.drive.shape[0], stalled.shape[0]
+    modes, size, points = stage.shape[0], transition.shape[0], grid.speed.shape[0]
+    commands, decisions, stages, reach = lines.shape[0], lines.shape[1], lines.shape[2], chain.entry.shape[0]
+    ring, row, kind = chain.transient_noise.mean.shape[1] + 3, points * width, terminal.dtype
     recent, mixed = np.zeros((count, ring, modes, size, row), kind), np.zeros((count, ring, modes, size, row), kind)
     ahead, holds = np.empty((count, reach, modes, size, row), kind), np.empty((count, modes, size, row), kind)
     changes = np.zeros((count, modes, size, commands, row), kind)
     quanta, shift = np.empty((count, modes, size, points)), np.empty((count, modes, size))
     gains, chance = np.empty((commands, stages, row), kind), np.empty((commands, row), kind)
     best, chosen = np.empty(points + 1), np.empty((commands // 2, points + 1), np.int64)
-    possible, least_ahead = np.empty((2, stages), np.int64), 0.0 if period > 0.0 else 1.0
-    undecided, scratch = np.empty(points, np.bool_), np.empty(row, kind)
-    crossed, runs, place, weight = landing_scratch(ends.shape[4], size, kind)
-    met, slope = landing_tables(
-        factor, extra, factors, probability, mean, std, levels, pressure, drive, brake, path_step
-    )
+    possible, undecided = np.empty((2, stages), np.int64), np.empty(points, np.bool_)
+    spent, scratch = np.empty(row, kind), landing_scratch(landings.ends.shape[4], size, kind)
+    met, slope = landing_tables(chain, factor, extra)
     in_every_state(terminal, row, recent[:, nodes % ring])
     in_every_state(terminal, row, mixed[:, nodes % ring])
     in_every_state(terminal, row, ahead.reshape(count * reach, modes, size, row))
     copy_out(recent[:, nodes % ring], values, nodes, points)
     for n in range(nodes - 1, -1, -1):
-        decision = decision_at[n]
+        decision = chain.decision_at[n]
         gains[:], possible[:] = 0.0, 0
         for i in range(count):
-            shifts(n, factor[i], levels, drive, brake, pressure, extra[i], path_step, energy_step, shift[i])
-            hold_everywhere(
-                recent[i, (n + 1) % ring], shift[i], transition, stalled, speed, period, path_step, energy_step,
-                n, prices, ahead[i], quanta[i], holds[i], scratch,
-            )  # fmt: skip
+            scenario = Scenario(factor[i], extra[i], met[i], slope[i])
+            shifts(n, chain, factor[i], extra[i], shift[i])
+            following = recent[i, (n + 1) % ring]
+            hold_everywhere(n, chain, stalled, prices, following, shift[i], ahead[i], quanta[i], holds[i], spent)
             for command in range(commands if decision < decisions else 0):
                 side, by = command % 2, command // 2 + 1
                 for h in range(modes):
-                    c = change_chain[command, h]
-                    if c < 0 or (side == 1 and n < approach_nodes and stage[h] + by > entrance_stage):
+                    c = landings.change_chain[command, h]
+                    if c < 0 or (side == 1 and n < entrance.approach_nodes and stage[h] + by > entrance.stage):
                         continue  # no gain, so no line, and what `changes` holds plays no part
                     possible[side, stage[h]] = by
-                    found = find_runs(
-                        decision, c, 0, points, factor[i], ends, factors, path_step,
-                        probability.shape[1] - 1, crossed, runs,
-                    )  # fmt: skip
+                    found = find_runs(change_at(chain, n, decision, 0, c), 0, points, landings, grid, scenario, scratch)
                     for q in range(size):
-                        changed = changes[i, h, q, command]
+                        change, changed = change_at(chain, n, decision, q, c), changes[i, h, q, command]
                         value_change(
-                            n, decision, nodes, c, q, runs, found, chain_mode[c], ends, met[i], slope[i], least_ahead,
-                            extra[i], path_step, energy_step, prices, speed,
-                            recent[i], mixed[i], stalled, place, weight, best, changed,
+                            change, found, landings.ends, grid, scenario, recent[i], mixed[i], stalled, prices,
+                            scratch, best, changed,
                         )  # fmt: skip
                         add_gains(holds[i, h, q], changed, prior[i, h, q], rounding, width, gains[command, stage[h]])
         for k in range(stages):
             undecided[:] = False
             if decision < decisions:
                 for command in range(commands):
-                    spread(gains[command, k], smear_start, smear, width, scratch)
-                    apart(scratch, width, gain[command, decision, k])
+                    spread(gains[command, k], readings.smear_start, readings.smear, width, spent)
+                    apart(spent, width, gain[command, decision, k])
                 find_lines(
-                    gain[:, decision, k], possible[:, k], reading, tolerance, best, chosen, lines[:, decision, k]
+                    gain[:, decision, k], possible[:, k], readings.reading, tolerance, best, chosen,
+                    lines[:, decision, k],
                 )  # fmt: skip
-                command_chances(lines[:, decision, k], reading, errors, decision, width, chance, undecided)
+                command_chances(lines[:, decision, k], readings, decision, width, chance, undecided)
             for i in range(count):
                 for h in range(modes):
                     for q in range(size if stage[h] == k else 0):
@@ -114,42 +124,34 @@ def sweep(
 
 
 @part
-def hold_everywhere(
-    following, shift, transition, stalled, speed, period, path_step, energy_step,
-    n, prices, ahead, quanta, holds, scratch,
-):  # fmt: skip
+def hold_everywhere(n, chain, stalled, prices, following, shift, ahead, quanta, holds, scratch):
     """Values of one scenario that holds at a node, in all modes and levels, into `holds` (H, L, E·T).
 
     `following` (H, L, E·T): at the next node; `ahead` (M + 1, H, L, E·T) on the way to later samples is brought one
     node back; `quanta` (H, L, E) becomes the path to the next sample.
     """
     modes, size, points = quanta.shape
+    grid, transition = chain.grid, chain.noise.transition
     for r in range(ahead.shape[0] - 2, 0, -1):
         pull(ahead[r], points, transition, shift, stalled, 1, points, ahead[r + 1], scratch)
     pull(following, points, transition, shift, stalled, 1, points, ahead[1], scratch)
-    add_quantum_times(n, prices, speed, shift, energy_step, 1, points, ahead, quanta[0, 0])
+    add_quantum_times(n, prices, grid, shift, 1, points, ahead, quanta[0, 0])
     for h in range(modes):
         for q in range(size):
-            a = shift[h, q] * energy_step / path_step
-            quanta_to_next_sample(speed, 0, points, a, period, path_step, quanta[h, q])
+            a = shift[h, q] * grid.energy_step / grid.path_step
+            quanta_to_next_sample(grid.speed, 0, points, a, chain.period, grid.path_step, quanta[h, q])
             hold_values(ahead, h * size + q, quanta[h, q], stalled.shape[0], holds[h, q])
 
 
 @part
-def value_change(
-    n, decision, last, c, q, runs, found, mode, ends, met, slope, least_ahead,
-    extra, path_step, energy_step, prices, speed, values, mixed, stalled, place, weight, scratch, out,
-):  # fmt: skip
-    """`out` (E·T,) = value of transient `c` with what the command and its time cost; arguments as in their kernels."""
-    in_every_cell(prices[0], out)
-    add_transient_values(
-        n, decision, last, c, q, runs, found, mode, ends, met, slope, least_ahead,
-        extra, path_step, energy_step, values, mixed, stalled, place, weight, out,
-    )  # fmt: skip
-    add_change_times(
-        n, decision, last, c, q, runs, found, mode, ends, met, slope, least_ahead,
-        extra, path_step, prices, speed, scratch, out,
-    )  # fmt: skip
+def value_change(change, count, ends, grid, scenario, values, mixed, stalled, prices, scratch, spent, out):
+    """`out` (E·T,) = value of a change of stage with what the command and its time cost.
+
+    Arguments as in `transient_sweep` and `pass_time`.
+    """
+    in_every_cell(prices.command, out)
+    add_transient_values(change, count, ends, grid, scenario, values, mixed, stalled, scratch, out)
+    add_change_times(change, count, ends, grid, scenario, prices, scratch.runs, spent, out)
 
 
 @part
@@ -215,12 +217,12 @@ def apart(row, width, out):
 
 
 @part
-def command_chances(lines, reading, errors, decision, width, out, undecided):
+def command_chances(lines, readings, decision, width, out, undecided):
     """Probability of each command at every true speed and target, `out` (C, E·T); `lines` (C, T) in readings.
 
-    `errors` as of `sweep`. `undecided` (E,): whether any target may get another command than holding.
+    `undecided` (E,): whether any target may get another command than holding.
     """
-    noise, heard = errors[0], errors[1][decision]
+    reading, noise, heard = readings.reading, readings.noise, readings.heard[decision]
     out[:] = 0.0
     for j in range(reading.shape[0]):
         undecided[j] = False

@@ -7,81 +7,58 @@ ones, and the rest goes on as before. The equation is linear in the masses: both
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from synth.kernels.compiling import borrowing, kernel, part
+from synth.kernels.sweep.chain_arrays import Floats, Scenario
 from synth.kernels.sweep.flow import NO_MASS, extent, stencil, widen
-from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
-from synth.kernels.sweep.policy_density import BEGIN, collect, follow
+from synth.kernels.sweep.landing_plan import landing_tables
+from synth.kernels.sweep.policy_density import BEGIN, begin_pass, collect, empty_masses, follow, without_mass
 from synth.kernels.vector.packs import EIGHT, load8, scatter
 
 LINEAR_BELOW = 2
 """Cells next to the stall whose mass is refined linearly: a cubic would reach below it."""
 
 
-@kernel
-def forward_to_finer_end(
-    node, handed, times, fine_policy, fine_decision_at, fine_speed, fine_ends, negligible,
-    policy, decision_at, entry, entry_mode, speed, stage, pressure, change_chain, chain_mode,
-    ends, factors, probability, mean, std, levels, transition, stationary,
-    drive, brake, factor, extra, path_step, energy_step, period, exits, totals,
-):  # fmt: skip
-    """Distribution at the exit in the scenarios `factor`, `extra` (I,).
+class HandOver(NamedTuple):
+    """At path node `node` the share `handed` (E,) of every energy goes over to a grid `times` as dense."""
 
-    At `node` the share `handed` (E,) of every energy goes over to the finer grid, whose energies are `times` as dense:
-    `fine_policy` (C, R_f, K + 1, E_f), `fine_decision_at` (N − node,), `fine_speed` (E_f,), `fine_ends` (R_f, ·, F, 2,
-    E_f') belong to it. `negligible` (I,): a state of a scenario with less mass is left out. The rest as in
+    node: int
+    handed: Floats
+    times: int
+
+
+@kernel
+def forward_to_finer_end(over, policy, chain, fine_policy, fine_chain, scenarios, negligible, exits, totals):
+    """Distribution at the exit in all `scenarios`.
+
+    `fine_policy` and `fine_chain` belong to the finer grid and to the path from `over.node` on; the entry of that chain
+    means nothing. `negligible` (I,): a state of a scenario with less mass is left out. The rest as in
     `policy_density.forward`, but for `exits` (I, times·E), by energy of the finer grid.
     """
-    modes, size, nodes, points, row = pressure.shape[0], levels.shape[0], drive.shape[0], speed.shape[0], ends.shape[4]
-    reach, ring, fine_row = entry.shape[0], probability.shape[1] + 3, fine_ends.shape[4]
-    heading, fine_heading = np.empty((reach, modes, size, row)), np.empty((reach, modes, size, fine_row))
-    arriving, fine_arriving = np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, fine_row))
-    mixing, fine_mixing = np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, fine_row))
-    chance, fine_chance = np.zeros((policy.shape[0], row)), np.zeros((policy.shape[0], fine_row))
-    memory = np.zeros(row), np.zeros(row), np.ones(row), chance, np.empty((modes, size))
-    fine_memory = np.zeros(fine_row), np.zeros(fine_row), np.ones(fine_row), fine_chance, memory[4]
-    spans, fine_spans = np.empty((reach, modes, size, 2), np.int64), np.empty((reach, modes, size, 2), np.int64)
-    landed, fine_landed = np.empty((ring, modes, 2), np.int64), np.empty((ring, modes, 2), np.int64)
-    arrived = np.zeros((modes, size, 2), np.int64)
-    scratch, fine_scratch = landing_scratch(row, size, speed.dtype), landing_scratch(fine_row, size, speed.dtype)
-    basis, rest, late = refinement(times), np.empty(points), np.empty(fine_speed.shape[0])
+    (node, handed, times), (factor, extra) = over, scenarios
+    masses, fine = empty_masses(chain, policy.shape[0]), empty_masses(fine_chain, policy.shape[0])
+    nodes, points, ring = chain.track.drive.shape[0], chain.grid.speed.shape[0], masses.arriving.shape[0]
+    basis, rest, late = refinement(times), np.empty(points), np.empty(fine_chain.grid.speed.shape[0])
     unkept, bands = np.empty((0, 0, 0, 0)), np.empty((nodes, 2), np.int64)
-    fine_drive, fine_brake = drive[node:], brake[node:]
     for i in range(factor.shape[0]):
-        met, slope = landing_tables(
-            factor[i : i + 1], extra[i : i + 1], factors, probability, mean, std,
-            levels, pressure, drive, brake, path_step,
-        )  # fmt: skip
-        heading[:], spans[:], landed[:], totals[i] = 0.0, 0, 0, 0.0
-        fine_heading[:], fine_spans[:], fine_landed[:] = 0.0, 0, 0
-        for r in range(reach):
-            for q in range(size):
-                for j in range(points):
-                    heading[r, entry_mode, q, j] = entry[r, j] * stationary[q]
-                spans[r, entry_mode, q, 1] = points
+        met, slope = landing_tables(chain, factor[i : i + 1], extra[i : i + 1])
+        scenario = Scenario(factor[i], extra[i], met[0], slope[0])
+        to_exit = Scenario(factor[i], extra[i], met[0], np.ascontiguousarray(slope[0, :, :, node:]))
+        begin_pass(chain, masses)
+        without_mass(fine)
+        totals[i] = 0.0
         for start, stop in ((0, node), (node, nodes)):
-            follow(
-                start, stop, negligible[i], heading, arriving, mixing, memory, scratch, spans, arrived, landed,
-                policy, decision_at, speed, stage, pressure, change_chain, chain_mode,
-                ends, factors, met[0], slope[0], levels, transition,
-                drive, brake, factor[i], extra[i], path_step, energy_step, period, unkept, bands, totals[i],
-            )  # fmt: skip
+            follow(start, stop, negligible[i], policy, chain, scenario, masses, unkept, bands, totals[i])
             if start == 0:
-                hand_over(heading, spans, handed, basis, fine_heading, fine_spans)
+                hand_over(masses.heading, masses.spans, handed, basis, fine.heading, fine.spans)
                 for n in range(node, min(node + ring, nodes + 1)):
-                    at, to = n % ring, (n - node) % ring
-                    hand_over_landed(arriving[at], landed[at], handed, basis, fine_arriving[to], fine_landed[to])
-                    hand_over_landed(mixing[at], landed[at], handed, basis, fine_mixing[to], fine_landed[to])
-        collect(arriving[nodes % ring], mixing[nodes % ring], heading, rest)
-        follow(
-            BEGIN, nodes - node, negligible[i], fine_heading, fine_arriving, fine_mixing, fine_memory, fine_scratch,
-            fine_spans, arrived, fine_landed, fine_policy, fine_decision_at, fine_speed, stage, pressure,
-            change_chain, chain_mode, fine_ends, factors, met[0],
-            np.ascontiguousarray(slope[0, :, :, node:]), levels, transition, fine_drive, fine_brake,
-            factor[i], extra[i], path_step, energy_step / times, period, unkept, bands, totals[i],
-        )  # fmt: skip
-        collect(fine_arriving[(nodes - node) % ring], fine_mixing[(nodes - node) % ring], fine_heading, late)
+                    hand_over_landed(masses, n % ring, handed, basis, fine, (n - node) % ring)
+        collect(masses, nodes, rest)
+        follow(BEGIN, nodes - node, negligible[i], fine_policy, fine_chain, to_exit, fine, unkept, bands, totals[i])
+        collect(fine, nodes - node, late)
         exits[i] = 0.0
         for j in range(late.shape[0]):
             exits[i, j] = late[j]
@@ -154,12 +131,14 @@ def hand_over(rows, spans, handed, basis, finer, finer_spans):
 
 
 @part
-def hand_over_landed(rows, landed, handed, basis, finer, finer_landed):
-    """The same for what has landed at a node: `rows` (H, L, E'), `landed` (H, 2) for all levels."""
-    for h in range(rows.shape[0]):
-        for q in range(rows.shape[1]):
-            begin, end = landed[h, 0], min(landed[h, 1], handed.shape[0])
-            refine_span(rows[h, q], begin, end, handed, basis, finer[h, q], finer_landed[h])
+def hand_over_landed(masses, at, handed, basis, fine, to):
+    """The same for what has landed at a node, number `at` in the rings of `masses` and `to` in those of `fine`."""
+    landed = masses.landed[at]
+    for rows, finer in ((masses.arriving[at], fine.arriving[to]), (masses.mixing[at], fine.mixing[to])):
+        for h in range(rows.shape[0]):
+            for q in range(rows.shape[1]):
+                begin, end = landed[h, 0], min(landed[h, 1], handed.shape[0])
+                refine_span(rows[h, q], begin, end, handed, basis, finer[h, q], fine.landed[to, h])
 
 
 @part

@@ -254,12 +254,13 @@ def put_at(row, points, position, mass):
 
 
 @part
-def shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, out):
-    """Energy change over quantum `n` at every mode and level, in cells of the grid; `out` (H, L)."""
+def shifts(n, chain, factor, extra, out):
+    """Energy change over quantum `n` of `chain` at every mode and level, in cells of the grid; `out` (H, L)."""
+    drive, brake, levels, pressure = chain.track.drive, chain.track.brake, chain.noise.levels, chain.modes.pressure
     for h in range(pressure.shape[0]):
         for q in range(levels.shape[0]):
             slope = drive[n] + extra - factor * (1.0 + levels[q]) * brake[n] * pressure[h]
-            out[h, q] = slope * path_step / energy_step
+            out[h, q] = slope * chain.grid.path_step / chain.grid.energy_step
 
 
 @part

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from synth.kernels.compiling import kernel, part, part_inline
+from synth.kernels.sweep.chain_arrays import Floats, Ints
 from synth.kernels.vector.packs import (
     SIXTEEN,
     choose,
@@ -23,19 +26,38 @@ STATE = 3 * SIXTEEN
 """Numbers of the state of a pack on its way: path, speed, and the energy that it left with, −1 before."""
 
 
+class Ground(NamedTuple):
+    """The path in steps of `fine` from 0 to S_exit: `work` (W + 1,) = ∫β ds, `gravity` (W,) means of g'(i − w)·1e-3."""
+
+    fine: float
+    work: Floats
+    gravity: Floats
+
+
+class Transients(NamedTuple):
+    """Changes of stage: `held` (C,) overpressure before, `overpressure` (C, ·) in the `steps` (C,) of `dt` seconds.
+
+    `shared` (C, 3): the transients in the order in which they are integrated; for each the one of them, integrated
+    before, with which it has its first steps in common, −1 for none, and how many these are.
+    """
+
+    held: Floats
+    overpressure: Floats
+    steps: Ints
+    shared: Ints
+    dt: float
+
+
 @kernel
-def land(
-    starts, lead, held, fine, work, gravity, overpressure, steps, shared, dt, factors, speed, ends
-):  # fmt: skip
+def land(starts, lead, ground, transients, factors, speed, ends):
     """Integrate every transient from every decision; results into `ends`.
 
-    Shapes: `starts` (R,) path of the decisions and `lead` (R,) path from there at the overpressure `held` (C,) before
-    the transient begins; `work` (W + 1,) = ∫β ds at steps of `fine` from 0 to S_exit, `gravity` (W,) means of
-    g'(i − w)·1e-3; `overpressure` (C, ·) in the `steps` (C,) of `dt` seconds; `factors` (F,) friction factors; `speed`
-    (E',), whole packs. `shared` (C, 3): the transients in the order in which they are integrated; for each the one of
-    them, integrated before, with which it has its first steps in common, −1 for none, and how many these are.
-    `ends` (R, C, F, 2, E'): path until the end of the transient, or to S_exit, −1 for a stall; and v²/2 there.
+    `starts` (R,) path of the decisions and `lead` (R,) path from there at the overpressure before the transient begins;
+    `factors` (F,) friction factors; `speed` (E',), whole packs. `ends` (R, C, F, 2, E'): path until the end of the
+    transient, or to S_exit, −1 for a stall; and v²/2 there.
     """
+    fine, work, gravity = ground
+    held, overpressure, steps, shared, dt = transients
     cells, points = gravity.shape[0], speed.shape[0]
     rise = np.empty(cells)
     for i in range(cells):

@@ -8,16 +8,18 @@ The same landings serve values backward (`transient_sweep` for many targets, `tr
 lies at the node before the landing, among values at a sample; group b at the node after it, among values before the
 noise level changes.
 
-Arguments shared by all: `ends` (R, C, F, 2, E') path and energy at the end of a transient over the equally spaced
-`factors` (F,), see `landing.land`; noise tables `probability`, `mean`, `std` (C, R, L, L); `met` of a scenario from
-`landing_tables`.
+Arguments as in `chain_arrays`.
 """
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from synth.kernels.compiling import kernel, part, part_inline
+from synth.kernels.sweep.chain_arrays import Ints
 from synth.kernels.sweep.flow import LINEAR_CELLS
 from synth.kernels.vector.packs import (
     EIGHT,
@@ -37,6 +39,43 @@ STALLED = -1
 """Stands for the place of a landing that is none: the cut stops in the transient. Its share is its first weight."""
 
 
+class Scratch(NamedTuple):
+    """Memory for one change of stage: `crossed`, `runs` of `find_runs`; `place`, `weight` of `store_plan`.
+
+    `runs` (E' + 1, 2): k-th run of energies, (first energy, quanta crossed or −1 for a stall), and one more that holds
+    the end of the last.
+    """
+
+    crossed: Ints
+    runs: Ints
+    place: Ints
+    weight: NDArray[Any]
+
+
+class Ahead(NamedTuple):
+    """The path from a node on: `left` quanta until S_exit, `extra` acceleration, `quanta`, `cells` of a unit of path
+    and of energy. `least_ahead` as of a change of stage."""
+
+    left: int
+    extra: float
+    quanta: float
+    cells: float
+    least_ahead: float
+
+
+class Ring(NamedTuple):
+    """Where rows of values or masses stand at the nodes ahead, `points` energies each and `row` places apart: those of
+    this node, and of the mode reached, from place `first` on, `stride` between nodes; from `wrap` nodes on it is
+    `wrapped` less."""
+
+    points: int
+    row: int
+    stride: int
+    first: int
+    wrap: int
+    wrapped: int
+
+
 @part
 def factor_weights(f, factors):
     """Quadratic interpolation in the friction factor: (nearest node, centre node, three weights)."""
@@ -48,13 +87,16 @@ def factor_weights(f, factors):
 
 
 @kernel
-def landing_tables(factor, extra, factors, probability, mean, std, levels, pressure, drive, brake, path_step):
+def landing_tables(chain, factor, extra):
     """What every plan of the scenarios `factor`, `extra` (I,) needs, worked out once: (met, slope).
 
-    `met` (I, C, R, L, L, 2, 6): share of each side of the two-point law of the friction met, and where its factor lies
-    among `factors` (`factor_weights`); `slope` (I, H, L, N) energy gained in a path quantum at a mode and level, with
-    `drive` (N,) acceleration without brakes, `brake` (N,) = β, `pressure` (H,) over-pressure.
+    `met` (I, ·, r, L, L, 2, 6): share of each side of the two-point law of the friction met, and where its factor lies
+    among those of the landings (`factor_weights`); `slope` (I, H, L, N) energy gained in a path quantum at a mode and
+    level.
     """
+    factors, (drive, brake) = chain.landings.factors, chain.track
+    probability, mean, std = chain.transient_noise
+    levels, pressure, path_step = chain.noise.levels, chain.modes.pressure, chain.grid.path_step
     met = np.empty((factor.shape[0], *mean.shape, 2, 6))
     slope = np.empty((factor.shape[0], pressure.shape[0], levels.shape[0], drive.shape[0]))
     for i in range(factor.shape[0]):
@@ -74,30 +116,49 @@ def landing_tables(factor, extra, factors, probability, mean, std, levels, press
 
 @kernel
 def landing_scratch(points, levels, kind):
-    """`crossed`, `runs` of `find_runs` for `points` E' energies; `place`, `weight` of `store_plan` for 2·L plans.
-
-    `kind`: of the weights, that of the numbers to be weighted.
-    """
-    return (
+    """Scratch for `points` E' energies and 2·L plans; `kind` of the weights is that of the numbers to be weighted."""
+    return Scratch(
         np.empty(points, np.int64), np.empty((points + 1, 2), np.int64),
         np.empty((2 * levels, 2, EIGHT), np.int64), np.empty((2 * levels, 2, 4, EIGHT), kind),
     )  # fmt: skip
 
 
 @part_inline
-def law_met(met, c, r, q, m, side):
-    """The numbers of `landing_tables` for one side of the law of the friction met."""
+def law_met(met, change, r, m, side):
+    """The numbers of `landing_tables` for one side of the law of the friction met over `r` quanta to level `m`."""
+    c, q = change.transient, change.level
     at = ((((c * met.shape[1] + r) * met.shape[2] + q) * met.shape[3] + m) * 2 + side) * 6
     nearest, centre = int(item(met, at + 1)), int(item(met, at + 2))
     return item(met, at), nearest, centre, item(met, at + 3), item(met, at + 4), item(met, at + 5)
 
 
 @part_inline
-def end_of_transient(ends, at, width, nearest, centre, low, middle, high):
-    """(path, energy, path of the nearest node) of a pack of energies; `at`: flat index of this node and transient.
+def first_end(ends, change):
+    """Flat index in `ends` of the first energy of a change of stage, at the first friction factor."""
+    return (change.decision * ends.shape[1] + change.transient) * ends.shape[2] * 2 * ends.shape[4]
+
+
+@part_inline
+def ahead_of(change, grid, scenario):
+    """The path that lies ahead of a change of stage."""
+    return Ahead(change.left, scenario.extra, 1.0 / grid.path_step, 1.0 / grid.energy_step, change.least_ahead)
+
+
+@part_inline
+def ring_from(change, rows, row, points):
+    """Where `rows` (ring, H, L, ·) stand for a change of stage; node n is at index n mod ring length."""
+    ring, modes, levels = rows.shape[0], rows.shape[1], rows.shape[2]
+    start, stride = change.node % ring, modes * levels * row
+    return Ring(points, row, stride, start * stride + change.mode * levels * row, ring - start, ring * stride)
+
+
+@part_inline
+def end_of_transient(ends, at, nearest, centre, low, middle, high):
+    """(path, energy) of a pack of energies; `at`: flat index of its decision, transient and first energy in `ends`.
 
     Quadratic in the friction factor through three nodes; if one of them stalls, the nearest node decides.
     """
+    width = ends.shape[4]
     before, here, after = at + 2 * (centre - 1) * width, at + 2 * centre * width, at + 2 * (centre + 1) * width
     t0, t1, t2 = load8(ends, before), load8(ends, here), load8(ends, after)
     path = t0 * low + t1 * middle + t2 * high
@@ -112,17 +173,16 @@ def end_of_transient(ends, at, width, nearest, centre, low, middle, high):
 
 
 @part
-def find_runs(decision, c, begin, end, factor, ends, factors, path_step, longest, crossed, runs):
-    """Runs of energies begin ≤ j < `end` that cross equally many path quanta in transient `c` of a decision at ξ_cut.
+def find_runs(change, begin, end, landings, grid, scenario, scratch):
+    """Runs of energies begin ≤ j < `end` that cross equally many path quanta at ξ_cut, in `scratch`; returns how many.
 
-    Returns how many; `runs`[k] = (first energy, quanta crossed or −1 for a stall), one more holding `end`.
+    The level that the change is at plays no part.
     """
-    points = ends.shape[4]
-    at = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * points
-    nearest, centre, low, middle, high = factor_weights(factor, factors)
-    quanta = 1.0 / path_step
+    crossed, runs, longest = scratch.crossed, scratch.runs, scenario.met.shape[1] - 1
+    at, quanta = first_end(landings.ends, change), 1.0 / grid.path_step
+    nearest, centre, low, middle, high = factor_weights(scenario.factor, landings.factors)
     for j in range(begin, end, EIGHT):
-        path, _ = end_of_transient(ends, at + j, points, nearest, centre, low, middle, high)
+        path, _ = end_of_transient(landings.ends, at + j, nearest, centre, low, middle, high)
         store(crossed, j, choose(path < 0.0, -1, least(whole(path * quanta + 1e-9), longest)))
     count = 0
     for j in range(begin, end):
@@ -134,20 +194,17 @@ def find_runs(decision, c, begin, end, factor, ends, factors, path_step, longest
 
 
 @part_inline
-def landing_of_pack(
-    ends, at, width, law, stalls, slope, left, extra, quanta, cells, points, stride, first, wrap, wrapped, least_ahead
-):
+def landing_of_pack(ends, at, law, stalls, level, slope, on_path, ring):
     """Plan the landings of a pack of energies: (place a, place b, weights a, weights b, quanta, lowest, highest).
 
-    `at`: flat index of node, transient and energy in `ends`, `width` = E'; `law` from `law_met`; `stalls`: whatever it
-    says; `slope` (·,) from this node on at the mode and level reached, `left` quanta until S_exit; `quanta`, `cells` of
-    a unit of path and of energy. Places count grid points of rows of `points` energies: `first` is that of this node at
-    the mode and level reached, `stride` between nodes, which live in a ring: from `wrap` nodes on it is `wrapped` less.
-    `least_ahead`: least share of what lands that is decided on at the node ahead of it, 0 or 1.
+    `at`: flat index of decision, transient and energy in `ends`; `law` from `law_met`; `stalls`: whatever it says;
+    `level` reached; `slope` (·,) from this node on at the mode and level reached; `on_path` from `ahead_of`.
     The landings lie between `lowest` and `highest` in cells, at the node after so many `quanta` and at the next one.
     """
+    left, extra, quanta, cells, least_ahead = on_path
+    points, row, stride, first, wrap, wrapped = ring
     share, nearest, centre, low, middle, high = law
-    path, e = end_of_transient(ends, at, width, nearest, centre, low, middle, high)
+    path, e = end_of_transient(ends, at, nearest, centre, low, middle, high)
     e = e + path * extra
     ahead = path * quanta
     crossed = whole(ahead + 1e-9)
@@ -172,7 +229,7 @@ def landing_of_pack(
         part = greatest(x, least_ahead)
         share_b = part * share
         share_a = (1.0 - part) * share
-    row_a = crossed * stride + first
+    row_a = crossed * stride + (first + level * row)
     row_b = choose(crossed >= wrap - 1, row_a - (wrapped - stride), row_a + stride)
     row_a = choose(crossed >= wrap, row_a - wrapped, row_a)
     lowest, highest = least(back, forth), greatest(back, forth)

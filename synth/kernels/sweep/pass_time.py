@@ -5,17 +5,19 @@ between two nodes, or in the same quantum, and is met at either with a chance; a
 quantum before it, a wait costs one period in the mean. A change of stage takes its whole samples, and of the quantum in
 which it ends what the place of its next decision is ahead or behind; or the path to the exit over the mean speed.
 
-`prices` = (of a command (T,), of a second (T,), `quantum` (N,) widths, `left` (N,) path from each node to the exit,
-`duration` (C,) of the transients, `lead` (R,) path from a decision to where its command leaves). The T targets are one
-or whole packs of eight.
+The T targets are one or whole packs of eight.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
+
+from numpy.typing import NDArray
 
 from synth.kernels.compiling import part, part_inline
-from synth.kernels.sweep.landing_plan import end_of_transient, law_met
+from synth.kernels.sweep.chain_arrays import Floats
+from synth.kernels.sweep.landing_plan import ahead_of, end_of_transient, first_end, law_met
 from synth.kernels.vector.packs import (
     EIGHT,
     choose,
@@ -31,13 +33,42 @@ from synth.kernels.vector.packs import (
 )
 
 
+class Times(NamedTuple):
+    """Of a chain: `quantum_m` widths and `left_m` path from each node to the exit (N,); `duration_s` of the transients;
+    `lead_m` (R,) path from a decision to where its command leaves."""
+
+    quantum_m: Floats
+    left_m: Floats
+    duration_s: Floats
+    lead_m: Floats
+
+
+class Prices(NamedTuple):
+    """What a `command` costs, and a `second` (T,), in the type of the values; `times` that they are paid for."""
+
+    command: NDArray[Any]
+    second: NDArray[Any]
+    times: Times
+
+
+class Costs(NamedTuple):
+    """What a policy is judged by: `terminal` cost by exit energy, `stalled` of a stall, and prices on the way.
+
+    Of T targets side by side: `terminal` (E·T,), `stalled` (T,). Of one: (E,), and a number.
+    """
+
+    terminal: NDArray[Any]
+    stalled: Any
+    prices: Prices
+
+
 @part
-def add_quantum_times(n, prices, speed, shift, energy_step, first, last, ahead, spent):
+def add_quantum_times(n, prices, grid, shift, first, last, ahead, spent):
     """Add the price of the time over quantum `n` to all rows of `ahead` (M, H, L, E·T) but the first.
 
     Energies first ≤ j < last; `shift` (H, L) in cells of energy; `spent` (E,) is scratch.
     """
-    price, twice = prices[1], 2.0 * prices[2][n]
+    price, twice, speed, energy_step = prices.second, 2.0 * prices.times.quantum_m[n], grid.speed, grid.energy_step
     if not is_priced(price):
         return
     for h in range(shift.shape[0]):
@@ -50,19 +81,17 @@ def add_quantum_times(n, prices, speed, shift, energy_step, first, last, ahead, 
 
 
 @part
-def add_change_times(
-    n, decision, last, c, q, runs, count, mode, ends, met, slope, least_ahead,
-    extra, path_step, prices, speed, scratch, out,
-):  # fmt: skip
-    """Add the price of the expected time of transient `c` to `out` (E·T,), in all energies of the `runs`.
+def add_change_times(change, count, ends, grid, scenario, prices, runs, scratch, out):
+    """Add the price of the expected time of a change of stage to `out` (E·T,), in all energies of the `count` `runs`.
 
-    `speed` (E,); `scratch` (16,); the rest as in `transient_sweep`. What stalls takes no time: the stall has its price.
+    `scratch` (16,); the rest as in `transient_sweep`. What stalls takes no time: the stall has its price.
     """
-    price = prices[1]
+    price, times, met, slope = prices.second, prices.times, scenario.met, scenario.slope
     if not is_priced(price):
         return
-    size, row, points = met.shape[3], ends.shape[4], speed.shape[0]
-    at, quanta = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * row, 1.0 / path_step
+    size, speed, points = met.shape[3], grid.speed, grid.speed.shape[0]
+    at, on_path = first_end(ends, change), ahead_of(change, grid, scenario)
+    inside = times.duration_s[change.transient], times.lead_m[change.decision]
     for k in range(count):
         stop, over = runs[k + 1, 0], runs[k, 1]
         for j in range(runs[k, 0], stop if over >= 0 else 0, EIGHT):
@@ -71,10 +100,11 @@ def add_change_times(
             spent = eight(0.0)
             for m in range(size):
                 for side in range(2):
-                    law = law_met(met, c, over, q, m, side)
+                    law = law_met(met, change, over, m, side)
                     spent = spent + time_of_pack(
-                        ends, at + j, row, law, slope[mode, m, n:], last - n, extra, quanta, least_ahead,
-                        prices[2][n:], prices[3][n], prices[4][c], prices[5][decision], load8(scratch, EIGHT), speed[1],
+                        ends, at + j, law, slope[change.mode, m, change.node :], on_path,
+                        times.quantum_m[change.node :], times.left_m[change.node], inside, load8(scratch, EIGHT),
+                        speed[1],
                     ) * law[0]  # fmt: skip
             store(scratch, 0, spent)
             add_priced(scratch, price, -j, j, min(stop, j + EIGHT), out)
@@ -103,15 +133,16 @@ def add_priced(spent, price, at, first, last, out):
 
 
 @part_inline
-def time_of_pack(
-    ends, at, width, law, slope, left, extra, quanta, least_ahead, quantum, left_m, duration, lead, v, slowest
-):
+def time_of_pack(ends, at, law, slope, on_path, quantum, left_m, inside, v, slowest):
     """Time from a decision at speeds `v` until the next one after its change of stage, or until the exit.
 
-    Landings as in `landing_plan.landing_of_pack`; `slowest`: no speed on the way to the next decision counts as less.
+    Landings as in `landing_plan.landing_of_pack`; `quantum` (·,) widths from this node on; `inside`: duration of the
+    transient and lead of its command; `slowest`: no speed on the way to the next decision counts as less.
     """
+    left, extra, quanta, _, least_ahead = on_path
+    duration, lead = inside
     _, nearest, centre, low, middle, high = law
-    path, e = end_of_transient(ends, at, width, nearest, centre, low, middle, high)
+    path, e = end_of_transient(ends, at, nearest, centre, low, middle, high)
     e = greatest(e + path * extra, 0.0)
     ahead = path * quanta
     crossed = least(greatest(whole(ahead + 1e-9), 0), left)
@@ -121,5 +152,5 @@ def time_of_pack(
     v_end = root(e * 2.0)
     v_ahead = root(greatest(e + gather(slope, end) * (1.0 - x), 0.0) * 2.0)
     wait = (part - x) * gather(quantum, end) * 2.0 / greatest(v_end + v_ahead, slowest)
-    inside = wait + duration + eight(lead) / v
-    return choose(path < 0.0, 0.0, choose(leaves, eight(2.0 * left_m) / (v + v_end), inside))
+    until_next = wait + duration + eight(lead) / v
+    return choose(path < 0.0, 0.0, choose(leaves, eight(2.0 * left_m) / (v + v_end), until_next))

@@ -7,11 +7,14 @@ nodes around it) or to go up (then the next sample is at the end of the transien
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from synth.kernels.compiling import kernel, part
+from synth.kernels.sweep.chain_arrays import Floats, Ints, Scenario, change_at
 from synth.kernels.sweep.flow import NO_MASS, add_row, clear, extent, push, shifts, widen
-from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
+from synth.kernels.sweep.landing_plan import Scratch, landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
 from synth.kernels.sweep.transient import spread_changes
 from synth.kernels.vector.packs import (
@@ -37,80 +40,101 @@ MATTERS = 1e-3
 """Energies at which no state has this share of the negligible mass are not looked at."""
 
 
-@kernel
-def forward(
-    policy, decision_at, entry, entry_mode, speed, stage, pressure, change_chain, chain_mode,
-    ends, factors, probability, mean, std, levels, transition, stationary,
-    drive, brake, factor, extra, path_step, energy_step, period, density, band, exits, totals,
-):  # fmt: skip
-    """Density of sampled states, and the distribution at the exit, in the scenarios `factor`, `extra` (I,).
+class Masses(NamedTuple):
+    """Masses of one scenario, and memory to move them.
 
-    `policy` (C, R, K + 1, E) probability of each command, behind which a pack may be read; command 2·d − 2 goes down,
-    2·d − 1 up by d stages. `decision_at` (N,): number of the decision at a node, R or more where there is none; `entry`
-    (M + 1, E): probability of entering with speed j and having the first sample at node r, `entry_mode` the mode at
-    rest then; the rest as in `flow` and `transient`. Where the next decision is a place, `period` is 0.
+    `heading` (M + 1, H, L, E') is on its way to samples at this node and those ahead; `arriving`, `mixing`
+    (ring, H, L, E') come from changes of stage, after and before the noise level changes. Most states are empty, and it
+    is known which: `spans` (M + 1, H, L, 2) ranges of energies out of which `heading` is zero, `landed` (ring, H, 2)
+    the same of the rings, `arrived` (H, L, 2) of what matters of the arrivals at this node.
+    """
+
+    heading: Floats
+    spans: Ints
+    arriving: Floats
+    mixing: Floats
+    landed: Ints
+    arrived: Ints
+    moved: Floats
+    mass: Floats
+    quanta: Floats
+    chance: Floats
+    shift: Floats
+    scratch: Scratch
+
+
+@kernel
+def empty_masses(chain, commands):
+    """Memory for policies of so many commands."""
+    modes, size, row = chain.modes.stage.shape[0], chain.noise.levels.shape[0], chain.landings.ends.shape[4]
+    reach, ring = chain.entry.shape[0], chain.transient_noise.mean.shape[1] + 3
+    return Masses(
+        np.zeros((reach, modes, size, row)), np.zeros((reach, modes, size, 2), np.int64),
+        np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, row)), np.zeros((ring, modes, 2), np.int64),
+        np.zeros((modes, size, 2), np.int64), np.zeros(row), np.zeros(row), np.ones(row), np.zeros((commands, row)),
+        np.empty((modes, size)), landing_scratch(row, size, chain.grid.speed.dtype),
+    )  # fmt: skip
+
+
+@part
+def without_mass(masses):
+    """Nothing is on its way any more; the rings are left empty by every pass."""
+    masses.heading[:], masses.spans[:], masses.landed[:] = 0.0, 0, 0
+
+
+@part
+def begin_pass(chain, masses):
+    """All cuts stand where the pass begins."""
+    without_mass(masses)
+    entry, mode, stationary = chain.entry, chain.modes.entry, chain.noise.stationary
+    for r in range(entry.shape[0]):
+        for q in range(stationary.shape[0]):
+            for j in range(entry.shape[1]):
+                masses.heading[r, mode, q, j] = entry[r, j] * stationary[q]
+            masses.spans[r, mode, q, 1] = entry.shape[1]
+
+
+@kernel
+def forward(policy, chain, scenarios, density, band, exits, totals):
+    """Density of sampled states, and the distribution at the exit, in all `scenarios`.
+
+    `policy` (C, R, K + 1, E) probability of each command, behind which a pack may be read; the rest as in
+    `chain_arrays`.
     Outputs: `density` (I, R, H, L, E) expected number of samples at each decision and state, or (I, 0, 0, 0, 0); `band`
     (I, N, 2) range of energies that are met at a node; `exits` (I, E) exit probability by energy; `totals` (I, 4):
     stalled mass, escaped mass, changes down, changes up.
     """
-    modes, size, points, row = pressure.shape[0], levels.shape[0], speed.shape[0], ends.shape[4]
-    reach, ring = entry.shape[0], probability.shape[1] + 3
-    heading = np.empty((reach, modes, size, row))
-    arriving, mixing = np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, row))
-    chance = np.zeros((policy.shape[0], row))
-    memory = np.zeros(row), np.zeros(row), np.ones(row), chance, np.empty((modes, size))
-    spans, arrived = np.empty((reach, modes, size, 2), np.int64), np.zeros((modes, size, 2), np.int64)
-    landed = np.empty((ring, modes, 2), np.int64)
-    scratch = landing_scratch(row, size, speed.dtype)
+    factor, extra = scenarios
+    masses, nodes = empty_masses(chain, policy.shape[0]), chain.track.drive.shape[0]
     for i in range(factor.shape[0]):
-        met, slope = landing_tables(
-            factor[i : i + 1], extra[i : i + 1], factors, probability, mean, std,
-            levels, pressure, drive, brake, path_step,
-        )  # fmt: skip
-        heading[:], spans[:], landed[:] = 0.0, 0, 0
-        for r in range(reach):
-            for q in range(size):
-                for j in range(points):
-                    heading[r, entry_mode, q, j] = entry[r, j] * stationary[q]
-                spans[r, entry_mode, q, 1] = points
+        met, slope = landing_tables(chain, factor[i : i + 1], extra[i : i + 1])
+        scenario = Scenario(factor[i], extra[i], met[0], slope[0])
+        begin_pass(chain, masses)
         totals[i] = 0.0
-        follow(
-            BEGIN, drive.shape[0], NEGLIGIBLE_MASS, heading, arriving, mixing, memory, scratch, spans, arrived, landed,
-            policy, decision_at, speed, stage, pressure, change_chain, chain_mode,
-            ends, factors, met[0], slope[0], levels, transition,
-            drive, brake, factor[i], extra[i], path_step, energy_step, period, density[i], band[i], totals[i],
-        )  # fmt: skip
-        collect(arriving[drive.shape[0] % ring], mixing[drive.shape[0] % ring], heading, exits[i])
+        follow(BEGIN, nodes, NEGLIGIBLE_MASS, policy, chain, scenario, masses, density[i], band[i], totals[i])
+        collect(masses, nodes, exits[i])
 
 
 @part
-def follow(
-    start, stop, negligible, heading, arriving, mixing, memory, scratch, spans, arrived, landed,
-    policy, decision_at, speed, stage, pressure, change_chain, chain_mode,
-    ends, factors, met, slope, levels, transition,
-    drive, brake, factor, extra, path_step, energy_step, period, density, band, totals,
-):  # fmt: skip
-    """One scenario from node `start` to node `stop`: masses on their way (`heading`) and after transients (`arriving`,
-    `mixing`: rings), which stand at `start` before and at `stop` after.
+def follow(start, stop, negligible, policy, chain, scenario, masses, density, band, totals):
+    """One scenario from node `start`, where `masses` stand before, to node `stop`, where they stand after.
 
-    Most states are empty, and it is known which: `spans` (M + 1, H, L, 2) ranges of energies out of which `heading` is
-    zero, `landed` (ring, H, 2) the same of the rings, `arrived` (H, L, 2) of what matters of the arrivals at this node.
     The rings are zero behind the node that is reached. A state with less than `negligible` mass is left out. `totals`
     (4,) are added to.
     """
-    moved, mass, quanta, chance, shift = memory
-    nodes, reach, ring = drive.shape[0], heading.shape[0], arriving.shape[0]
-    modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
-    first, last, least_ahead = 0, points, 0.0 if period > 0.0 else 1.0
+    heading, spans, arriving, mixing, landed, arrived, moved, mass, quanta, chance, shift, scratch = masses
+    grid, landings, stage, transition = chain.grid, chain.landings, chain.modes.stage, chain.noise.transition
+    reach, ring, points, period = heading.shape[0], arriving.shape[0], grid.speed.shape[0], chain.period
+    modes, size, first, last = stage.shape[0], transition.shape[0], 0, points
     commands, decisions = policy.shape[0], policy.shape[1]
     for n in range(start, stop):
-        decision = decision_at[n]
+        decision = chain.decision_at[n]
         decides = decision < decisions
         here, mixed = arriving[n % ring], mixing[n % ring]
         find_arrivals(here, mixed, transition, landed[n % ring], MATTERS * negligible, arrived)
         first, last = occupied(heading, spans, arrived, points, MATTERS * negligible)
         band[n, 0], band[n, 1] = first, last
-        shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, shift)
+        shifts(n, chain, scenario.factor, scenario.extra, shift)
         lowest = max(first, 1)
         for h in range(modes):
             k = stage[h]
@@ -119,15 +143,15 @@ def follow(
                 begin, end = masses_at_sample(
                     here[h, q], arrived[h, q], heading[0, h, q], spans[0, h, q], lowest, last, negligible, mass
                 )
-                acceleration = shift[h, q] * energy_step / path_step
-                quanta_to_next_sample(speed, begin, end, acceleration, period, path_step, quanta)
+                acceleration = shift[h, q] * grid.energy_step / grid.path_step
+                quanta_to_next_sample(grid.speed, begin, end, acceleration, period, grid.path_step, quanta)
                 told = (decision * policy.shape[2] + k) * points if decides else -1
                 go_on(mass, policy, told, chance, quanta, begin, end, negligible, heading, spans, h, q)
                 if density.shape[0] > 0 and decides:
                     for j in range(lowest, last):
                         density[decision, h, q, j] = mass[j] if begin <= j < end else 0.0
                 for command in range(commands if decides else 0):
-                    c, side = change_chain[command, h], command % 2
+                    c, side = landings.change_chain[command, h], command % 2
                     share = chance[command]
                     low, high = extent(share, begin, end, negligible)
                     if c < 0 or low >= high:
@@ -137,8 +161,8 @@ def follow(
                         changes += share[j]
                     totals[2 + side] = changes
                     totals[0] += spread_changes(
-                        share, n, decision, nodes, c, q, low, high, factor, chain_mode[c], ends, factors, met, slope,
-                        least_ahead, extra, path_step, energy_step, points, arriving, mixing, landed, scratch,
+                        share, change_at(chain, n, decision, q, c), low, high, landings, grid, scenario, arriving,
+                        mixing, landed, scratch,
                     )  # fmt: skip
         clear_landed(here, mixed, landed[n % ring])
         for r in range(1, reach):
@@ -257,8 +281,10 @@ def clear_spans(rows, spans):
 
 
 @part
-def collect(arriving, mixing, heading, exits):
-    """Sum all mass at the exit over modes and levels into `exits` (E,), and leave the rings empty."""
+def collect(masses, nodes, exits):
+    """Sum all mass at the exit, node `nodes`, over modes and levels into `exits` (E,), and leave the rings empty."""
+    ring, heading = masses.arriving.shape[0], masses.heading
+    arriving, mixing = masses.arriving[nodes % ring], masses.mixing[nodes % ring]
     exits[:] = 0.0
     for h in range(arriving.shape[0]):
         for q in range(arriving.shape[1]):

@@ -4,16 +4,24 @@
 the same plan (`landing_plan`), so that they are transposes of one another.
 
 Values and masses live in rings over the path: node n is at index n mod ring length, the exit node N too. Rows hold
-E' ≥ E energies. Further arguments, the same for both: `n`, `decision`, `c`, `q` node, its decision, transient, noise
-level; begin ≤ j < end the energies; `factor` ξ_cut; `mode` reached; `met`, `slope` of the scenario from
-`landing_plan.landing_tables`; `scratch` from `landing_plan.landing_scratch`; the rest as in `landing_plan`.
+E' ≥ E energies; begin ≤ j < end are those that change the stage. Further arguments as in `chain_arrays`, and `scratch`
+from `landing_plan.landing_scratch`.
 """
 
 from __future__ import annotations
 
 from synth.kernels.compiling import part, part_inline
 from synth.kernels.sweep.flow import widen
-from synth.kernels.sweep.landing_plan import find_runs, landing_of_pack, law_met, planned, store_plan
+from synth.kernels.sweep.landing_plan import (
+    ahead_of,
+    find_runs,
+    first_end,
+    landing_of_pack,
+    law_met,
+    planned,
+    ring_from,
+    store_plan,
+)
 from synth.kernels.vector.packs import (
     EIGHT,
     add_to,
@@ -30,19 +38,16 @@ from synth.kernels.vector.packs import (
 
 
 @part
-def spread_changes(
-    share, n, decision, last, c, q, begin, end, factor, mode, ends, factors, met, slope, least_ahead,
-    extra, path_step, energy_step, points, arriving, mixing, landed, scratch,
-):  # fmt: skip
+def spread_changes(share, change, begin, end, landings, grid, scenario, arriving, mixing, landed, scratch):
     """Spread the masses `share` (E',) over `arriving` and `mixing` (ring, H, L, E'); returns the mass that stalls.
 
     `landed` (ring, H, 2): ranges of energies out of which both are zero, widened.
     """
-    crossed, runs, place, weight = scratch
-    ring, modes, size, row = arriving.shape
-    at, stride = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
-    quanta, cells, start = 1.0 / path_step, 1.0 / energy_step, n % ring
-    count = find_runs(decision, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
+    _, runs, place, weight = scratch
+    ends, met, slope, points = landings.ends, scenario.met, scenario.slope, grid.speed.shape[0]
+    size, row, at, last = arriving.shape[2], arriving.shape[3], first_end(ends, change), change.node + change.left
+    on_path, ring = ahead_of(change, grid, scenario), ring_from(change, arriving, row, points)
+    count = find_runs(change, begin, end, landings, grid, scenario, scratch)
     stalled = 0.0
     bottom, top = eight(points), eight(0.0)
     soonest, latest = whole(eight(last)), whole(top)
@@ -52,11 +57,10 @@ def spread_changes(
             for j in range(runs[k, 0], stop, EIGHT):
                 mass = load8(share, j)
                 for m in range(size):
-                    law = law_met(met, c, max(over, 0), q, m, side)
+                    law = law_met(met, change, max(over, 0), m, side)
                     at_a, at_b, a, b, by, lowest, highest = landing_of_pack(
-                        ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
-                        stride, start * stride + (mode * size + m) * row, ring - start, ring * stride, least_ahead,
-                    )  # fmt: skip
+                        ends, at + j, law, over < 0, m, slope[change.mode, m, change.node :], on_path, ring
+                    )
                     a = a[0] * mass, a[1] * mass, a[2] * mass, a[3] * mass
                     b = b[0] * mass, b[1] * mass, b[2] * mass, b[3] * mass
                     store_plan(at_a, at_b, a, b, m, place, weight)
@@ -74,7 +78,7 @@ def spread_changes(
     store(place, EIGHT, latest)
     store(weight, 0, bottom)
     store(weight, EIGHT, top)
-    widen_landed(place, weight, n, last, points, landed[:, mode])
+    widen_landed(place, weight, change.node, last, points, landed[:, change.mode])
     return stalled
 
 
@@ -100,30 +104,25 @@ def widen_landed(quanta, cells, n, last, points, landed):
 
 
 @part
-def change_values(
-    n, decision, last, c, q, begin, end, factor, mode, ends, factors, met, slope, least_ahead,
-    extra, path_step, energy_step, points, values, mixed, stalled, scratch, out,
-):  # fmt: skip
-    """`out`[begin:end] (E',) = expected value after transient `c`; `values`, `mixed` (ring, H, L, E').
+def change_values(change, begin, end, landings, grid, scenario, values, mixed, stalled, scratch, out):
+    """`out`[begin:end] (E',) = expected value after the change; `values`, `mixed` (ring, H, L, E').
 
     What follows in `out` within a pack is overwritten too. Returns how many runs of energies `scratch` holds.
     """
-    crossed, runs, _, _ = scratch
-    ring, modes, size, row = values.shape
-    at, stride = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
-    quanta, cells, start = 1.0 / path_step, 1.0 / energy_step, n % ring
-    count = find_runs(decision, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
+    runs, ends, met, slope = scratch.runs, landings.ends, scenario.met, scenario.slope
+    size, at, on_path = values.shape[2], first_end(ends, change), ahead_of(change, grid, scenario)
+    ring = ring_from(change, values, values.shape[3], grid.speed.shape[0])
+    count = find_runs(change, begin, end, landings, grid, scenario, scratch)
     for k in range(count):
         over = runs[k, 1]
         for j in range(runs[k, 0], runs[k + 1, 0], EIGHT):
             total = eight(0.0)
             for m in range(size):
                 for side in range(2):
-                    law = law_met(met, c, max(over, 0), q, m, side)
+                    law = law_met(met, change, max(over, 0), m, side)
                     at_a, at_b, a, b, _, _, _ = landing_of_pack(
-                        ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
-                        stride, start * stride + (mode * size + m) * row, ring - start, ring * stride, least_ahead,
-                    )  # fmt: skip
+                        ends, at + j, law, over < 0, m, slope[change.mode, m, change.node :], on_path, ring
+                    )
                     stopped = at_a < 0
                     at_a = greatest(at_a, 0)
                     landed, crossing = gather_four(values, at_a), gather_four(mixed, at_b)

@@ -7,35 +7,38 @@ Where a cut lands does not depend on the target speed; only the value there does
 from __future__ import annotations
 
 from synth.kernels.compiling import part, part_inline
-from synth.kernels.sweep.landing_plan import landing_of_pack, law_met, planned, store_plan
+from synth.kernels.sweep.landing_plan import (
+    ahead_of,
+    first_end,
+    landing_of_pack,
+    law_met,
+    planned,
+    ring_from,
+    store_plan,
+)
 from synth.kernels.vector.packs import EIGHT, item, load8, store
 
 
 @part
-def add_transient_values(
-    n, decision, last, c, q, runs, count, mode, ends, met, slope, least_ahead,
-    extra, path_step, energy_step, values, mixed, stalled, place, weight, out,
-):  # fmt: skip
-    """Add to `out` (E·T,) the expected value after transient `c` from node `n`, number `decision`, and noise level `q`.
+def add_transient_values(change, count, ends, grid, scenario, values, mixed, stalled, scratch, out):
+    """Add to `out` (E·T,) the expected value after a change of stage.
 
     `values` (ring, H, L, E·T) at a sample and `mixed` before the noise level changes; `stalled` (T,), T whole packs of
-    eight; `runs`, `count` from `find_runs`; `place`, `weight` are scratch; the rest as in `landing_plan`.
+    eight; `count` runs in `scratch`, from `find_runs`; the rest as in `chain_arrays`.
     """
-    ring, modes, size = values.shape[0], values.shape[1], values.shape[2]
-    width, row = stalled.shape[0], ends.shape[4]
-    points = out.shape[0] // width
-    at = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * row
-    quanta, cells, start, stride = 1.0 / path_step, 1.0 / energy_step, n % ring, modes * size * points
+    _, runs, place, weight = scratch
+    size, width, points = values.shape[2], stalled.shape[0], grid.speed.shape[0]
+    at, met, slope = first_end(ends, change), scenario.met, scenario.slope
+    on_path, ring = ahead_of(change, grid, scenario), ring_from(change, values, points, points)
     for k in range(count):
         stop, over = runs[k + 1, 0], runs[k, 1]
         for j in range(runs[k, 0], stop, EIGHT):
             for m in range(size):
                 for side in range(2):
-                    law = law_met(met, c, max(over, 0), q, m, side)
+                    law = law_met(met, change, max(over, 0), m, side)
                     at_a, at_b, a, b, _, _, _ = landing_of_pack(
-                        ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
-                        stride, start * stride + (mode * size + m) * points, ring - start, ring * stride, least_ahead,
-                    )  # fmt: skip
+                        ends, at + j, law, over < 0, m, slope[change.mode, m, change.node :], on_path, ring
+                    )
                     store_plan(at_a * width, at_b * width, a, b, 2 * m + side, place, weight)
             for lane in range(min(stop - j, EIGHT)):
                 add_planned(place, weight, lane, 2 * size, width, stalled, values, mixed, out, (j + lane) * width)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from plant_models import Plant, path_coefficients
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import Actuator
-from synth.kernels.sweep.landing import land
+from synth.kernels.sweep.landing import Ground, Transients, land
 from synth.kernels.vector.packs import EIGHT, SIXTEEN
 from synth.solver.chain.decisions import Decisions, steps_of
 from synth.solver.chain.grid import Grid
@@ -96,10 +96,10 @@ def make_landings(
     speed = in_whole_packs(grid.speed_m_s)
     ends = np.empty((len(decisions), len(used), len(factors), 2, len(speed)))
     length_m = (len(grid.path_m) - 1) * grid.path_step_m
-    land(
-        decisions.place_m, decisions.lead_m, np.array(held), length_m / len(drive), work, drive, overpressure, steps,
-        shared_beginnings(overpressure, steps, held), period_s / actuator.substeps, factors, speed, ends,
-    )  # fmt: skip
+    shared = shared_beginnings(overpressure, steps, held)
+    transients = Transients(np.array(held), overpressure, steps, shared, period_s / actuator.substeps)
+    ground = Ground(length_m / len(drive), work, drive)
+    land(decisions.place_m, decisions.lead_m, ground, transients, factors, speed, ends)
     if not isinstance(grid.stretch, float):
         for decision, node in enumerate(decisions.node):
             ends[decision, :, :, 0] = grid.counted_m(node, ends[decision, :, :, 0])
