@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.kernels.any_time.period import ROOM, look_ahead, push_period, push_row
+from synth.kernels.any_time.period import ROOM, NodesAhead, look_ahead, push_period, push_row
 from synth.kernels.compiling import kernel, part
 from synth.kernels.sweep.flow import add_row, clear, extent, widen
 from synth.kernels.vector.normal_packs import normal_cdf8
@@ -22,43 +22,36 @@ LEAST_CHANCE = 1e-300
 
 
 @kernel
-def occupy(
-    lines, reading, noise, periods, kpa, way, target, share, entry, entry_way, entry_kpa, stationary,
-    mixing, factor, extra, motion, path, heading, here, negligible, keep, records, band, where, way_band, exits, totals,
-):  # fmt: skip
-    """One forward pass; returns the records of the states that were met if `keep`: `records`, or a longer array.
+def occupy(policy, chain, factor, extra, heading, here, negligible, keep, met, exits, totals):
+    """One forward pass; returns the records of the states that were met if `keep`: those of `met`, or a longer array.
 
-    `lines` (2, N, M): below and above them the command is down and up, in readings; `reading` (E',) of the true speeds,
-    with errors of std `noise` (N,). `periods` (M, 3): period that follows a command in a mode, −1 where it is none; of
-    each period `kpa` (D,) mean overpressure and `way` (D,); of each way `target`, `share` (W, 4) modes and shares.
-    `entry` (A, E): probability of entering with energy j and having the first sample at node r, `entry_way` and the
-    pressure `entry_kpa` until then. `stationary` (L,), `mixing` (L, L, E') of the path noise after a period; `factor`
-    (L,) of the friction by level; `extra` acceleration; `motion`, `path` as of `look_ahead`. `heading`
-    (W, L, ring, E') and `here` (M, L, E') are zeros, and are left so. Energies of a state beyond which no mass is
-    larger than `negligible` are left out.
-    Outputs: `band` (N, M, 2), `way_band` (N, W, 2): ranges of energies met; `where` (N, M): begin of a mode's record,
-    which is whole packs from the first energy on: the density of every level, the chances of down and up; `exits` (E,)
-    by energy; `totals` (4,): stalled, escaped, changes down, changes up.
+    `factor` (L,) of the friction by level; `extra` acceleration. `heading` (W, L, ring, E') and `here` (M, L, E') are
+    zeros, and are left so. Energies of a state beyond which no mass is larger than `negligible` are left out. The rest
+    as in `sampled_arrays`.
+    Outputs: `met`; `exits` (E,) by energy; `totals` (4,): stalled, escaped, changes down, changes up.
     """
+    (lines, reading, noise), (records, band, where, way_band) = policy, met
+    (periods, kpa, way, target, share), (entry, entry_way, entry_kpa) = chain.periods, chain.entry
+    stationary, mixing, motion = chain.stationary, chain.mixing, chain.motion
     nodes, modes, levels = lines.shape[1], lines.shape[2], factor.shape[0]
     points, (ways, _, ring, row) = exits.shape[0], heading.shape
     spans = np.zeros((ways, levels, ring, 2), np.int64)
     spans[:, :, :, 0] = points
     moved, scratch = np.zeros((levels, row)), np.zeros((3, row + 2 * ROOM))
     span, chance = np.zeros((modes, 2), np.int64), np.zeros((3, row))
-    reach = max(motion[4].shape[0], entry.shape[0])
-    of_node, free, braking = np.zeros(reach, np.int64), np.zeros(reach), np.zeros(reach)
+    reach = max(motion.bands.shape[0], entry.shape[0])
+    ahead = NodesAhead(np.zeros(reach, np.int64), np.zeros(reach), np.zeros(reach))
     used = 0
     totals[:], exits[:] = 0.0, 0.0
-    look_ahead(0, extra, motion, path, ring, of_node, free, braking)
+    look_ahead(0, extra, motion, ring, ahead)
     for r in range(entry.shape[0]):
         for q in range(levels):
             for j in range(points):
                 scratch[0, j] = entry[r, j] * stationary[q]
-            shift = free[r] - entry_kpa * factor[q] * braking[r]
+            shift = ahead.free[r] - entry_kpa * factor[q] * ahead.braking[r]
             push_row(scratch[0, 1:points], 1, shift, points, heading[entry_way, q, r], spans[entry_way, q, r])
     for n in range(nodes):
-        look_ahead(n, extra, motion, path, ring, of_node, free, braking)
+        look_ahead(n, extra, motion, ring, ahead)
         gather_arrivals(n % ring, points, heading, spans, target, share, here, span, way_band[n], totals)
         for m in range(modes):
             band[n, m] = 0
@@ -81,8 +74,8 @@ def occupy(
                     continue
                 for q in range(levels):
                     push_period(
-                        (of_node, free, braking), kpa[d] * factor[q], motion, moved[q], chance[command], begin, end,
-                        heading[way[d], q], spans[way[d], q], scratch,
+                        ahead, kpa[d] * factor[q], motion, moved[q], chance[command], begin, end, heading[way[d], q],
+                        spans[way[d], q], scratch,
                     )  # fmt: skip
                     if command != HOLD:
                         totals[2 + command // 2] += product(moved[q], chance[command], begin, end)

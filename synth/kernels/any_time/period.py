@@ -9,8 +9,11 @@ depend on them. So all speeds whose periods end near the same node are three con
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
+from synth.kernels.any_time.sampled_arrays import Floats, Ints
 from synth.kernels.compiling import part, part_inline
 from synth.kernels.sweep.flow import LINEAR_CELLS, put_at, stencil, stencil_row, take
 from synth.kernels.vector.packs import EIGHT, eight, greatest, load8, store
@@ -23,32 +26,39 @@ NEAREST = 2
 are a little slower than they are, at speeds below ΔS/T_c."""
 
 
-@part_inline
-def look_ahead(n, extra, motion, path, ring, of_node, free, braking):
-    """What lies within a period of node `n`: written to `of_node`, `free`, `braking` (R + 2,), for each node ahead.
+class NodesAhead(NamedTuple):
+    """What lies within a period of a node, for each node ahead (R + 2,).
 
     `of_node` rows of a ring that stand for the nodes, `free` cells of energy gained until there without brakes,
-    `braking` cells that each kPa takes away at the mean friction. `extra` acceleration inside the position. `motion` =
-    (speed (E',) in quanta a period, period² / 2ΔS, ΔS, Δe, `bands` (R + 2,): the first energy of each middle node).
-    `path` = (drive, brake), integrals over the path up to each node (N + 1,); behind the exit nothing changes energy.
+    `braking` cells that each kPa takes away at the mean friction.
     """
-    last = path[0].shape[0] - 1
+
+    of_node: Ints
+    free: Floats
+    braking: Floats
+
+
+@part_inline
+def look_ahead(n, extra, motion, ring, ahead):
+    """Fill `ahead` for node `n`; `extra` acceleration inside the position."""
+    (of_node, free, braking), drive, brake = ahead, motion.drive, motion.brake
+    last = drive.shape[0] - 1
     for r in range(of_node.shape[0]):
         to = min(n + r, last)
         of_node[r] = to % ring
-        free[r] = (path[0][to] - path[0][n] + extra * (to - n) * motion[2]) / motion[3]
-        braking[r] = (path[1][to] - path[1][n]) / motion[3]
+        free[r] = (drive[to] - drive[n] + extra * (to - n) * motion.path_step) / motion.energy_step
+        braking[r] = (brake[to] - brake[n]) / motion.energy_step
 
 
 @part_inline
 def pull_period(ahead, kpa, motion, rows, begin, end, out, scratch):
     """`out`[j] = value at the end of a period that begins with energy j, begin ≤ j < end.
 
-    `ahead` = (`of_node`, `free`, `braking`) as of `look_ahead`; `kpa` mean overpressure over the period times the
+    `ahead` as of `look_ahead`; `kpa` mean overpressure over the period times the
     factor of the friction. `rows` (ring, E') values at nodes; energy 0 is a stall. `scratch` (3, E').
     """
     of_node, free, braking = ahead
-    quanta, bands = motion[0], motion[4]
+    quanta, bands = motion.quanta, motion.bands
     points, width = quanta.shape[0] - ROOM, rows.shape[1]
     for middle in range(NEAREST, bands.shape[0] - 1):
         if bands[middle] >= end:
@@ -91,7 +101,7 @@ def push_period(ahead, kpa, motion, mass, chance, begin, end, rows, spans, scrat
     `spans` (ring, 2) are widened to what it reaches; `scratch` (3, E' + 2·`ROOM`).
     """
     of_node, free, braking = ahead
-    quanta, bands = motion[0], motion[4]
+    quanta, bands = motion.quanta, motion.bands
     points, width = quanta.shape[0] - ROOM, scratch.shape[1]
     for middle in range(NEAREST, bands.shape[0] - 1):
         if bands[middle] >= end:
@@ -140,7 +150,7 @@ def push_shifted(scratch, at, count, first, cells, points, row, span):
 @part_inline
 def longer_quanta(cells, middle, motion):
     """Quanta that a period is longer by than at the speed of its begin, if `cells` are gained until node `middle`."""
-    return cells * motion[3] / (middle * motion[2]) * motion[1]
+    return cells * motion.energy_step / (middle * motion.path_step) * motion.longer
 
 
 @part_inline

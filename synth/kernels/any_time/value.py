@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from synth.kernels.any_time.occupancy import DOWN, HOLD, LEAST_CHANCE, UP, whole_packs
-from synth.kernels.any_time.period import look_ahead, pull_period, pull_row
+from synth.kernels.any_time.period import NodesAhead, look_ahead, pull_period, pull_row
 from synth.kernels.compiling import kernel, part, part_inline
 from synth.kernels.sweep.flow import clear, extent, in_every_state
 from synth.kernels.vector.normal_packs import normal_density8
@@ -17,29 +17,26 @@ from synth.kernels.vector.packs import EIGHT, eight, load8, store
 
 
 @kernel
-def value(
-    lines, reading, noise, periods, kpa, way, target, share, entry, entry_way, entry_kpa, stationary,
-    mixing, factor, extra, motion, path, rows, values, terminal, stalled, change_cost, period_price, records, band,
-    where, way_band, slopes, bends,
-):  # fmt: skip
-    """The expected cost of a pass; arguments up to `path`, and `records` to `way_band`, as of `occupy`.
+def value(policy, chain, factor, extra, costs, rows, values, met, slopes, bends):
+    """The expected cost of a pass; `met` by `occupy`, whose arguments are the same.
 
-    `rows` (W, L, ring, E') and `values` (M, L, E') are zeros, and are left so.
-    `terminal` (E,) cost by exit energy, `stalled` of a stall, `change_cost` of a command, `period_price` of the time of
-    a sampling period. Outputs (2, N, M): `slopes`, derivatives of the cost by the lines, and `bends`, its second
-    derivatives by each line alone.
+    `rows` (W, L, ring, E') and `values` (M, L, E') are zeros, and are left so. Outputs (2, N, M): `slopes`, derivatives
+    of the cost by the lines, and `bends`, its second derivatives by each line alone.
     """
+    (lines, reading, noise), (records, band, where, way_band) = policy, met
+    (periods, kpa, way, target, share), (entry, entry_way, entry_kpa) = chain.periods, chain.entry
+    (terminal, stalled, change_cost, period_price), motion = costs, chain.motion
     nodes, modes, levels = lines.shape[1], lines.shape[2], factor.shape[0]
     points, (_, _, ring, row) = terminal.shape[0], rows.shape
     chance, commanded = np.zeros((3, row)), np.zeros((3, row))
     saved, scratch = np.zeros((2, row)), np.zeros((3, row))
-    reach, ends = max(motion[4].shape[0], entry.shape[0]), np.zeros((3, 2), np.int64)
-    of_node, free, braking = np.zeros(reach, np.int64), np.zeros(reach), np.zeros(reach)
+    reach, ends = max(motion.bands.shape[0], entry.shape[0]), np.zeros((3, 2), np.int64)
+    ahead = NodesAhead(np.zeros(reach, np.int64), np.zeros(reach), np.zeros(reach))
     in_every_state(terminal, points, rows[:, :, nodes % ring : nodes % ring + 1])
     rows[:, :, nodes % ring, 0] = stalled
     slopes[:], bends[:] = 0.0, 0.0
     for n in range(nodes - 1, -1, -1):
-        look_ahead(n, extra, motion, path, ring, of_node, free, braking)
+        look_ahead(n, extra, motion, ring, ahead)
         for m in range(modes):
             first, last = band[n, m]
             for q in range(levels if n + 1 < nodes else 0):
@@ -52,27 +49,27 @@ def value(
                     d = periods[m, command]
                     if d >= 0 and ends[command, 0] < ends[command, 1]:
                         pull_period(
-                            (of_node, free, braking), kpa[d] * factor[q], motion, rows[way[d], q],
-                            ends[command, 0], ends[command, 1], commanded[command], scratch,
+                            ahead, kpa[d] * factor[q], motion, rows[way[d], q], ends[command, 0], ends[command, 1],
+                            commanded[command], scratch,
                         )  # fmt: skip
                 density = where[n, m] + q * whole_packs(last - first) - first
                 decide(commanded, chance, ends, change_cost, records, density, values[m, q], saved, q == 0)
                 if period_price > 0.0:
-                    add_period_times(motion[0], nodes - n, period_price, first, last, values[m, q])
+                    add_period_times(motion.quanta, nodes - n, period_price, first, last, values[m, q])
             for side in range(2):
                 by_line(
                     saved[side], lines[side, n, m], reading, 1.0 / noise[n], ends[2 * side], scratch[0],
                     side, n, m, slopes, bends,
                 )  # fmt: skip
-            change_levels_back(values[m], first, last, mixing, scratch)
+            change_levels_back(values[m], first, last, chain.mixing, scratch)
         at_ways(n % ring, way_band[n], values, target, share, stalled, rows)
     cost = 0.0
     for r in range(entry.shape[0]):
         for q in range(levels):
-            shift = free[r] - entry_kpa * factor[q] * braking[r]
+            shift = ahead.free[r] - entry_kpa * factor[q] * ahead.braking[r]
             pull_row(rows[entry_way, q, r], shift, points, 1, points, scratch[0])
             for j in range(1, points):
-                cost += entry[r, j] * stationary[q] * (scratch[0, j] + period_price * r / motion[0][j])
+                cost += entry[r, j] * chain.stationary[q] * (scratch[0, j] + period_price * r / motion.quanta[j])
     leave_zeros(band[0], way_band, rows, values)
     return cost
 

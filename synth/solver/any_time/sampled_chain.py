@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
 from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.any_time import sampled_arrays as kernel
 from synth.kernels.any_time.period import NEAREST, ROOM
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.any_time.drive_modes import DriveModes, drive_modes
@@ -157,14 +157,14 @@ def summed(per_quantum: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.append(0.0, np.cumsum(per_quantum))
 
 
-def motion_arguments(c: SampledChain) -> tuple[Any, ...]:
-    """`motion` and `path` as the kernels take them."""
-    period_s, step = c.plant.sensor.sample_period_s, c.grid.path_step_m
-    motion = (
-        np.pad(c.quanta_per_period, (0, ROOM)),
-        0.5 * period_s**2 / step,
-        step,
-        c.grid.energy_step_m2_s2,
-        c.first_energy,
-    )
-    return motion, (c.drive_m2_s2, c.brake_m2_s2_per_kpa)
+def sampled_arrays(c: SampledChain) -> kernel.SampledArrays:
+    """All but policy, scenarios and aim, as the kernels take it."""
+    p, period_s, step = c.periods, c.plant.sensor.sample_period_s, c.grid.path_step_m
+    entry_kpa = float(p.overpressure_kpa[p.of_mode[c.entry_mode, 1]])
+    motion = kernel.Motion(
+        np.pad(c.quanta_per_period, (0, ROOM)), 0.5 * period_s**2 / step, step, c.grid.energy_step_m2_s2,
+        c.first_energy, c.drive_m2_s2, c.brake_m2_s2_per_kpa,
+    )  # fmt: skip
+    periods = kernel.Periods(p.of_mode, p.overpressure_kpa, p.way, p.target, p.share)
+    entry = kernel.Entry(c.entry, len(p.target) - 1, entry_kpa)
+    return kernel.SampledArrays(periods, entry, c.noise.stationary, c.mixing, motion)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.any_time.occupancy import occupy
 from synth.kernels.any_time.period import ROOM
+from synth.kernels.any_time.sampled_arrays import Costs, Lines, Met, SampledArrays
 from synth.kernels.any_time.value import value
 from synth.problem.aim import Aim
-from synth.solver.any_time.sampled_chain import SampledChain, motion_arguments
+from synth.solver.any_time.sampled_chain import SampledChain, sampled_arrays
 from synth.solver.any_time.working_memory import WorkingMemory
 from synth.solver.exit_density import ExitDensity
 
@@ -79,7 +80,7 @@ class SurfaceEvaluation:
     def gradient(self, lines_m_s: NDArray[np.float64], aim: Aim) -> SurfaceCost:
         """Expected cost and its derivatives, all scenarios weighted."""
         c, policy = self.chain, self._policy(lines_m_s)
-        cost, slopes, bends = 0.0, np.zeros(policy[0].shape), np.zeros(policy[0].shape)
+        cost, slopes, bends = 0.0, np.zeros(policy.lines.shape), np.zeros(policy.lines.shape)
         found = self._each(lambda i, memory: self._valued(self._in_scenario(policy, i), i, aim, memory))
         for weight, (one, slope, bend) in zip(c.scenarios.weight, found, strict=True):
             cost += weight * one
@@ -103,7 +104,7 @@ class SurfaceEvaluation:
         with ThreadPoolExecutor(max_workers=self.threads) as pool:
             return list(pool.map(one, range(len(self.chain.scenarios.weight))))
 
-    def _policy(self, lines_m_s: NDArray[np.float64]) -> tuple[Any, ...]:
+    def _policy(self, lines_m_s: NDArray[np.float64]) -> Lines:
         """Lines in readings, what is read of true speeds, and the error at every node (N,)."""
         c = self.chain
         if c.estimate is None:
@@ -115,48 +116,40 @@ class SurfaceEvaluation:
         lines = np.array(lines)
         held = c.modes.stage >= c.plant.entrance_stage
         lines[UP, : c.approach_nodes, held] = np.inf  # before the entrance, no further
-        return lines, np.pad(read, (0, ROOM), mode="edge"), noise
+        return Lines(lines, np.pad(read, (0, ROOM), mode="edge"), noise)
 
-    def _in_scenario(self, policy: tuple[Any, ...], i: int) -> tuple[Any, ...]:
+    def _in_scenario(self, policy: Lines, i: int) -> Lines:
         """The policy as true speeds meet it in scenario `i`: what is estimated is shifted there."""
         c = self.chain
         if c.estimate is None:
             return policy
-        lines, *others = policy
         shift = c.estimate.shift_m_s(c.grid.path_m[:-1], c.scenarios, i)
-        return (lines - shift[None, :, None], *others)
+        return policy._replace(lines=policy.lines - shift[None, :, None])
 
-    def _followed(self, policy: tuple[Any, ...], i: int, memory: WorkingMemory, keep: bool) -> Followed:
+    def _followed(self, policy: Lines, i: int, memory: WorkingMemory, keep: bool) -> Followed:
         c = self.chain
         nodes, modes, points = len(c.drive_m2_s2) - 1, len(c.modes.stage), len(c.grid.speed_m_s)
         band, where = np.empty((nodes, modes, 2), dtype=np.int64), np.empty((nodes, modes), dtype=np.int64)
         way_band = np.empty((nodes, len(c.periods.target), 2), dtype=np.int64)
         exits, totals = np.empty(points), np.empty(4)
-        arguments: tuple[Any, ...] = (
-            *policy, *self._shared(i), memory.heading, memory.here, self.negligible_mass, keep, memory.records,
-            band, where, way_band, exits, totals,
-        )  # fmt: skip
-        memory.records = occupy(*arguments)
+        met = Met(memory.records, band, where, way_band)
+        memory.records = occupy(
+            policy, *self._shared(i), memory.heading, memory.here, self.negligible_mass, keep, met, exits, totals
+        )
         return Followed(exits, totals, band, where, way_band)
 
-    def _valued(self, policy: tuple[Any, ...], i: int, aim: Aim, memory: WorkingMemory) -> Valued:
+    def _valued(self, policy: Lines, i: int, aim: Aim, memory: WorkingMemory) -> Valued:
         f = self._followed(policy, i, memory, keep=True)
-        slopes, bends = np.empty(policy[0].shape), np.empty(policy[0].shape)
-        period_s = self.chain.plant.sensor.sample_period_s
-        arguments: tuple[Any, ...] = (
-            *policy, *self._shared(i), memory.heading, memory.here,
-            *aim.criterion.exit_costs(self.chain.grid.speed_m_s, aim.target_speed_m_s),
-            aim.criterion.switching_tolerance_m2_s2, aim.criterion.time_price_m2_s3 * period_s,
-            memory.records, f.band, f.where, f.way_band, slopes, bends,
+        slopes, bends = np.empty(policy.lines.shape), np.empty(policy.lines.shape)
+        period_s, criterion = self.chain.plant.sensor.sample_period_s, aim.criterion
+        costs = Costs(
+            *criterion.exit_costs(self.chain.grid.speed_m_s, aim.target_speed_m_s),
+            criterion.switching_tolerance_m2_s2, criterion.time_price_m2_s3 * period_s,
         )  # fmt: skip
-        return value(*arguments), slopes, bends
+        met = Met(memory.records, f.band, f.where, f.way_band)
+        return value(policy, *self._shared(i), costs, memory.heading, memory.here, met, slopes, bends), slopes, bends
 
-    def _shared(self, i: int) -> tuple[Any, ...]:
-        """What both passes take of the chain in scenario `i`."""
-        c, p = self.chain, self.chain.periods
-        entry_kpa = float(p.overpressure_kpa[p.of_mode[c.entry_mode, 1]])
-        return (
-            p.of_mode, p.overpressure_kpa, p.way, p.target, p.share, c.entry, len(p.target) - 1, entry_kpa,
-            c.noise.stationary, c.mixing, c.scenarios.factor[i] * (1.0 + c.noise.levels),
-            float(c.scenarios.extra_m_s2[i]), *motion_arguments(c),
-        )  # fmt: skip
+    def _shared(self, i: int) -> tuple[SampledArrays, NDArray[np.float64], float]:
+        """What both passes take of the chain, and of scenario `i`."""
+        c = self.chain
+        return sampled_arrays(c), c.scenarios.factor[i] * (1.0 + c.noise.levels), float(c.scenarios.extra_m_s2[i])
