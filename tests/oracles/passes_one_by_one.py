@@ -18,7 +18,7 @@ from synth.kernels.any_time.any_time_law import AnyTimeLaw, wanted_stage
 from synth.kernels.any_time.driven_period import SampledDrive, play_period
 from synth.kernels.compiling import kernel, part
 from synth.kernels.loop.drive import Drive
-from synth.kernels.loop.motion import LEFT, MOVING, Path, advance
+from synth.kernels.loop.motion import LEFT, MOVING, Cells, Path, advance
 from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.regulator import (
     Rule,
@@ -191,8 +191,8 @@ def run_any_time_pass(
         )
         passed_kpa = over.mean() if estimating else 0.0
         cell, s, v, kpa, time, used, status, count = roll_period(
-            edges_m, free, brake, over, part, first_sample_s + sample * period, stage, measured, cell, s, v, events,
-            count,
+            Cells(edges_m, free, brake), over, part, first_sample_s + sample * period, stage, measured, cell, s, v,
+            events, count,
         )  # fmt: skip
         sample += 1
         if status == MOVING:

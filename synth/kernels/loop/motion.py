@@ -40,6 +40,15 @@ class Path(NamedTuple):
     approach_cells: int
 
 
+class Cells(NamedTuple):
+    """The path as one cut meets it: `edges_m` (C + 1,); acceleration without brake, `free`, and deceleration by one
+    kPa, `brake`, in each cell (C,)."""
+
+    edges_m: Floats
+    free: Floats
+    brake: Floats
+
+
 @borrowing_inline
 def advance(
     edges_m: Floats, free: Floats, brake: Floats, overpressure: float, duration_s: float, cell: int, s: float, v: float

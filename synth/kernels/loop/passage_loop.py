@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.kernels.compiling import borrowing_inline, kernel, part, part_inline
-from synth.kernels.loop.motion import LEFT, MOVING, STALLED, Path
+from synth.kernels.loop.motion import LEFT, MOVING, STALLED, Cells, Path
 from synth.kernels.loop.passage_pulses import (
     Heard,
     Memory,
@@ -112,14 +112,15 @@ def note_pair(
 
 @part
 def run_passage_pass(
-    edges_m: Floats, free: Floats, brake: Floats, drive: PieceDrive, pulses: Pulses, after_s: Floats, told_m_s: Floats,
-    law: HeldPassages, tracks: bool, start_m_s: float, noise_z: NDArray[np.float32], memory: Memory, outcomes: Outcomes,
-    events: Floats, seen: Floats,
+    cells: Cells, drive: PieceDrive, pulses: Pulses, heard: Heard, law: HeldPassages, tracks: bool, start_m_s: float,
+    noise_z: NDArray[np.float32], memory: Memory, outcomes: Outcomes, events: Floats, seen: Floats,
 ) -> Any:  # fmt: skip
     """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events, pairs).
 
-    `outcomes` (M,): what came of the first pair heard from each source at which is decided.
+    `heard`: what of the pulses, (R,) each; `outcomes` (M,): what came of the first pair heard from each source at which
+    is decided.
     """
+    (edges_m, free, brake), (after_s, told_m_s) = cells, heard
     sources, resting = pulses.path_m.shape[0], drive.command.shape[0]
     place_coils(pulses, noise_z, memory)
     begin_cut(memory.state)
@@ -201,8 +202,9 @@ def run_passage_passes(
             free[j] = path.gravity_m_s2[j] - drag
         row = 0 if alike else i
         v, time, status, switchings, count, pairs = run_passage_pass(
-            path.edges_m, free, draws.brake_m_s2_per_kpa[i], drive, pulses, heard.after_s[row], heard.told_m_s[row],
-            law, tracks, draws.entry_m_s[i], draws.noise_z[i], memory, outcomes[i], events, seen,
+            Cells(path.edges_m, free, draws.brake_m_s2_per_kpa[i]), drive, pulses,
+            Heard(heard.after_s[row], heard.told_m_s[row]), law, tracks, draws.entry_m_s[i], draws.noise_z[i], memory,
+            outcomes[i], events, seen,
         )  # fmt: skip
         exits.stalled[i] = status != LEFT
         exits.speed_m_s[i] = v if status == LEFT else 0.0

@@ -7,19 +7,20 @@ from typing import Any
 
 from synth.kernels.any_time.played_periods import joined_until
 from synth.kernels.compiling import part_inline
-from synth.kernels.loop.motion import MOVING, Floats, advance
+from synth.kernels.loop.motion import MOVING, Cells, Floats, advance
 from synth.kernels.loop.trace import note
 
 
 @part_inline
 def roll_period(
-    edges_m: Floats, free: Floats, brake: Floats, over: Floats, part_s: float, begins_s: float, stage: int,
-    measured: float, cell: int, s: float, v: float, events: Floats, count: int,
+    cells: Cells, over: Floats, part_s: float, begins_s: float, stage: int, measured: float, cell: int, s: float,
+    v: float, events: Floats, count: int,
 ) -> Any:  # fmt: skip
     """Roll on for a period under `over` (parts,), and note it.
 
     Returns (cell, s, v, overpressure and time of the last step, what of that was used, status, events).
     """
+    edges_m, free, brake = cells
     i, kpa, used, status, time = 0, 0.0, 0.0, MOVING, begins_s
     while i < over.shape[0] and status == MOVING:
         begun, kpa, i = i, over[i], joined_until(over, i)

@@ -17,7 +17,7 @@ from synth.kernels.any_time.any_time_law import AnyTimeLaw, wanted_stage
 from synth.kernels.any_time.driven_period import SampledDrive, play_period, wait_after_command
 from synth.kernels.compiling import kernel
 from synth.kernels.loop.lane_places import Floats, Ints
-from synth.kernels.loop.motion import LEFT, MOVING, Path, advance
+from synth.kernels.loop.motion import LEFT, MOVING, Cells, Path, advance
 from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.regulator import Sensor, admitted, measure
 from synth.kernels.loop.trace import note
@@ -71,14 +71,14 @@ def wait_at_turn(pressure: float, wait: float, stage_kpa: float, begins: bool, s
 
 @kernel
 def run_stuck_pass(
-    edges_m: Floats, free: Floats, brake: Floats, drive: SampledDrive, stuck: Any, sensor: Sensor, law: AnyTimeLaw,
-    asking: Asking, begin_s: float, end_s: float, entry_m_s: float, first_sample_s: float,
-    noise_z: NDArray[np.float32], events: Floats,
+    cells: Cells, drive: SampledDrive, stuck: Any, sensor: Sensor, law: AnyTimeLaw, asking: Asking, begin_s: float,
+    end_s: float, entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats,
 ) -> Any:  # fmt: skip
     """One pass; returns (v, time, status, switchings, events). Valves are stuck at samples in [`begin_s`, `end_s`).
 
     The law has neither an estimator nor a lead.
     """
+    edges_m, free, brake = cells
     stage_kpa, touch = drive.stage_kpa, drive.valves.touch_kpa
     period, top, longest = sensor.period_s, stage_kpa.shape[0] - 1, int(LONGEST_PASS_S / sensor.period_s)
     over = np.empty(drive.parts)
@@ -108,8 +108,7 @@ def run_stuck_pass(
             pressure, wait, stage_kpa[before], stage_kpa[stage], drive.computing_delay_s, period, valves, over
         )
         cell, s, v, kpa, time, used, status, count = roll_period(
-            edges_m, free, brake, over, part, first_sample_s + sample * period, stage, measured, cell, s, v, events,
-            count,
+            cells, over, part, first_sample_s + sample * period, stage, measured, cell, s, v, events, count
         )  # fmt: skip
         sample += 1
         if status == MOVING:
@@ -132,7 +131,7 @@ def run_stuck_passes(
         for j in range(free.shape[0]):
             free[j] = path.gravity_m_s2[j] - drag
         v, time, status, switchings, count = run_stuck_pass(
-            path.edges_m, free, draws.brake_m_s2_per_kpa[i], drive, stuck.valves, sensor, law, asking,
+            Cells(path.edges_m, free, draws.brake_m_s2_per_kpa[i]), drive, stuck.valves, sensor, law, asking,
             stuck.starts_s[i], stuck.starts_s[i] + stuck.duration_s, draws.entry_m_s[i], draws.first_sample_s[i],
             draws.noise_z[i], events,
         )  # fmt: skip

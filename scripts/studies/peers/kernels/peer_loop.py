@@ -21,7 +21,7 @@ from synth.kernels.any_time.driven_period import SampledDrive, play_period
 from synth.kernels.compiling import kernel, part
 from synth.kernels.loop.drive import Drive
 from synth.kernels.loop.lane_places import Floats
-from synth.kernels.loop.motion import LEFT, MOVING, Path, advance
+from synth.kernels.loop.motion import LEFT, MOVING, Cells, Path, advance
 from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.regulator import Sensor, admitted, measure
 from synth.kernels.loop.trace import note
@@ -101,10 +101,11 @@ def play_locked(drive: Drive, mode: int, chain: int, played: int, over: Floats) 
 
 @part
 def run_peer_pass(
-    edges_m: Floats, free: Floats, brake: Floats, hardware: Hardware, peer: Peer, path: MeanPath, entry_m_s: float,
-    first_sample_s: float, noise_z: NDArray[np.float32], memory: Memory, events: Floats,
+    cells: Cells, hardware: Hardware, peer: Peer, path: MeanPath, entry_m_s: float, first_sample_s: float,
+    noise_z: NDArray[np.float32], memory: Memory, events: Floats,
 ) -> Any:  # fmt: skip
     """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events)."""
+    edges_m, free, brake = cells
     locked, drive, sensor, over = hardware.locked, hardware.sampled, hardware.sensor, memory.over
     stage_kpa, estimating = drive.stage_kpa, peer.observer.breaks > 0
     period, longest = sensor.period_s, int(LONGEST_PASS_S / sensor.period_s)
@@ -141,7 +142,7 @@ def run_peer_pass(
             passed_kpa = over.mean()
         begins_s = first_sample_s + sample * period
         cell, s, v, kpa, time, used, status, count = roll_period(
-            edges_m, free, brake, over, period / drive.parts, begins_s, stage, speed, cell, s, v, events, count
+            cells, over, period / drive.parts, begins_s, stage, speed, cell, s, v, events, count
         )
         sample += 1
         if status == MOVING:
@@ -166,7 +167,7 @@ def run_peer_passes(
         for j in range(free.shape[0]):
             free[j] = cells.gravity_m_s2[j] - drag
         v, time, status, switchings, count = run_peer_pass(
-            cells.edges_m, free, draws.brake_m_s2_per_kpa[i], hardware, peer, path, draws.entry_m_s[i],
+            Cells(cells.edges_m, free, draws.brake_m_s2_per_kpa[i]), hardware, peer, path, draws.entry_m_s[i],
             draws.first_sample_s[i], draws.noise_z[i], memory, events,
         )  # fmt: skip
         exits.stalled[i] = status != LEFT

@@ -63,12 +63,13 @@ def line_square(path: MeanPath, aim_m_s: float, slowing_kpa: float, cell: int, s
 @part
 def held(
     path: MeanPath, drive: SampledDrive, period_s: float, horizon_s: float, old: int, new: int, pressure: float,
-    wait: float, factor: float, cell: int, s: float, v: float, over: Floats,
+    wait: float, factor: float, place: Any, over: Floats,
 ) -> Any:  # fmt: skip
     """(cell, s, v, status) after stage `new`, commanded now in place of `old`, was held for `horizon_s`.
 
-    Ends early at the exit or at a standstill. `over` (parts,) is memory.
+    Ends early at the exit or at a standstill. `place`: (cell, s, v) before; `over` (parts,) is memory.
     """
+    cell, s, v = place
     left, part, status, first = horizon_s, period_s / over.shape[0], MOVING, drive.stage_kpa[old]
     kpa = drive.stage_kpa[new]
     while status == MOVING and left > 0.0:
@@ -99,7 +100,7 @@ def stage_by_prediction(
         if admitted(stage, candidate, s, drive.entrance_stage) != candidate:
             continue
         end, place, speed, _ = held(
-            path, drive, period_s, law.horizon_s, stage, candidate, pressure, wait, factor, cell, s, v, over
+            path, drive, period_s, law.horizon_s, stage, candidate, pressure, wait, factor, (cell, s, v), over
         )
         missed = speed * speed - line_square(path, law.aim_m_s, factor * law.held_kpa, end, place)
         cost = missed * missed
