@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from synth.kernels.sweep.chain_arrays import PathNoise
 from synth.solver.chain.chain import Chain, noise_on_landings
-from synth.solver.chain.path_noise import PathNoise
 from synth.solver.chain.scenarios import Scenarios
 
 

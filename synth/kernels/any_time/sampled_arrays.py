@@ -31,8 +31,12 @@ class Motion(NamedTuple):
 
 
 class Periods(NamedTuple):
-    """`of_mode` (M, 3): period that follows a command in a mode, −1 where it is none; of each period mean overpressure
-    `kpa` and `way` (D,); of each way modes, `target`, and their shares, `share` (W, 4)."""
+    """The different sampling periods that a drive can be in, and where they lead.
+
+    `of_mode` (M, 3): number of the period that follows a command in a mode, −1 where there is none; `kpa` (D,) mean
+    overpressure of each, `way` (D,) where it leads. `target`, `share` (W, 4): modes, and shares of each, that stand for
+    the drive at the end of a way; the last way leads to the mode at the entry.
+    """
 
     of_mode: Ints
     kpa: Floats

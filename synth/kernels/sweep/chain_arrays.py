@@ -41,7 +41,7 @@ class Modes(NamedTuple):
 
 
 class PathNoise(NamedTuple):
-    """η along the path: `levels` (L,), `transition` (L, L) over a quantum, rows from, `stationary` (L,)."""
+    """η, constant in each path quantum: `levels` (L,), `transition` (L, L) rows from, `stationary` (L,)."""
 
     levels: Floats
     transition: Floats
@@ -49,8 +49,10 @@ class PathNoise(NamedTuple):
 
 
 class TransientNoise(NamedTuple):
-    """Mean of η over each transient that crosses r quanta, (·, r, L, L): `probability` of the end level, given the
-    first; `mean`, `std` given both."""
+    """Force-weighted mean of η over each transient that crosses r quantum boundaries, given both end levels.
+
+    `probability` (·, r, L, L): of the end level, given the first; `mean`, `std` of the mean of η, given both.
+    """
 
     probability: Floats
     mean: Floats

@@ -9,14 +9,15 @@ from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
 from plant_models.frozen_arrays import frozen_arrays
-from synth.kernels.any_time import sampled_arrays as kernel
 from synth.kernels.any_time.period import NEAREST, ROOM
+from synth.kernels.any_time.sampled_arrays import Entry, Motion, Periods, SampledArrays
+from synth.kernels.sweep.chain_arrays import PathNoise
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.any_time.drive_modes import DriveModes, drive_modes
 from synth.solver.any_time.estimate_error import EstimateError
 from synth.solver.chain.entry import entry_distribution
 from synth.solver.chain.grid import Grid, make_grid
-from synth.solver.chain.path_noise import PathNoise, correlated_noise
+from synth.solver.chain.path_noise import correlated_noise
 from synth.solver.chain.scenarios import Scenarios, check_scenarios, persistent_scenarios
 from synth.solver.chain.speed_measurement import SpeedMeasurement, quantised_measurement, smooth_measurement
 
@@ -25,23 +26,6 @@ PRESSURE_STEP_KPA = 30.0
 
 NODE_AT_ENTRANCE_M = 1e-9
 """A path node this near to the entrance is there."""
-
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class Periods:
-    """The different sampling periods that a drive can be in, and where they lead.
-
-    `of_mode` (M, 3): number of the period that follows a command in a mode, −1 where there is none; `overpressure_kpa`
-    (D,) mean of each, `way` (D,) where it leads. `target`, `share` (W, 4): modes, and shares of each, that stand for
-    the drive at the end of a way; the last way leads to the mode at the entry.
-    """
-
-    of_mode: NDArray[np.int64]
-    overpressure_kpa: NDArray[np.float64]
-    way: NDArray[np.int64]
-    target: NDArray[np.int64]
-    share: NDArray[np.float64]
 
 
 @frozen_arrays
@@ -157,14 +141,12 @@ def summed(per_quantum: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.append(0.0, np.cumsum(per_quantum))
 
 
-def sampled_arrays(c: SampledChain) -> kernel.SampledArrays:
+def sampled_arrays(c: SampledChain) -> SampledArrays:
     """All but policy, scenarios and aim, as the kernels take it."""
     p, period_s, step = c.periods, c.plant.sensor.sample_period_s, c.grid.path_step_m
-    entry_kpa = float(p.overpressure_kpa[p.of_mode[c.entry_mode, 1]])
-    motion = kernel.Motion(
+    motion = Motion(
         np.pad(c.quanta_per_period, (0, ROOM)), 0.5 * period_s**2 / step, step, c.grid.energy_step_m2_s2,
         c.first_energy, c.drive_m2_s2, c.brake_m2_s2_per_kpa,
     )  # fmt: skip
-    periods = kernel.Periods(p.of_mode, p.overpressure_kpa, p.way, p.target, p.share)
-    entry = kernel.Entry(c.entry, len(p.target) - 1, entry_kpa)
-    return kernel.SampledArrays(periods, entry, c.noise.stationary, c.mixing, motion)
+    entry = Entry(c.entry, len(p.target) - 1, float(p.kpa[p.of_mode[c.entry_mode, 1]]))
+    return SampledArrays(p, entry, c.noise.stationary, c.mixing, motion)

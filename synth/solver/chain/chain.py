@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from plant_models import Plant, path_coefficients
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
+from synth.kernels.sweep.chain_arrays import PathNoise, TransientNoise
 from synth.problem.resolution import Resolution
 from synth.solver.chain.decisions import Decisions
 from synth.solver.chain.epochs import DecisionEpochs
 from synth.solver.chain.grid import Grid
 from synth.solver.chain.landings import Landings, friction_factors, make_landings
-from synth.solver.chain.path_noise import PathNoise, TransientNoise, correlated_noise, transient_noise
+from synth.solver.chain.path_noise import correlated_noise, transient_noise
 from synth.solver.chain.scenarios import Scenarios, check_scenarios, persistent_scenarios
 from synth.solver.chain.speed_measurement import SpeedMeasurement
 from synth.solver.chain.time_samples import TimeSamples

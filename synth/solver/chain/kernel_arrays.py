@@ -4,16 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.kernels.sweep.chain_arrays import (
-    ChainArrays,
-    Grid,
-    Landings,
-    Modes,
-    PathNoise,
-    Scenarios,
-    Track,
-    TransientNoise,
-)
+from synth.kernels.sweep.chain_arrays import ChainArrays, Grid, Landings, Modes, Scenarios, Track
 from synth.kernels.sweep.pass_time import Times
 from synth.solver.chain.chain import Chain
 
@@ -25,8 +16,8 @@ def chain_arrays(c: Chain, commands: int | None = None) -> ChainArrays:
         Grid(c.grid.speed_m_s, c.grid.path_step_m, c.grid.energy_step_m2_s2),
         Track(c.drive_m_s2, c.brake_m_s2_per_kpa),
         Modes(c.actuator.mode_stage, c.actuator.mode_overpressure_kpa, c.entry_mode),
-        PathNoise(c.path_noise.levels, c.path_noise.transition, c.path_noise.stationary),
-        TransientNoise(c.transient_noise.probability, c.transient_noise.mean, c.transient_noise.std),
+        c.path_noise,
+        c.transient_noise,
         Landings(a.change_chain[:commands], a.end_mode, a.ends, a.factors),
         c.decisions.at_nodes(len(c.drive_m_s2)),
         c.epochs.hold_period_s,

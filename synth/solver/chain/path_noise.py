@@ -3,23 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Friction
-from plant_models.frozen_arrays import frozen_arrays
-
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class PathNoise:
-    """η, constant in each path quantum: `levels` (L,), `transition` (L, L) rows from, `stationary` (L,)."""
-
-    levels: NDArray[np.float64]
-    transition: NDArray[np.float64]
-    stationary: NDArray[np.float64]
+from synth.kernels.sweep.chain_arrays import PathNoise, TransientNoise
 
 
 def correlated_noise(friction: Friction, quantum_m: float, levels: int) -> PathNoise:
@@ -43,20 +32,6 @@ def correlated_noise(friction: Friction, quantum_m: float, levels: int) -> PathN
     stationary = np.array([math.comb(levels - 1, i) for i in range(levels)]) / 2.0 ** (levels - 1)
     values = np.maximum(np.linspace(-span, span, levels), -1.0)  # bars brake or do nothing
     return PathNoise(values, matrix / matrix.sum(axis=1, keepdims=True), stationary)
-
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class TransientNoise:
-    """Force-weighted mean of η over a transient that crosses r quantum boundaries, given both end levels.
-
-    `probability` (C, R, L, L): of the end level, given the first; `mean`, `std` (C, R, L, L) of the mean of η,
-    given both. C transients, r = 0 … R − 1.
-    """
-
-    probability: NDArray[np.float64]
-    mean: NDArray[np.float64]
-    std: NDArray[np.float64]
 
 
 def transient_noise(
