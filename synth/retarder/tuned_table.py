@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from plant_models.frozen_arrays import frozen_arrays
@@ -14,28 +14,27 @@ from synth.problem.any_time_resolution import design_resolution
 from synth.retarder.any_time.surface_table import polished_surfaces, starting_surfaces
 from synth.retarder.checked_design import NODES_KEPT, CheckedDesign, checked_design
 from synth.retarder.class_setup import ClassSetup, EstimatorSetup
+from synth.retarder.epochs import Store
 from synth.retarder.estimation.estimated_lines import SimulatedRms, estimated_lines
 from synth.retarder.estimation.estimated_surfaces import estimated_surfaces
 from synth.retarder.estimation.estimated_table import EstimatedTable, trimmed_on
 from synth.retarder.estimation.simulated_prediction import density_of, simulated_prediction
 from synth.retarder.rounded_table import PredictedTable, rounded, with_prediction
+from synth.retarder.validated_table import ValidatedTable, validated
 from synth.simulation.closed_loop import TableController
-from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics
 from synth.simulation.passes import ExitSample
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
-from synth.solver.any_time.surface_polish import SurfacePolish
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
+from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED, tabulate
-from tuning_tables import ControllerTable, Validated, from_json, to_json
+from tuning_tables import ControllerTable, from_json, to_json
 
 AnyEstimate = EstimatedTable[PolynomialLines] | EstimatedTable[PolynomialSurfaces]
 
-Store = Callable[[ControllerTable], ControllerTable]
-"""Keeps a table, and gives it back as a controller will read it."""
-
+ValidatedLines = ValidatedTable[ControllerTable, ExitSample]
 
 AnyDesign = CheckedDesign[PredictedTable] | CheckedDesign[SimulatedRms]
 
@@ -44,7 +43,7 @@ AnyDesign = CheckedDesign[PredictedTable] | CheckedDesign[SimulatedRms]
 class SurfaceDesign:
     """How surfaces were polished, and with an estimator how they were trimmed."""
 
-    polish: SurfacePolish
+    polish: Descent[PolynomialSurfaces]
     estimate: EstimatedTable[PolynomialSurfaces] | None
 
 
@@ -73,16 +72,6 @@ class TunedTable:
     def trimmed(self) -> AnyEstimate | None:
         """With an estimator, how the table's lines or surfaces were trimmed."""
         return self.estimate if self.surfaces is None else self.surfaces.estimate
-
-
-@dataclass(frozen=True)
-class ValidatedTable:
-    """The table as stored, with what the closed loop on the common passes says of it."""
-
-    table: ControllerTable
-    sample: ExitSample
-    statistics: ExitStatistics
-    brake_power: BrakePower
 
 
 def solutions(chain: Chain, aims: Sequence[Aim]) -> tuple[Solution, ...]:
@@ -126,7 +115,7 @@ def at_any_time(setup: ClassSetup, aim: Aim, at_rest: TunedTable) -> TunedTable:
     if setup.estimator is None or at_rest.estimate is None:
         steps = design_resolution(plant, target_m_s)
         polish = polished_surfaces(plant, aim, starting_surfaces(plant, at_rest.lines, gauge), steps)
-        told = with_prediction(setup.check, rounded(setup, polish.surfaces, target_m_s))
+        told = with_prediction(setup.check, rounded(setup, polish.best, target_m_s))
         made, predicted = None, (told.table, told.density)
     else:
         polish, untrimmed = estimated_surfaces(plant, aim, at_rest.estimate, gauge, setup.estimator.tuning)
@@ -140,14 +129,9 @@ def read_back(table: ControllerTable) -> ControllerTable:
     return from_json(to_json(table))
 
 
-def validated_table(setup: ClassSetup, table: ControllerTable, store: Store) -> ValidatedTable:
-    """`table` stored, simulated on the setup's passes as it is read back, and stored with the figures."""
-    target, kept = table.target_speed_m_s, store(table)
-    sample = setup.passes.run(TableController(kept))
-    found = exit_statistics(sample, target)
-    figures = Validated(found.passes, found.rms_m_s, found.rms_ci95_m_s)
-    power = brake_power(sample, setup.passes.at_full_brake, target)
-    return ValidatedTable(store(kept.with_validated(figures)), sample, found, power)
+def validated_table(setup: ClassSetup, table: ControllerTable, store: Store[ControllerTable]) -> ValidatedLines:
+    """`table` simulated on the setup's passes as it is read back, and stored with the figures."""
+    return validated(table, store, lambda kept: setup.passes.run(TableController(kept)), setup.passes.at_full_brake)
 
 
 def predicted_by_passes(

@@ -55,6 +55,6 @@ def tables_from(config: ResolvedConfig, case: Case, tuned: TunedTable) -> dict[D
 
     made = {Decisions.AT_REST: stored(tuned.lines, estimator)}
     if tuned.surfaces is not None:
-        kept = tuned.surfaces.polish.surfaces if tuned.surfaces.estimate is None else tuned.surfaces.estimate.lines
+        kept = tuned.surfaces.polish.best if tuned.surfaces.estimate is None else tuned.surfaces.estimate.lines
         made[Decisions.AT_ANY_TIME] = stored(kept, estimator)
     return made
