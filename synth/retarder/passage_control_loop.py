@@ -16,9 +16,6 @@ from synth.simulation.passage_sample import PassageTrace
 from synth.simulation.response_difference import SAME_PASSAGE_S
 from tuning_tables.passages.passage_table import PassageTable
 
-TRACE_STEP_S = 0.05
-"""Between points of the simulator's pass, which has events of its own only at coils and changes of pressure."""
-
 
 @dataclass(frozen=True)
 class PassageControlLoop(ControlLoop):
@@ -54,7 +51,7 @@ def passage_control_loop(table: PassageTable, served: PassageClass) -> PassageCo
         stages=controller.stages,
         entry_m_s=entry,
         response=passage_response(loop, controller, entry),
-        trace=filled_trace(loop, loop.follow(controller, draws), draws, TRACE_STEP_S),
+        trace=filled_trace(loop, loop.follow(controller, draws), draws),
         same_s=SAME_PASSAGE_S,
         loop=loop,
         controller=controller,

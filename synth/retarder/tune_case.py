@@ -83,7 +83,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
         plant=setup.plant,
         table=validated.table,
         predicted=tuned.predicted,
-        polish=tuned.design.kept.polish if tuned.surfaces is None else tuned.surfaces.polish,
+        polish=tuned.designed.polish,
         exit_speeds_m_s=validated.sample.exit_speed_m_s.astype(np.float32),
         exit_weight=validated.sample.weight,
         statistics=validated.statistics,
@@ -93,7 +93,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
         trace_factors=TRACE_FACTORS,
         grid=tuned.design.grid,
         finding=tuned.design.kept.finding,
-        estimate=tuned.trimmed,
+        estimate=tuned.designed.estimate,
         comparison=comparison(order, tuned, validated, told),
         feasibility=feasibility_of(order.entries, target, order.limit_m_s),
         study=case_study(order, validated),
@@ -110,20 +110,20 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedLines, t
     best = min(by_baselines, key=lambda name: exit_statistics(by_baselines[name], target).rms_m_s)
 
     def at_rest() -> Measured:
-        controller = controller_of(tuned.lines, validated.table.estimator)
+        controller = controller_of(tuned.at_rest.lines, validated.table.estimator)
         return beside_table("commands at rest", passes.run(controller), sample, target)
 
     return Comparison(
         friction_known=beside_table("friction known", told, sample, target),
         baselines=tuple(beside_table(name, each, sample, target) for name, each in by_baselines.items()),
         baseline_ratio_ci95=beside_table(best, by_baselines[best], told, target).table_ratio_ci95,
-        at_rest=None if tuned.surfaces is None else at_rest(),
+        at_rest=None if tuned.at_any_time is None else at_rest(),
     )
 
 
 def permitted(tuned: TunedTable) -> tuple[Decisions, ...]:
     """When laws that the table is compared with may command: as it, or less often."""
-    return (Decisions.AT_REST,) if tuned.surfaces is None else (Decisions.AT_REST, Decisions.AT_ANY_TIME)
+    return (Decisions.AT_REST,) if tuned.at_any_time is None else (Decisions.AT_REST, Decisions.AT_ANY_TIME)
 
 
 def beside_table(name: str, sample: ExitSample, table: ExitSample, target_speed_m_s: float) -> Measured:

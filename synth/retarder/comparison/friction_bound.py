@@ -42,14 +42,15 @@ def bound_of(passes: CommonPasses, regulators: Sequence[Told], sample: ExitSampl
 def told_regulators(setup: ClassSetup, tuned: TunedTable, target_m_s: float) -> Sequence[Told]:
     """Regulators of the table's kind that are told the friction; where that commands at any time, and one at rest."""
     told: list[Told] = []
-    if setup.estimator is None or tuned.estimate is None:
-        if tuned.surfaces is not None:
-            told.append(by_surfaces(setup.plant, target_m_s, tuned.surfaces.polish.best))
-        return [*told, by_lines(told_lines(setup.design, target_m_s, tuned.lines, tuned.design.fit.curvature))]
+    lines, surfaces = tuned.at_rest, tuned.at_any_time
+    if setup.estimator is None or lines.estimate is None:
+        if surfaces is not None:
+            told.append(by_surfaces(setup.plant, target_m_s, surfaces.lines))
+        return [*told, by_lines(told_lines(setup.design, target_m_s, lines.lines, tuned.design.fit.curvature))]
     tuning = setup.passes.of_others(setup.estimator.tuning)
-    if tuned.surfaces is not None and tuned.surfaces.estimate is not None:
-        told.append(told_with_estimator_at_any_time(setup.plant, tuned.surfaces.estimate, tuning, target_m_s))
-    return [*told, told_with_estimator(tuned.estimate, tuning, target_m_s)]
+    if surfaces is not None and surfaces.estimate is not None:
+        told.append(told_with_estimator_at_any_time(setup.plant, surfaces.estimate, tuning, target_m_s))
+    return [*told, told_with_estimator(lines.estimate, tuning, target_m_s)]
 
 
 def by_surfaces(plant: Plant, target_m_s: float, common: PolynomialSurfaces) -> Told:

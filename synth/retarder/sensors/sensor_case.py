@@ -63,7 +63,7 @@ def sensor_case(setup: SensorClass, aim: Aim, store: Store[PassageTable]) -> Sen
     """Tune one case; the table is simulated as read back from where it is stored, and stored with the figures."""
     passes, target_m_s = setup.passes, aim.target_speed_m_s
     tuned = tuned_passages(setup.chains, aim)
-    table = passage_table(tuned, setup.origin.generator, setup.table_id(target_m_s), setup.origin.created)
+    table = passage_table(tuned, *setup.origin.stamp(setup.label, target_m_s))
     found = validated(table, store, lambda kept: passes.run(of_table(kept, tracking=True)), setup.passes.at_full_brake)
     controller = of_table(found.table, tracking=True)
     return SensorCase(
