@@ -21,12 +21,11 @@ from synth.retarder.estimation.estimated_table import controller_of
 from synth.retarder.off_nominal.trial import Trials, trials
 from synth.retarder.pareto.case_front import Front, pareto_front
 from synth.retarder.policy_map import policy_map
-from synth.retarder.tuned_case import TRACE_FACTORS
 from synth.retarder.tuned_table import TunedTable, ValidatedLines, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
-from synth.simulation.passes import ExitSample
+from synth.simulation.passes import TRACE_FACTORS, ExitSample
 from synth.simulation.random_passes import random_passes
 from synth.simulation.unavoidable_error import unavoidable_error
 from synth.solver.backward_induction import Solution
@@ -90,7 +89,6 @@ def tune_case(order: CaseOrder) -> CaseResult:
         brake_power=validated.brake_power,
         unavoidable=unavoidable_error(exits.slowest, exits.fastest, target),
         traces=tuple(passes.trace(controller, i, factor) for i, factor in enumerate(TRACE_FACTORS)),
-        trace_factors=TRACE_FACTORS,
         grid=tuned.design.grid,
         finding=tuned.design.kept.finding,
         estimate=tuned.designed.estimate,

@@ -18,9 +18,6 @@ from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
 from tuning_tables.table_kinds import StageTable
 
-TRACE_FACTORS = (0.8, 1.0, 1.2)
-"""Friction factors of the passes that every case shows."""
-
 MOST_ESCAPED = 1e-4
 """Probability that may leave the top of the speed grid before a prediction is called doubtful."""
 
@@ -34,7 +31,7 @@ class TunedCase:
     switching speeds of least cost ended. `statistics` are of the simulated passes, which left with `exit_speeds_m_s`
     (n,), stalls as 0, and stand for `exit_weight` (n,) cuts; `brake_power`: what of their error is for want of it;
     `unavoidable`: the error that no regulator of the position avoids, of any that decides on these epochs. `traces`:
-    passes of the table with the friction factors `trace_factors`.
+    passes of the table with the friction factors `TRACE_FACTORS`.
     """
 
     label: str
@@ -48,7 +45,6 @@ class TunedCase:
     brake_power: BrakePower
     unavoidable: UnavoidableError
     traces: tuple[PassTrace, ...]
-    trace_factors: tuple[float, ...]
 
     @property
     def target_speed_m_s(self) -> float:

@@ -26,9 +26,8 @@ from synth.retarder.feasibility import Feasibility
 from synth.retarder.grid_check import GridCheck
 from synth.retarder.off_nominal.condition import CONDITIONS
 from synth.retarder.off_nominal.outcome import OffNominal, Outcome
-from synth.retarder.tuned_case import TRACE_FACTORS
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
-from synth.simulation.passes import ExitSample, PassTrace
+from synth.simulation.passes import TRACE_FACTORS, ExitSample, PassTrace
 from synth.simulation.unavoidable_error import UnavoidableError
 from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
@@ -101,7 +100,6 @@ def make_case(
         brake_power=brake_power(samples[0], samples[1], target),
         unavoidable=make_unavoidable(feasible),
         traces=tuple(make_trace(plant, target, factor) for factor in TRACE_FACTORS),
-        trace_factors=TRACE_FACTORS,
         grid=GridCheck(1.02 * promised, promised, again=False, most_off=1.25),
         finding=None,
         estimate=None,

@@ -108,7 +108,6 @@ def test_hard_cases_are_drawn_too(cases: list[CaseResult]) -> None:
         "two stages, no passes, no baselines": replace(
             make_case(stages=2),
             traces=(),
-            trace_factors=(),
             comparison=replace(cases[0].comparison, baselines=()),
         ),
         "errors wider than the picture": make_case(spread=1.5),

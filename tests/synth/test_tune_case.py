@@ -14,6 +14,7 @@ from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import Book, tune
 from synth.retarder.watcher import Teller
+from synth.simulation.passes import TRACE_FACTORS
 from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable, read_json, write_json
 
@@ -112,7 +113,7 @@ def test_no_controller_of_a_case_has_less_than_the_unavoidable_error(book: Book[
 
 
 def test_traces_are_passes_of_the_exported_table(case: CaseResult) -> None:
-    for trace, factor in zip(case.traces, case.trace_factors, strict=True):
+    for trace, factor in zip(case.traces, TRACE_FACTORS, strict=True):
         assert trace.exit_speed_m_s == pytest.approx(case.target_speed_m_s, abs=0.3), factor
         assert np.all(np.diff(trace.path_m) >= 0.0)
 

@@ -18,7 +18,7 @@ from synth.frame.picture.house_style import (
     place,
 )
 from synth.retarder.case_result import CaseResult
-from synth.simulation.passes import PassTrace
+from synth.simulation.passes import TRACE_FACTORS, PassTrace
 
 
 def sample_passes(case: CaseResult) -> Figure:
@@ -31,7 +31,7 @@ def sample_passes(case: CaseResult) -> Figure:
     grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1.0))
     speed, pressure, stage = (figure.add_subplot(grid[part]) for part in ((slice(None), 0), (0, 1), (1, 1)))
     handles: list[Line2D] = []
-    for trace, factor, colour, style in zip(case.traces, case.trace_factors, LINE_COLOURS, LINE_STYLES, strict=False):
+    for trace, factor, colour, style in zip(case.traces, TRACE_FACTORS, LINE_COLOURS, LINE_STYLES, strict=False):
         speed.plot(trace.path_m, trace.speed_m_s, color=colour, linestyle=style, linewidth=1.6)
         pressure.step(trace.time_s, trace.overpressure_kpa, where="post", color=colour, linestyle=style, linewidth=1.3)
         stage.step(trace.time_s, trace.stage, where="post", color=colour, linestyle=style, linewidth=1.3)

@@ -12,7 +12,7 @@ from synth.retarder.epochs import Store
 from synth.retarder.sensors.passage_table import passage_table
 from synth.retarder.sensors.sensor_class import SensorClass, SensorPasses
 from synth.retarder.sensors.tuned_passages import tuned_passages
-from synth.retarder.tuned_case import TRACE_FACTORS, TunedCase
+from synth.retarder.tuned_case import TunedCase
 from synth.retarder.validated_table import validated
 from synth.simulation.passage_controller import of_table
 from synth.simulation.passage_sample import (
@@ -24,7 +24,7 @@ from synth.simulation.passage_sample import (
     PassageTrace,
     shares_of_outcomes,
 )
-from synth.simulation.passes import ExitSample
+from synth.simulation.passes import TRACE_FACTORS, ExitSample
 from synth.simulation.replicates import Interval
 from synth.simulation.unavoidable_error import UnavoidableError, unavoidable_error
 from tuning_tables.passages.passage_table import PassageTable
@@ -78,7 +78,6 @@ def sensor_case(setup: SensorClass, aim: Aim, store: Store[PassageTable]) -> Sen
         brake_power=found.brake_power,
         unavoidable=unavoidable(passes, found.sample, target_m_s),
         traces=tuple(passes.trace(controller, i, factor) for i, factor in enumerate(TRACE_FACTORS)),
-        trace_factors=TRACE_FACTORS,
         heard=heard_shares(found.sample),
     )
 

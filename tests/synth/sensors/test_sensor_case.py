@@ -111,7 +111,6 @@ def case(spread_m_s: float, least: float, ci95: tuple[float, float]) -> SensorCa
         unavoidable=UnavoidableError(least, ci95, too_fast=True),
         heard=HeardShares((), (), (), ()),
         traces=(),
-        trace_factors=(),
     )
 
 
