@@ -38,8 +38,8 @@ from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import Solution
 from synth.solver.backward_induction import solve as solve_chain
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
+from synth.solver.descent import Descent
 from synth.solver.one_blas_thread import one_blas_thread
-from synth.solver.polish import Polish
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED
 from synth.solver.tabulate import tabulate as tabulate_lines
@@ -82,7 +82,7 @@ class FittedLines:
 
     problem: Problem
     lines: PolynomialLines
-    polish: Polish
+    polish: Descent[PolynomialLines]
     finding: Finding | None
     check: Chain
 

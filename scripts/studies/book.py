@@ -15,6 +15,7 @@ from synth.retarder.acceptance import CaseVerdict, judged
 from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.off_nominal.outcome import Outcome
+from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
 from synth.retarder.watcher import Teller
@@ -138,14 +139,14 @@ def cells(row: Row) -> tuple[str, ...]:
 def run(options: Options, tell: Tell) -> Results:
     """Tune the book."""
     config = of_masses(load_config(options.config), options.masses_t)
-    book = tune(config, read_back, Teller(tell))
+    book = tune(config, RadarEpochs(), read_back, Teller(tell))
     rows = tuple(map(row_of, book.whole, judged(book.whole, config.acceptance)))
     return Results(config.sha256, config.validation.seed, config.validation.passes, rows)
 
 
 def row_of(case: CaseResult, verdict: CaseVerdict) -> Row:
     """One case of a book."""
-    table, found, power = case.comparison.table, case.comparison.table.statistics, case.brake_power
+    table, found, power = case.measured, case.statistics, case.brake_power
     best, compared = case.comparison.best_baseline, case.comparison
     assert best is not None
     assert power.rms_within_m_s is not None

@@ -25,6 +25,7 @@ from synth.checker.statistics import figures_of
 from synth.checker.table_reading import read_table
 from synth.frame.input_error import InputError
 from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
 from synth.retarder.watcher import Teller
@@ -130,7 +131,7 @@ def configuration(case: str) -> str:
 def rows_of(case: str, options: Options) -> Iterator[Row]:
     """Tune one case and count."""
     config = parse_config(configuration(case), f"study coverage, case {case}")
-    (found,) = tune(config, read_back, Teller(silent)).whole
+    (found,) = tune(config, RadarEpochs(), read_back, Teller(silent)).whole
     read = read_table(to_json(found.table))
     plant, target = found.plant, found.target_speed_m_s
     most = max(options.passes)

@@ -32,7 +32,7 @@ def told_friction(design: Chain, target_m_s: float, degree: int, effort: Effort 
     """The regulator of lines that are solved, fitted and polished on `design`, then polished for each friction."""
     solution = solve(design, Aim(target_m_s, SQUARED_ERROR_ALONE))
     fit = fitted(solution, degree)
-    return by_lines(told_lines(design, target_m_s, polished(solution, fit).lines, fit.curvature, effort))
+    return by_lines(told_lines(design, target_m_s, polished(solution, fit).best, fit.curvature, effort))
 
 
 def simulate_told(plant: Plant, told: Told, passes: RandomPasses) -> ExitSample:

@@ -20,13 +20,13 @@ def tuned_table(config: ResolvedConfig, plant: Plant, target_m_s: float) -> Cont
     """Solved, fitted, polished and rounded as in a tune of `plant`, which need not be one of the configuration."""
     resolution = config.grid.resolution(plant.sensor.sample_period_s).for_pass(plant.pass_m)
     design = persistent_chain(plant, resolution)
-    lines = tuned_lines(design, Aim(target_m_s, config.criterion), config.fit.degree).lines
+    lines = tuned_lines(design, Aim(target_m_s, config.criterion), config.fit.degree).best
     return rounded(config, plant, lines, target_m_s)
 
 
 def lines_of_solution(solution: Solution, degree: int) -> PolynomialLines:
     """Lines of `degree` fitted to a solution, and polished."""
-    return polished(solution, fitted(solution, degree)).lines
+    return polished(solution, fitted(solution, degree)).best
 
 
 def rounded(

@@ -30,6 +30,7 @@ from synth.checker.table_reading import Table, read_table
 from synth.frame.summary import plain, summary_head
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configured import head_of
+from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
 from synth.retarder.watcher import Teller
@@ -95,7 +96,7 @@ def run(options: Options, tell: Tell) -> Verification:
     with tempfile.TemporaryDirectory() as folder:
         directory = Path(folder)
         (directory / "tables").mkdir()
-        book = tune(config, read_back, Teller(tell))
+        book = tune(config, RadarEpochs(), read_back, Teller(tell))
         for case in book.whole:
             write_json(case.table, directory / "tables" / f"{case.table.id}.json")
         summary = {**summary_head("tune", head_of(config), book.created), "tables": {"cases": []}, "files": {}}

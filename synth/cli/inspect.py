@@ -13,6 +13,7 @@ import numpy as np
 from synth.cli.inspect_aim import aim_document, aim_page
 from synth.cli.inspect_code import code_at, code_document, code_sentence
 from synth.cli.inspect_passages import passage_document, passage_page
+from synth.cli.inspect_table import table_words
 from synth.frame.command import Limit, Verdict
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.printed_page import Exhibit, print_page
@@ -94,23 +95,8 @@ def file_document(file: TableFile) -> dict[str, Any]:
 
 def table_page(table: ControllerTable, says_none: bool) -> list[Exhibit]:
     """A table in words, a line a fact, and its lines; `says_none`: one fact about a missing estimator too."""
-    retarder, cut, predicted = table.retarder, table.cut, table.predicted
-    zones = ", ".join(f"{begin:g} to {end:g} m" for begin, end in retarder.zones_m)
-    validated = "it was not simulated"
-    if table.validated:
-        low, high = table.validated.rms_ci95_m_s
-        rms = table.validated.rms_m_s
-        validated = f"simulated rms {rms:.4f} m/s [{low:.4f}, {high:.4f}] in {table.validated.passes} passes"
-    number = "without a number" if cut.number is None else f"number {cut.number}"
-    origin = "exact" if predicted.passes is None else f"from {predicted.passes} simulated passes"
     words: list[Exhibit] = [
-        f"  {table.id}: leave with {table.target_speed_m_s:g} m/s",
-        f"    retarder   {retarder.name}; zones {zones}; the pass ends at {retarder.exit_m:g} m",
-        f"    cut        category {cut.category} ({number}), {cut.mass_t:g} t on {len(cut.axle_offsets_m)} axles",
-        f"    made       {table.created} by {table.generator.name} {table.generator.version}, "
-        f"configuration {table.generator.config_sha256[:16]}",
-        f"    promised   rms {predicted.rms_m_s:.4f} m/s, bias {predicted.bias_m_s:+.4f} m/s, over-speed "
-        f"{predicted.p_overspeed:.2g}, {predicted.switchings:.1f} switchings a pass ({origin}); {validated}",
+        *table_words(table),
         f"    lines      degree {table.degree}, path {table.valid.s_m[0]:g} to {table.valid.s_m[1]:g} m, "
         f"speed {table.valid.v_m_s[0]:g} to {table.valid.v_m_s[1]:g} m/s",
     ]

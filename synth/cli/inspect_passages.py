@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from synth.cli.inspect_table import table_words
 from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
@@ -24,23 +25,10 @@ def passage_document(table: PassageTable) -> dict[str, Any]:
 
 def passage_page(table: PassageTable) -> list[Exhibit]:
     """A table in words, a line a fact, then its switching speeds."""
-    retarder, cut, predicted, sensors = table.retarder, table.cut, table.predicted, table.sensors
-    zones = ", ".join(f"{begin:g} to {end:g} m" for begin, end in retarder.zones_m)
-    validated = "it was not simulated"
-    if table.validated:
-        low, high = table.validated.rms_ci95_m_s
-        rms = table.validated.rms_m_s
-        validated = f"simulated rms {rms:.4f} m/s [{low:.4f}, {high:.4f}] in {table.validated.passes} passes"
-    number = "without a number" if cut.number is None else f"number {cut.number}"
+    sensors = table.sensors
     places = ", ".join(f"{place:g}" for place in sensors.path_m)
     return [
-        f"  {table.id}: leave with {table.target_speed_m_s:g} m/s",
-        f"    retarder   {retarder.name}; zones {zones}; the pass ends at {retarder.exit_m:g} m",
-        f"    cut        category {cut.category} ({number}), {cut.mass_t:g} t on {len(cut.axle_offsets_m)} axles",
-        f"    made       {table.created} by {table.generator.name} {table.generator.version}, "
-        f"configuration {table.generator.config_sha256[:16]}",
-        f"    promised   rms {predicted.rms_m_s:.4f} m/s, bias {predicted.bias_m_s:+.4f} m/s, over-speed "
-        f"{predicted.p_overspeed:.2g}, {predicted.switchings:.1f} switchings a pass (exact); {validated}",
+        *table_words(table),
         f"    sensors    {len(sensors.path_m)} at {places} m; base {sensors.base_m:g} m, timer "
         f"+-{1e3 * sensors.timer_noise_s:g} ms in steps of {1e3 * sensors.timer_resolution_s:g} ms; "
         f"{AXLES[sensors.decides_on]} decides",

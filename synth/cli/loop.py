@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from synth.frame.input_error import InputError
 from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from synth.retarder.configuration.resolved_config import ResolvedConfig
-    from synth.retarder.control_loop import ControlLoop
+    from synth.retarder.line_control_loop import LineControlLoop
     from synth.retarder.passage_control_loop import PassageControlLoop
     from tuning_tables.table_kinds import StageTable
 
-    AnyLoop: TypeAlias = ControlLoop | PassageControlLoop
+    AnyLoop: TypeAlias = LineControlLoop | PassageControlLoop
 
 DOCUMENT = "loops.json"
 
@@ -48,7 +48,7 @@ def loop_command(source: Path, output: Path, config_path: Path | None, as_json: 
                 files += map(str, directory.write_all(figure_files(figure, f"{file_stem(loop.table)}-{name}")))
             loops.append(loop)
             say(f"{loop.table.id}: {sentence(loop)}")
-        document = plain({"loops": [document_of(loop) for loop in loops], "files": files})
+        document = plain({"loops": [loop.document for loop in loops], "files": files})
         text = json.dumps(document, indent=1, ensure_ascii=False)
         directory.write(DOCUMENT, f"{text}\n".encode())
     if as_json:
@@ -71,21 +71,20 @@ def any_tables(source: Path) -> list[StageTable]:
 
 def closing(table: StageTable, config: ResolvedConfig, source: str) -> Callable[[], AnyLoop]:
     """What closes the loop of `table` with the plant of `config` that it is for; `InputError` if there is none."""
-    from synth.retarder.control_loop import control_loop
-    from synth.retarder.passage_class import passage_class
+    from synth.retarder.line_control_loop import line_control_loop
     from synth.retarder.passage_control_loop import passage_control_loop
-    from synth.retarder.validation.revalidation import plant_for
+    from synth.retarder.served_class import served_class
     from tuning_tables.decisions import Decisions
     from tuning_tables.passages.passage_table import PassageTable
 
     if isinstance(table, PassageTable):
-        return partial(passage_control_loop, table, passage_class(table, config, source))
+        return partial(passage_control_loop, table, served_class(table, config, source))
     if table.decisions is Decisions.AT_ANY_TIME:
         raise InputError(
             f"{table.id}: the table decides at any time; the loop of python-control is built for tables that decide at "
             "rest and for point sensors: give one of those"
         )
-    return partial(control_loop, table, *plant_for(table, config, source))
+    return partial(line_control_loop, table, served_class(table, config, source))
 
 
 def pictures(loop: AnyLoop) -> dict[str, Figure]:
@@ -104,14 +103,6 @@ def pictures(loop: AnyLoop) -> dict[str, Figure]:
     for i, hunting in enumerate(loop.hunting):
         figures["cycle" if i == 0 else f"cycle-{i + 1}"] = loop_cycle(loop, hunting)
     return figures
-
-
-def document_of(loop: AnyLoop) -> dict[str, Any]:
-    """A loop for programs."""
-    from synth.retarder.control_loop import loop_document
-    from synth.retarder.passage_control_loop import PassageControlLoop, passage_loop_document
-
-    return passage_loop_document(loop) if isinstance(loop, PassageControlLoop) else loop_document(loop)
 
 
 def sentence(loop: AnyLoop) -> str:

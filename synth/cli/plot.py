@@ -92,7 +92,7 @@ def figures_of(table: StageTable, around: Surroundings) -> Mapping[str, Figure]:
 def line_figures(table: ControllerTable, around: Surroundings) -> Mapping[str, Figure]:
     """The pictures of a table with lines by the end of their names."""
     from synth.retarder.pictures.table_picture import Passes, drawn_passes, table_lines, table_passes, table_surfaces
-    from synth.retarder.validation.revalidation import plant_for
+    from synth.retarder.served_class import plant_for
 
     def simulate() -> Passes:
         plant = plant_for(table, around.config, around.place)[1]
@@ -105,23 +105,24 @@ def line_figures(table: ControllerTable, around: Surroundings) -> Mapping[str, F
 
 def passage_figures(table: PassageTable, around: Surroundings) -> Mapping[str, Figure]:
     """The pictures of a table for point sensors by the end of their names."""
-    from synth.retarder.passage_class import passage_class
-    from synth.retarder.pictures.table_picture import FACTORS, subject
+    from synth.retarder.pictures.table_picture import subject
     from synth.retarder.sensors.pictures.passes_with_readings import passes_figure
     from synth.retarder.sensors.pictures.switching_speeds import switching_speeds
     from synth.retarder.sensors.sensor_class import sensor_passes
+    from synth.retarder.served_class import served_class
     from synth.simulation.passage_controller import of_table
     from synth.simulation.passage_sample import PassageTrace
+    from synth.simulation.passes import TRACE_FACTORS
     from synth.simulation.stratified_passes import stratified_passes
 
     def simulate() -> tuple[PassageTrace, ...]:
-        made_for = passage_class(table, around.config, around.place)
-        few = stratified_passes(around.config.validation.seed, 0, len(FACTORS))
-        passes = sensor_passes(made_for.plant, made_for.sensors, few)
-        return tuple(passes.trace(of_table(table, tracking=True), i, factor) for i, factor in enumerate(FACTORS))
+        served = served_class(table, around.config, around.place)
+        few = stratified_passes(around.config.validation.seed, 0, len(TRACE_FACTORS))
+        passes = sensor_passes(served.plant, served.sensors, few)
+        return tuple(passes.trace(of_table(table, tracking=True), i, factor) for i, factor in enumerate(TRACE_FACTORS))
 
     traces = around.passes(simulate)
     figures = {"switching-speeds": switching_speeds(subject(table), [table], [traces or ()])}
     if traces is None:
         return figures
-    return {**figures, "passes": passes_figure(subject(table), table, traces, FACTORS)}
+    return {**figures, "passes": passes_figure(subject(table), table, traces)}

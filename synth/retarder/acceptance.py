@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 
 from synth.frame.command import Limit
 from synth.frame.printed_numbers import counted
-from synth.retarder.case_names import case_name
 from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.settings import AcceptanceSettings
 from synth.retarder.failed_case import FailedCase, told_together
 from synth.retarder.judgement import Judgement, interval_text, judgement
-from synth.simulation.exit_statistics import ExitStatistics
+from synth.retarder.tuned_case import TunedCase
 from synth.simulation.replicates import share_of
 from synth.simulation.unavoidable_error import UnavoidableError
 from tuning_tables import Decisions
@@ -48,26 +47,25 @@ class CaseVerdict:
         return self.judgement.word if self.feasible else "infeasible"
 
 
-def judged(cases: Sequence[CaseResult], limits: AcceptanceSettings) -> tuple[CaseVerdict, ...]:
+def judged(cases: Sequence[TunedCase], limits: AcceptanceSettings) -> tuple[CaseVerdict, ...]:
     """What the simulated passes of each case say of `limits`."""
     return tuple(judge_case(case, limits) for case in cases)
 
 
 def limits_of(
     verdicts: Sequence[CaseVerdict],
-    found: Sequence[ExitStatistics],
+    cases: Sequence[TunedCase],
     limits: AcceptanceSettings,
     failed: Sequence[FailedCase],
 ) -> Iterator[Limit]:
     """A limit for each case that does not keep all of `limits`, or one that tells the worst case.
 
-    `found`: what was simulated of the cases of these `verdicts`; `failed`: cases without a table. Infeasible cases do
-    not count.
+    `verdicts`: on these `cases`; `failed`: cases without a table. Infeasible cases do not count.
     """
     if failed:
         every = counted(len(verdicts) + len(failed), "case")
         yield Limit(f"there is no table for {len(failed)} of {every} ({told_together(failed)})", False)
-    feasible = [(each, verdict) for each, verdict in zip(found, verdicts, strict=True) if verdict.feasible]
+    feasible = [(case.statistics, verdict) for case, verdict in zip(cases, verdicts, strict=True) if verdict.feasible]
     if not feasible:
         yield Limit("no case is feasible, so there is nothing to accept", False)
         return
@@ -93,14 +91,17 @@ def advice_of(verdicts: Sequence[CaseVerdict]) -> str:
     return f"Try {', '.join(ways)}." if ways else ""
 
 
-def judge_case(case: CaseResult, limits: AcceptanceSettings) -> CaseVerdict:
-    """The verdict on one case, from the passes that its table was simulated on."""
+def judge_case(case: TunedCase, limits: AcceptanceSettings) -> CaseVerdict:
+    """The verdict on one case, from the passes that its table was simulated on.
+
+    A case is infeasible if its unavoidable error makes the rms miss the limit, with all of the 95 % interval.
+    """
     error = case.exit_speeds_m_s.astype(float) - case.target_speed_m_s
     over = share_of(error > limits.overspeed_margin_m_s, case.exit_weight)
-    found = judgement(case.comparison.table.statistics, over, case.table.predicted, limits)
-    judged = verdict_within(case_name(case), found, case.feasibility.unavoidable, limits)
-    missed = case.comparison.table.statistics.rms_ci95_m_s[0] > limits.rms_m_s
-    if judged.word == "missed" and missed:
+    found = judgement(case.statistics, over, case.table.predicted, limits)
+    judged = verdict_within(case.name, found, case.unavoidable, limits)
+    missed = judged.word == "missed" and case.statistics.rms_ci95_m_s[0] > limits.rms_m_s
+    if missed and isinstance(case, CaseResult):
         return replace(judged, within_reach=within_reach(case, limits.rms_m_s), advice=what_to_change(case))
     return judged
 
@@ -124,7 +125,7 @@ def within_reach(case: CaseResult, limit_m_s: float) -> str:
     best = case.comparison.best_baseline
     if best is not None and best.statistics.rms_ci95_m_s[1] <= limit_m_s:
         return f"which the position can: a tuned {best.name} has {best.statistics.rms_m_s:.4f} m/s"
-    return f"which the position does not forbid: {unavoidable_text(case.feasibility.unavoidable)}"
+    return f"which the position does not forbid: {unavoidable_text(case.unavoidable)}"
 
 
 def what_to_change(case: CaseResult) -> tuple[str, ...]:

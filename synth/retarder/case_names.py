@@ -1,26 +1,10 @@
-"""What cases and their controllers are called in pictures and reports, and how they are grouped."""
+"""How cases are grouped, and what files are called."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from synth.retarder.case_result import CaseResult
-
-
-def target_name(case: CaseResult) -> str:
-    """The commanded exit speed in words."""
-    return f"target {case.target_speed_m_s:g} m/s"
-
-
-def case_name(case: CaseResult) -> str:
-    """Cut class and target in one line."""
-    return f"{case.label}, {target_name(case)}"
-
-
-def cut_name(case: CaseResult) -> str:
-    """Cut class with what matters of the cut: category, mass, axles."""
-    cut = case.plant.cut
-    return f"{case.label} (category {cut.category}, {cut.mass_t:g} t, {cut.axles} axles)"
+from synth.retarder.tuned_case import Case
 
 
 def file_stem(*parts: str) -> str:
@@ -29,9 +13,9 @@ def file_stem(*parts: str) -> str:
     return "-".join(text.split())
 
 
-def by_class(cases: Iterable[CaseResult]) -> tuple[tuple[CaseResult, ...], ...]:
+def by_class(cases: Iterable[Case]) -> tuple[tuple[Case, ...], ...]:
     """The cases of each cut class, in the order in which the classes first appear."""
-    groups: dict[str, list[CaseResult]] = {}
+    groups: dict[str, list[Case]] = {}
     for case in cases:
         groups.setdefault(case.label, []).append(case)
     return tuple(tuple(group) for group in groups.values())

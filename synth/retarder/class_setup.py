@@ -25,6 +25,9 @@ TRIM_PASSES = 1800
 """Passes that lines for the estimated speed are trimmed on: those that follow. With twice as many the mean rms of the
 default book is the same within 0.5 %."""
 
+Stamp = tuple[Generator, str, str]
+"""What one table is stamped with: program and problem, its name, and when."""
+
 
 @dataclass(frozen=True)
 class Origin:
@@ -32,6 +35,10 @@ class Origin:
 
     generator: Generator
     created: str
+
+    def stamp(self, stem: str, target_speed_m_s: float) -> Stamp:
+        """That of the table for a target, whose name, also as a file name, begins with `stem`."""
+        return self.generator, f"{stem}-to-{target_speed_m_s:g}-m-s", self.created
 
 
 @dataclass(frozen=True)
@@ -61,9 +68,9 @@ class ClassSetup:
     estimator: EstimatorSetup | None
     regulator: RegulatorSettings
 
-    def table_id(self, target_speed_m_s: float) -> str:
-        """Name of the table for a target, also as a file name."""
-        return f"{self.table_stem}-to-{target_speed_m_s:g}-m-s"
+    def stamp(self, target_speed_m_s: float) -> Stamp:
+        """That of the table for a target."""
+        return self.origin.stamp(self.table_stem, target_speed_m_s)
 
 
 def class_setup(

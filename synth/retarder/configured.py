@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from plant_models import Plant, PlantError
+from plant_models import PlantError
 from synth.frame.command import Head
 from synth.frame.input_error import InputError
-from synth.problem.resolution import Resolution
 from synth.retarder.configuration.resolved_config import ResolvedConfig
+
+if TYPE_CHECKING:
+    from synth.retarder.epochs import Epochs
 
 
 def head_of(config: ResolvedConfig, warnings: tuple[str, ...] = (), reads: tuple[Path, ...] = ()) -> Head:
@@ -31,17 +33,13 @@ def sensors_left_aside(config: ResolvedConfig) -> tuple[str, ...]:
     return ("tables are made for the radar of [sensor]; 'retarder-synth sensors tune' makes those for [sensors]",)
 
 
-def require_room(config: ResolvedConfig, place: str, workers: int) -> None:
-    """`InputError` about the file `place` if the grid would not fit into memory."""
-    for label, plant in config.plants():
-        require_memory_for(label, plant, config.grids(plant), place, workers)
-
-
-def require_memory_for(label: str, plant: Plant, grids: Sequence[Resolution], place: str, workers: int) -> None:
-    """`InputError` about the file `place` if `grids` of the class `label` would not fit into memory."""
+def require_room(config: ResolvedConfig, epochs: Epochs[Any, Any], place: str, workers: int) -> None:
+    """`InputError` about the file `place` if the grids of a tune on `epochs` would not fit into memory."""
     from synth.solver.chain.grid import require_memory
 
-    try:
-        require_memory(label, plant, grids, workers)
-    except PlantError as error:
-        raise InputError(f"{place}: {str(error).replace('grid: ', 'grid.', 1)}") from None
+    for label, plant in config.plants():
+        served, grids = epochs.grids(config, plant)
+        try:
+            require_memory(label, served, grids, workers)
+        except PlantError as error:
+            raise InputError(f"{place}: {str(error).replace('grid: ', 'grid.', 1)}") from None

@@ -19,8 +19,7 @@ from tuning_tables import ControllerTable, Decisions
 
 def rounded(setup: ClassSetup, lines: PolynomialLines | PolynomialSurfaces, target_speed_m_s: float) -> ControllerTable:
     """The table of `lines` for the measured speed, not yet predicted."""
-    origin = (setup.origin.generator, setup.table_id(target_speed_m_s), setup.origin.created)
-    return tabulate(setup.plant, lines, target_speed_m_s, UNPREDICTED, *origin)
+    return tabulate(setup.plant, lines, target_speed_m_s, UNPREDICTED, *setup.stamp(target_speed_m_s))
 
 
 @frozen_arrays

@@ -18,7 +18,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.loop.motion import brake_rows
 from synth.kernels.loop.passes import Draws
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.validation.revalidation import plant_for
+from synth.retarder.served_class import plant_for
 from synth.simulation.closed_loop import ClosedLoop, close_loop
 from synth.simulation.controllers import Controller, TableController, fixed
 from synth.simulation.lost_readings import readings_z

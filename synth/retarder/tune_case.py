@@ -3,31 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from synth.problem.problem import Problem
+from plant_models import Plant
+from synth.problem.aim import Aim
 from synth.retarder.case_result import CaseResult, CaseStudy
-from synth.retarder.class_setup import ClassSetup
+from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup
 from synth.retarder.comparison.baselines import tune_baselines
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.friction_bound import friction_bound
 from synth.retarder.comparison.measured import Measured
-from synth.retarder.comparison.served_entry import EntrySweep, feasibility_of
+from synth.retarder.comparison.served_entry import EntrySweep, entry_sweep, feasibility_of
+from synth.retarder.epochs import Ground, Store
 from synth.retarder.estimation.estimated_table import controller_of
-from synth.retarder.off_nominal.trial import Trials
-from synth.retarder.pareto.case_front import Front
+from synth.retarder.off_nominal.trial import Trials, trials
+from synth.retarder.pareto.case_front import Front, pareto_front
 from synth.retarder.policy_map import policy_map
-from synth.retarder.tuned_table import Store, TunedTable, ValidatedTable, tuned_table, validated_table
+from synth.retarder.tuned_table import TunedTable, ValidatedLines, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
-from synth.simulation.passes import ExitSample
+from synth.simulation.passes import TRACE_FACTORS, ExitSample
+from synth.simulation.random_passes import random_passes
+from synth.simulation.unavoidable_error import unavoidable_error
 from synth.solver.backward_induction import Solution
 from synth.solver.tabulate import lines_of
-from tuning_tables import Decisions
+from tuning_tables import ControllerTable, Decisions
 
-TRACE_FACTORS = (0.8, 1.0, 1.2)
 LINE_NODES = 301
 INDIFFERENCE_SHOWN_M2_S2 = 1e-4
 """Costs that differ by less than (1 cm/s)² are drawn as equal."""
@@ -48,60 +52,76 @@ class CaseOrder:
     limit_m_s: float
     tuning: CommonPasses
     trials: Trials
-    store: Store
+    store: Store[ControllerTable]
     front: Front | None
+
+
+def case_orders(ground: Ground[ControllerTable], label: str, plant: Plant, pareto: bool) -> list[CaseOrder]:
+    """All targets of one cut class solved, and what is to be done with each; `pareto`: front of each case too."""
+    config = ground.config
+    setup = class_setup(config, label, plant, ground.passes, ground.origin)
+    aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
+    rehearsal = setup.passes.of_others(random_passes(config.validation.seed + 1, 0, TUNING_PASSES))
+    entries, off_nominal = entry_sweep(setup.passes), trials(setup.passes)
+    fronts = [partial(pareto_front, config, setup, aim) if pareto else None for aim in aims]
+    return [
+        CaseOrder(setup, solution, entries, config.acceptance.rms_m_s, rehearsal, off_nominal, ground.store, front)
+        for solution, front in zip(solutions(setup.design, aims), fronts, strict=True)
+    ]
 
 
 def tune_case(order: CaseOrder) -> CaseResult:
     """Tune one case; the table is validated as read back from where it is stored."""
-    setup, solution = order.setup, order.solution
+    setup, solution, target = order.setup, order.solution, order.solution.aim.target_speed_m_s
+    passes, exits = setup.passes, setup.passes.exit_range
     tuned = tuned_table(setup, solution)
     validated = validated_table(setup, tuned.table, order.store)
-    told = friction_bound(setup, tuned, validated)
+    controller, told = TableController(validated.table), friction_bound(setup, tuned, validated)
     return CaseResult(
         label=setup.label,
-        problem=Problem(setup.plant, solution.aim),
+        plant=setup.plant,
         table=validated.table,
         predicted=tuned.predicted,
-        polish=tuned.design.kept.polish if tuned.surfaces is None else tuned.surfaces.polish,
-        grid=tuned.design.grid,
-        finding=tuned.design.kept.finding,
-        estimate=tuned.trimmed,
+        polish=tuned.designed.polish,
         exit_speeds_m_s=validated.sample.exit_speed_m_s.astype(np.float32),
         exit_weight=validated.sample.weight,
+        statistics=validated.statistics,
         brake_power=validated.brake_power,
+        unavoidable=unavoidable_error(exits.slowest, exits.fastest, target),
+        traces=tuple(passes.trace(controller, i, factor) for i, factor in enumerate(TRACE_FACTORS)),
+        grid=tuned.design.grid,
+        finding=tuned.design.kept.finding,
+        estimate=tuned.designed.estimate,
         comparison=comparison(order, tuned, validated, told),
-        feasibility=feasibility_of(setup.passes, order.entries, solution.aim.target_speed_m_s, order.limit_m_s),
+        feasibility=feasibility_of(order.entries, target, order.limit_m_s),
         study=case_study(order, validated),
         front=None if order.front is None else order.front(),
         off_nominal=order.trials.of(validated.table, validated.sample),
     )
 
 
-def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, told: ExitSample) -> Comparison:
+def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedLines, told: ExitSample) -> Comparison:
     """The closed loops of all controllers on the common passes; `told`: that of the reference."""
     passes, target, sample = order.setup.passes, order.solution.aim.target_speed_m_s, validated.sample
     baselines = tune_baselines(order.tuning, target, permitted(tuned))
     by_baselines = {each.name: passes.run(each.controller) for each in baselines}
     best = min(by_baselines, key=lambda name: exit_statistics(by_baselines[name], target).rms_m_s)
-    predicted = validated.table.predicted
 
     def at_rest() -> Measured:
-        controller = controller_of(tuned.lines, validated.table.estimator)
+        controller = controller_of(tuned.at_rest.lines, validated.table.estimator)
         return beside_table("commands at rest", passes.run(controller), sample, target)
 
     return Comparison(
-        table=Measured("table", validated.statistics, predicted.rms_m_s, predicted.passes),
         friction_known=beside_table("friction known", told, sample, target),
         baselines=tuple(beside_table(name, each, sample, target) for name, each in by_baselines.items()),
         baseline_ratio_ci95=beside_table(best, by_baselines[best], told, target).table_ratio_ci95,
-        at_rest=None if tuned.surfaces is None else at_rest(),
+        at_rest=None if tuned.at_any_time is None else at_rest(),
     )
 
 
 def permitted(tuned: TunedTable) -> tuple[Decisions, ...]:
     """When laws that the table is compared with may command: as it, or less often."""
-    return (Decisions.AT_REST,) if tuned.surfaces is None else (Decisions.AT_REST, Decisions.AT_ANY_TIME)
+    return (Decisions.AT_REST,) if tuned.at_any_time is None else (Decisions.AT_REST, Decisions.AT_ANY_TIME)
 
 
 def beside_table(name: str, sample: ExitSample, table: ExitSample, target_speed_m_s: float) -> Measured:
@@ -113,15 +133,12 @@ def beside_table(name: str, sample: ExitSample, table: ExitSample, target_speed_
     return Measured(name, found, table_ratio=ratio, table_ratio_ci95=ci95)
 
 
-def case_study(order: CaseOrder, validated: ValidatedTable) -> CaseStudy:
-    """Lines, policy map, and three passes."""
-    passes, controller = order.setup.passes, TableController(validated.table)
+def case_study(order: CaseOrder, validated: ValidatedLines) -> CaseStudy:
+    """Lines and policy map."""
     return CaseStudy(
         table_lines=lines_of(
             validated.table, np.linspace(order.setup.plant.start_m, order.setup.plant.exit_m, LINE_NODES)
         ),
         solver_lines=order.solution.lines,
         policy_map=policy_map(order.solution, INDIFFERENCE_SHOWN_M2_S2),
-        traces=tuple(passes.trace(controller, i, factor) for i, factor in enumerate(TRACE_FACTORS)),
-        trace_factors=TRACE_FACTORS,
     )

@@ -5,8 +5,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.aim import Aim
@@ -14,38 +15,40 @@ from synth.problem.any_time_resolution import design_resolution
 from synth.retarder.any_time.surface_table import polished_surfaces, starting_surfaces
 from synth.retarder.checked_design import NODES_KEPT, CheckedDesign, checked_design
 from synth.retarder.class_setup import ClassSetup, EstimatorSetup
+from synth.retarder.epochs import Store
 from synth.retarder.estimation.estimated_lines import SimulatedRms, estimated_lines
 from synth.retarder.estimation.estimated_surfaces import estimated_surfaces
 from synth.retarder.estimation.estimated_table import EstimatedTable, trimmed_on
 from synth.retarder.estimation.simulated_prediction import density_of, simulated_prediction
 from synth.retarder.rounded_table import PredictedTable, rounded, with_prediction
+from synth.retarder.validated_table import ValidatedTable, validated
 from synth.simulation.closed_loop import TableController
-from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics
 from synth.simulation.passes import ExitSample
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
-from synth.solver.any_time.surface_polish import SurfacePolish
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
+from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED, tabulate
-from tuning_tables import ControllerTable, Validated, from_json, to_json
+from tuning_tables import ControllerTable, from_json, to_json
+
+Lines = TypeVar("Lines", PolynomialLines, PolynomialSurfaces)
 
 AnyEstimate = EstimatedTable[PolynomialLines] | EstimatedTable[PolynomialSurfaces]
 
-Store = Callable[[ControllerTable], ControllerTable]
-"""Keeps a table, and gives it back as a controller will read it."""
-
+ValidatedLines = ValidatedTable[ControllerTable, ExitSample]
 
 AnyDesign = CheckedDesign[PredictedTable] | CheckedDesign[SimulatedRms]
 
 
 @dataclass(frozen=True)
-class SurfaceDesign:
-    """How surfaces were polished, and with an estimator how they were trimmed."""
+class Designed(Generic[Lines]):
+    """Lines or surfaces as a table has them: how they were polished, and with an estimator how they were trimmed."""
 
-    polish: SurfacePolish
-    estimate: EstimatedTable[PolynomialSurfaces] | None
+    lines: Lines
+    polish: Descent[Lines]
+    estimate: EstimatedTable[Lines] | None
 
 
 @frozen_arrays
@@ -54,35 +57,20 @@ class TunedTable:
     """The rounded table with its prediction, not yet simulated.
 
     `predicted`: the exit density behind the prediction; `design`: of lines for commands at rest, and for the speed that
-    the regulator compares with them; `estimate`: with an estimator, how these were trimmed; `surfaces`: those of a
-    regulator that commands at any time.
+    the regulator compares with them; `at_rest`: these lines; `at_any_time`: the surfaces that were polished from them,
+    None for a regulator that commands at rest.
     """
 
     table: ControllerTable
     predicted: ExitDensity
     design: AnyDesign
-    estimate: EstimatedTable[PolynomialLines] | None
-    surfaces: SurfaceDesign | None
+    at_rest: Designed[PolynomialLines]
+    at_any_time: Designed[PolynomialSurfaces] | None
 
     @property
-    def lines(self) -> PolynomialLines:
-        """The lines for commands at rest."""
-        return self.design.kept.lines if self.estimate is None else self.estimate.lines
-
-    @property
-    def trimmed(self) -> AnyEstimate | None:
-        """With an estimator, how the table's lines or surfaces were trimmed."""
-        return self.estimate if self.surfaces is None else self.surfaces.estimate
-
-
-@dataclass(frozen=True)
-class ValidatedTable:
-    """The table as stored, with what the closed loop on the common passes says of it."""
-
-    table: ControllerTable
-    sample: ExitSample
-    statistics: ExitStatistics
-    brake_power: BrakePower
+    def designed(self) -> Designed[PolynomialLines] | Designed[PolynomialSurfaces]:
+        """What the table has."""
+        return self.at_any_time or self.at_rest
 
 
 def solutions(chain: Chain, aims: Sequence[Aim]) -> tuple[Solution, ...]:
@@ -110,29 +98,33 @@ def measuring_table(setup: ClassSetup, solution: Solution) -> TunedTable:
         return with_prediction(setup.check, rounded(setup, lines, solution.aim.target_speed_m_s))
 
     design = checked_design(solution, setup.check, setup.degree, judge)
-    return TunedTable(design.verdict.table, design.verdict.density, design, None, None)
+    lines = Designed(design.kept.lines, design.kept.polish, None)
+    return TunedTable(design.verdict.table, design.verdict.density, design, lines, None)
 
 
 def estimating_table(setup: ClassSetup, estimator: EstimatorSetup, solution: Solution) -> TunedTable:
     """The table of lines for the estimated speed: trimmed on days of another mean friction, predicted by passes."""
     design, made = estimated_lines(setup.plant, solution, setup.degree, estimator.tuning, estimator.days)
     target_m_s = solution.aim.target_speed_m_s
-    return TunedTable(*predicted_by_passes(setup, made, estimator, target_m_s), design, made, None)
+    lines = Designed(made.lines, design.kept.polish, made)
+    return TunedTable(*predicted_by_passes(setup, made, estimator, target_m_s), design, lines, None)
 
 
-def at_any_time(setup: ClassSetup, aim: Aim, at_rest: TunedTable) -> TunedTable:
-    """The table of surfaces for commands at any time, polished from the lines of a table `at_rest`."""
-    plant, target_m_s, gauge = setup.plant, aim.target_speed_m_s, setup.regulator.has_gauge
-    if setup.estimator is None or at_rest.estimate is None:
+def at_any_time(setup: ClassSetup, aim: Aim, made: TunedTable) -> TunedTable:
+    """The table of surfaces for commands at any time, polished from the lines of a table that was `made` for commands
+    at rest."""
+    plant, target_m_s, gauge, lines = setup.plant, aim.target_speed_m_s, setup.regulator.has_gauge, made.at_rest
+    if setup.estimator is None or lines.estimate is None:
         steps = design_resolution(plant, target_m_s)
-        polish = polished_surfaces(plant, aim, starting_surfaces(plant, at_rest.lines, gauge), steps)
-        told = with_prediction(setup.check, rounded(setup, polish.surfaces, target_m_s))
-        made, predicted = None, (told.table, told.density)
-    else:
-        polish, untrimmed = estimated_surfaces(plant, aim, at_rest.estimate, gauge, setup.estimator.tuning)
-        made = trimmed_on(setup.estimator.days, target_m_s, untrimmed)
-        predicted = predicted_by_passes(setup, made, setup.estimator, target_m_s)
-    return TunedTable(*predicted, at_rest.design, at_rest.estimate, SurfaceDesign(polish, made))
+        polish = polished_surfaces(plant, aim, starting_surfaces(plant, lines.lines, gauge), steps)
+        told = with_prediction(setup.check, rounded(setup, polish.best, target_m_s))
+        surfaces = Designed(polish.best, polish, None)
+        return replace(made, table=told.table, predicted=told.density, at_any_time=surfaces)
+    polish, untrimmed = estimated_surfaces(plant, aim, lines.estimate, gauge, setup.estimator.tuning)
+    trimmed = trimmed_on(setup.estimator.days, target_m_s, untrimmed)
+    table, predicted = predicted_by_passes(setup, trimmed, setup.estimator, target_m_s)
+    surfaces = Designed(trimmed.lines, polish, trimmed)
+    return replace(made, table=table, predicted=predicted, at_any_time=surfaces)
 
 
 def read_back(table: ControllerTable) -> ControllerTable:
@@ -140,22 +132,17 @@ def read_back(table: ControllerTable) -> ControllerTable:
     return from_json(to_json(table))
 
 
-def validated_table(setup: ClassSetup, table: ControllerTable, store: Store) -> ValidatedTable:
-    """`table` stored, simulated on the setup's passes as it is read back, and stored with the figures."""
-    target, kept = table.target_speed_m_s, store(table)
-    sample = setup.passes.run(TableController(kept))
-    found = exit_statistics(sample, target)
-    figures = Validated(found.passes, found.rms_m_s, found.rms_ci95_m_s)
-    power = brake_power(sample, setup.passes.at_full_brake, target)
-    return ValidatedTable(store(kept.with_validated(figures)), sample, found, power)
+def validated_table(setup: ClassSetup, table: ControllerTable, store: Store[ControllerTable]) -> ValidatedLines:
+    """`table` simulated on the setup's passes as it is read back, and stored with the figures."""
+    return validated(table, store, lambda kept: setup.passes.run(TableController(kept)), setup.passes.at_full_brake)
 
 
 def predicted_by_passes(
     setup: ClassSetup, made: AnyEstimate, estimator: EstimatorSetup, target_speed_m_s: float
 ) -> tuple[ControllerTable, ExitDensity]:
     """The rounded table for the estimated speed, with what passes that nothing else uses say of it."""
-    origin = (setup.origin.generator, setup.table_id(target_speed_m_s), setup.origin.created)
-    table = tabulate(setup.plant, made.lines, target_speed_m_s, UNPREDICTED, *origin, made.estimator)
+    stamp = setup.stamp(target_speed_m_s)
+    table = tabulate(setup.plant, made.lines, target_speed_m_s, UNPREDICTED, *stamp, made.estimator)
     sample = estimator.prediction.run(TableController(table))
     density = density_of(sample, setup.design.grid.speed_m_s)
     return replace(table, predicted=simulated_prediction(sample, target_speed_m_s)), density

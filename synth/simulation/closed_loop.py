@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise
 
@@ -28,10 +27,10 @@ from synth.kernels.loop.trace import EVENT_FIELDS, Trace
 from synth.simulation.controllers import Controller, LineController, Regulator, TableController, fixed
 from synth.simulation.drive_pieces import drive_pieces, empty_periods
 from synth.simulation.lost_readings import readings_z
+from synth.simulation.many_passes import many_passes
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.path_cells import path_cells
 from synth.simulation.random_passes import RandomPasses
-from synth.simulation.stratified_passes import stratified_passes
 
 __all__ = [
     "ClosedLoop",
@@ -46,9 +45,6 @@ __all__ = [
 
 SUBSTEP_S = 0.02
 """Longest part of a transient that is played as its mean (see the convergence test): within 0.1 mm/s at the exit."""
-
-CHUNK_PASSES = 2000
-"""Passes whose random numbers are in memory at a time, for each thread (4 MB)."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +65,11 @@ class ClosedLoop:
     def stages(self) -> int:
         """Number of stages K + 1."""
         return int(self.drive.command.shape[1])
+
+    @property
+    def cells(self) -> int:
+        """Number of path cells behind the entrance."""
+        return len(self.path.gravity_m_s2) - self.path.approach_cells
 
     @property
     def stage_overpressures_kpa(self) -> NDArray[np.float64]:
@@ -245,27 +246,13 @@ def simulate_many(
     first_pass: int = 0,
     threads: int = 1,
 ) -> ExitSample:
-    """Stratified passes `first_pass` … `first_pass + count − 1` of `seed`, in bounded memory.
-
-    The result does not depend on `threads` nor on how the passes are split.
-    """
+    """`many_passes` of `plant` under `controller`."""
     loop = close_loop(plant, controller.stages)
-    cells = len(loop.path.gravity_m_s2) - loop.path.approach_cells
 
-    def chunk(start: int, stop: int) -> ExitSample:
-        return loop.run(controller, loop.draws(stratified_passes(seed, start, stop - start, cells)))
+    def run(passes: RandomPasses) -> ExitSample:
+        return loop.run(controller, loop.draws(passes))
 
-    with ThreadPoolExecutor(max_workers=threads) as pool:
-        samples = list(pool.map(chunk, *chunk_bounds(first_pass, count)))
-    names = [field.name for field in fields(ExitSample)]
-    return ExitSample(**{name: np.concatenate([getattr(sample, name) for sample in samples]) for name in names})
-
-
-def chunk_bounds(first_pass: int, count: int) -> tuple[list[int], list[int]]:
-    """Where the chunks of so many passes begin and end: at multiples of their size, so that no block is drawn twice."""
-    end = first_pass + count
-    inner = range((first_pass // CHUNK_PASSES + 1) * CHUNK_PASSES, end, CHUNK_PASSES)
-    return [first_pass, *inner], [*inner, end]
+    return many_passes(run, loop.cells, seed, count, first_pass, threads)
 
 
 def trace(

@@ -14,8 +14,11 @@ from synth.kernels.loop.passes import Draws
 from synth.simulation.passage_loop import PassageLoop
 from synth.simulation.passage_sample import PassageTrace
 
+TRACE_STEP_S = 0.05
+"""Between points of a traced pass, which has events of its own only at coils and changes of pressure."""
 
-def filled_trace(loop: PassageLoop, trace: PassageTrace, draws: Draws, step_s: float) -> PassageTrace:
+
+def filled_trace(loop: PassageLoop, trace: PassageTrace, draws: Draws, step_s: float = TRACE_STEP_S) -> PassageTrace:
     """`trace` of the only pass of `draws` with points at most `step_s` apart.
 
     Between two events the overpressure is constant, so each point is as exact as the events are.

@@ -58,8 +58,7 @@ def logged_passes(
     if count < 1:
         raise ValueError(f"logged passes: {count} passes; at least one is needed")
     loop = close_loop(plant, controller.stages)
-    cells = len(loop.path.gravity_m_s2) - loop.path.approach_cells
-    draws = loop.draws(random_passes(seed, first, count, cells))
+    draws = loop.draws(random_passes(seed, first, count, loop.cells))
     passes = [rows_of_pass(loop, controller, draws, number) for number in range(count)]
     time, path, speed, stage = (np.concatenate([each[column] for each in passes]) for column in range(4))
     counts = np.array([each.shape[1] for each in passes])

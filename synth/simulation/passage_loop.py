@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +17,13 @@ from synth.kernels.loop.passage_regulator import STATE_FIELDS
 from synth.kernels.loop.passes import Draws
 from synth.kernels.loop.trace import EVENT_FIELDS
 from synth.simulation.axle_pulses import deciding_pulses, every_pulse
-from synth.simulation.closed_loop import SUBSTEP_S, ClosedLoop, chunk_bounds, close_loop, empty_exits, trace_of
+from synth.simulation.closed_loop import SUBSTEP_S, ClosedLoop, close_loop, empty_exits, trace_of
 from synth.simulation.controllers import fixed
 from synth.simulation.heard_pairs import HeardPairs, as_given
+from synth.simulation.many_passes import many_passes
 from synth.simulation.passage_controller import PassageController
 from synth.simulation.passage_sample import PassageSample, PassageTrace, PassReadings
 from synth.simulation.random_passes import RandomPasses
-from synth.simulation.stratified_passes import stratified_passes
 
 PATH_ERROR_M = 1e-3
 """How far the passages that a controller knows may lie from those of the loop, where it is told each of them."""
@@ -202,23 +201,11 @@ def simulate_passages(
     threads: int = 1,
     faults: Faults | None = None,
 ) -> PassageSample:
-    """Passes `first_pass` … `first_pass + count − 1` of the stratified row of `seed`, in bounded memory.
-
-    Pass i is the same cut, friction, entry and resistance as in `simulate_many`. The result does not depend on
-    `threads` nor on how the passes are split.
-    """
+    """`many_passes` of `plant` under `controller`: pass i is the same cut, friction, entry and resistance as in
+    `simulate_many`."""
     loop = close_passage_loop(plant, sensors, controller.stages)
-    cells = len(loop.radar.path.gravity_m_s2) - loop.radar.path.approach_cells
 
-    def chunk(start: int, stop: int) -> PassageSample:
-        return loop.run(controller, loop.draws(stratified_passes(seed, start, stop - start, cells)), faults)
+    def run(passes: RandomPasses) -> PassageSample:
+        return loop.run(controller, loop.draws(passes), faults)
 
-    with ThreadPoolExecutor(max_workers=threads) as pool:
-        samples = list(pool.map(chunk, *chunk_bounds(first_pass, count)))
-    return joined(samples)
-
-
-def joined(samples: Sequence[PassageSample]) -> PassageSample:
-    """The passes of `samples` one after the other."""
-    names = [field.name for field in fields(PassageSample)]
-    return PassageSample(**{name: np.concatenate([getattr(sample, name) for sample in samples]) for name in names})
+    return many_passes(run, loop.radar.cells, seed, count, first_pass, threads)

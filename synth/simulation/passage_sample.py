@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,15 +16,26 @@ from synth.simulation.replicates import Interval, share_of
 
 __all__ = [
     "DECIDED",
+    "HEARD",
+    "MISTAKEN",
     "NOT_BELIEVED",
     "NOT_HEARD",
     "NO_DECISION",
+    "TAKEN",
     "UNFINISHED",
     "PassReadings",
     "PassageSample",
     "PassageTrace",
-    "unfinished_shares",
+    "shares_of_outcomes",
 ]
+
+TAKEN: Final = (DECIDED, UNFINISHED)
+"""Outcomes of pulses that were taken for a passage at which is decided."""
+
+MISTAKEN: Final = (NOT_BELIEVED, NO_DECISION)
+"""Of those that were taken for none."""
+
+HEARD: Final = (*TAKEN, *MISTAKEN)
 
 
 @frozen_arrays
@@ -67,14 +80,16 @@ class PassageTrace(PassTrace):
     readings: PassReadings
 
 
-def unfinished_shares(sample: PassageSample) -> list[tuple[float, Interval]]:
-    """For every passage the share of the cuts heard there that found a transient unfinished, and its 95 % interval.
+def shares_of_outcomes(
+    sample: PassageSample, of: Sequence[int], among: Sequence[int]
+) -> tuple[tuple[float, Interval], ...]:
+    """For every passage the share of cuts that met one of the outcomes `of`, and its 95 % interval.
 
-    NaN where no cut was heard.
+    Of those that met one of the outcomes `among` there; NaN where none did.
     """
     nothing = (float("nan"), (float("nan"), float("nan")))
     found = []
     for outcome in sample.outcome.T:
-        weight = np.where((outcome == DECIDED) | (outcome == UNFINISHED), sample.weight, 0.0)
-        found.append(share_of((outcome == UNFINISHED) & (weight > 0.0), weight) if weight.any() else nothing)
-    return found
+        weight = np.where(np.isin(outcome, among), sample.weight, 0.0)
+        found.append(share_of(np.isin(outcome, of), weight) if weight.any() else nothing)
+    return tuple(found)

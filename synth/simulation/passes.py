@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 
+TRACE_FACTORS = (0.8, 1.0, 1.2)
+"""Friction factors ξ_cut of the few passes that are shown of every table, event by event."""
+
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)

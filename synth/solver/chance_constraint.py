@@ -69,7 +69,7 @@ def keep_overspeed_limit(
         priced = replace(criterion.squared(), terminal=PenalisedOverspeed(price, limit.margin_m_s))
         evaluate = Evaluation(ground, Aim(target_speed_m_s, priced)).gradient
         ends = [polish(at, fit.curvature, ground.grid.path_m, evaluate, ITERATIONS, TOLERANCE) for at in begin]
-        return judged(price, min(ends, key=lambda end: end.cost_after).lines)
+        return judged(price, min(ends, key=lambda end: end.cost_after).best)
 
     def judged(price: float, lines: PolynomialLines) -> Candidate:
         density = predicted_density(judge, lines)

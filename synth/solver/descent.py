@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,19 +13,28 @@ from plant_models.frozen_arrays import frozen_arrays
 
 Vector = NDArray[np.float64]
 CostAndSlopes = tuple[float, Vector]
+Best = TypeVar("Best", covariant=True)
+Other = TypeVar("Other")
 
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
-class Descent:
-    """The best point met, its cost and the first point's, evaluations used, whether and why the search ended well."""
+class Descent(Generic[Best]):
+    """What a descent came to: cost of its start and of the best, evaluations used, whether and why it ended well.
 
-    point: Vector
+    `best`: a point, or the lines, surfaces or speeds there, as a polish gives them.
+    """
+
+    best: Best
     cost_before: float
     cost_after: float
     evaluations: int
     converged: bool
     status: str
+
+    def ending(self, best: Other, cost_after: float) -> Descent[Other]:
+        """The same search, told as ending at `best`."""
+        return Descent(best, self.cost_before, cost_after, self.evaluations, self.converged, self.status)
 
 
 def descend(
@@ -35,7 +44,7 @@ def descend(
     max_iterations: int,
     tolerance: float,
     allowed: Callable[[Vector], bool] = lambda _: True,
-) -> Descent:
+) -> Descent[Vector]:
     """Minimise `evaluate` from 0, where it gives `first`, under `constraints` of scipy.
 
     It ends when a step changes the cost by less than `tolerance` of the first cost. Coordinates should be such that the

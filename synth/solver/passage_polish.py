@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from synth.solver.backward_induction import Solution
 from synth.solver.coarse_grid import require_positive
-from synth.solver.descent import CostAndSlopes, descend
+from synth.solver.descent import CostAndSlopes, Descent, descend
 from synth.solver.evaluation import Evaluation, Gradient
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.passage_speeds import PassageSpeeds, ordered, parted_by, passage_speeds
@@ -20,20 +18,8 @@ LOOSE_M_S = 0.15
 """Std of a switching speed that costs nothing: it moves no farther than others make it."""
 
 
-@dataclass(frozen=True)
-class PassagePolish:
-    """Result of `polish_passages`: the policy, its cost before and after, evaluations, how the search ended."""
-
-    speeds: PassageSpeeds
-    cost_before: float
-    cost_after: float
-    evaluations: int
-    converged: bool
-    status: str
-
-
 @one_blas_thread()
-def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: float = 2e-3) -> PassagePolish:
+def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: float = 2e-3) -> Descent[PassageSpeeds]:
     """Minimise the cost over all finite switching speeds of a solution, keeping their order.
 
     Sequential quadratic programming in units in which being off costs the same for each. It ends when a step changes
@@ -68,10 +54,7 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
     found = descend(
         lambda y: by_point(evaluation.gradient(policy(y))), by_point(first), constraints, max_iterations, tolerance
     )
-    speeds = policy(found.point) if found.point.any() else start
-    return PassagePolish(
-        speeds, found.cost_before, found.cost_after, found.evaluations, found.converged, found.status
-    )  # fmt: skip
+    return found.ending(policy(found.best) if found.best.any() else start, found.cost_after)
 
 
 def being_off(solution: Solution, speeds: PassageSpeeds) -> NDArray[np.float64]:

@@ -6,14 +6,14 @@ Its gradient comes from one forward and one backward pass (`evaluation.Evaluatio
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synth.solver.coarse_grid import require_positive
-from synth.solver.descent import CostAndSlopes, descend
+from synth.solver.descent import CostAndSlopes, Descent, descend
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of, opened
 from synth.solver.switching_lines import SwitchingLines
@@ -25,18 +25,6 @@ Evaluate = Callable[[SwitchingLines], tuple[float, NDArray[np.float64]]]
 """Lines at path nodes → (cost, its derivatives by the lower and the upper lines (2, N, K + 1))."""
 
 
-@dataclass(frozen=True)
-class Polish:
-    """Result of `polish`: the lines, cost before and after, evaluations used, whether and why the search ended well."""
-
-    lines: PolynomialLines
-    cost_before: float
-    cost_after: float
-    evaluations: int
-    converged: bool
-    status: str
-
-
 @one_blas_thread()
 def polish(
     start: PolynomialLines,
@@ -45,7 +33,7 @@ def polish(
     evaluate: Evaluate,
     max_iterations: int,
     tolerance: float = 5e-3,
-) -> Polish:
+) -> Descent[PolynomialLines]:
     """Minimise `evaluate` over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` on the path.
 
     It ends when a step changes the cost by less than `tolerance` of the first cost. The cost of the result is positive
@@ -76,13 +64,13 @@ def polish(
         lambda y: by_point(evaluate(unpack(y).at(nodes_m))), by_point(first), [gap_constraint(start, free, scale)],
         max_iterations, tolerance, allowed=lambda y: gap_of(unpack(y)) >= 0.5 * MINIMUM_GAP_M_S,
     )  # fmt: skip
-    cost, best = found.cost_after, unpack(found.point) if found.point.any() else start
+    cost, best = found.cost_after, unpack(found.best) if found.best.any() else start
     lines = opened(best)
     if lines is not best:
         cost = evaluate(lines.at(nodes_m))[0]
     if not 0.0 < cost <= before:
         cost, lines = before, start
-    return Polish(lines, before, cost, found.evaluations, found.converged, found.status)
+    return found.ending(lines, cost)
 
 
 def whitening(curvature: NDArray[np.float64], matrix: NDArray[np.float64], cost: float) -> NDArray[np.float64]:

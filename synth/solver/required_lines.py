@@ -9,7 +9,7 @@ from synth.problem.requirement_found import Finding
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
 from synth.solver.chance_constraint import keep_overspeed_limit
-from synth.solver.polish import Polish
+from synth.solver.descent import Descent
 from synth.solver.polynomial_fit import Fit
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tuned_lines import polished
@@ -21,7 +21,7 @@ class RequiredLines:
     """`lines` to export; `polish`: how the lines of least cost were found; `finding`: what a requirement took."""
 
     lines: PolynomialLines
-    polish: Polish
+    polish: Descent[PolynomialLines]
     finding: Finding | None
 
 
@@ -31,9 +31,9 @@ def required_lines(solution: Solution, check: Chain, fit: Fit) -> RequiredLines:
     finding: Finding | None
     match solution.aim.criterion.requirement:
         case OverspeedLimit() as limit:
-            lines, finding = keep_overspeed_limit(solution, check, fit, found.lines, limit)
+            lines, finding = keep_overspeed_limit(solution, check, fit, found.best, limit)
         case FrictionRange() as friction:
-            lines, finding = guard_worst_case(solution, check, fit, found.lines, friction)
+            lines, finding = guard_worst_case(solution, check, fit, found.best, friction)
         case None:
-            lines, finding = found.lines, None
+            lines, finding = found.best, None
     return RequiredLines(lines, found, finding)

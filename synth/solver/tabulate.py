@@ -69,10 +69,8 @@ def tabulate(
         id=table_id,
         created=created,
         generator=generator,
-        retarder=RetarderId(
-            position.name, position.zones_m, float(plant.exit_m), float(position.pneumatics.dead_band_kpa)
-        ),
-        cut=CutId(plant.cut.category, float(plant.cut.mass_t), plant.cut.axle_offsets_m, plant.cut.category_number),
+        retarder=retarder_of(plant),
+        cut=cut_of(plant),
         target_speed_m_s=float(target_speed_m_s),
         degree=path_lines.degree,
         stages=tuple(stages),
@@ -97,6 +95,18 @@ def rounded_stage(
         return Stage(k, pressure_kpa, lower, upper)
     steep = (round_coefficients([slope])[0] if here else None for slope, here in zip(slopes, has_line, strict=True))
     return Stage(k, pressure_kpa, lower, upper, *steep)
+
+
+def retarder_of(plant: Plant) -> RetarderId:
+    """What a table says of the position that it is for."""
+    position = plant.position
+    return RetarderId(position.name, position.zones_m, float(plant.exit_m), float(position.pneumatics.dead_band_kpa))
+
+
+def cut_of(plant: Plant) -> CutId:
+    """What a table says of the cuts that it is for."""
+    cut = plant.cut
+    return CutId(cut.category, float(cut.mass_t), cut.axle_offsets_m, cut.category_number)
 
 
 def approach_of(plant: Plant) -> Approach | None:

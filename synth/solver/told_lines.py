@@ -116,7 +116,7 @@ def improved(
         except CoarseGridError:
             continue
         if end.cost_after <= most:
-            return end.lines
+            return end.best
     return begins[-1]
 
 

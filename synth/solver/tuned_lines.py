@@ -8,9 +8,10 @@ from dataclasses import replace
 from synth.problem.aim import Aim
 from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import Chain
+from synth.solver.descent import Descent
 from synth.solver.evaluation import Evaluation, Gradient
 from synth.solver.policy_density import density_and_occupancy, exit_density
-from synth.solver.polish import Evaluate, Polish, polish
+from synth.solver.polish import Evaluate, polish
 from synth.solver.polynomial_fit import Fit, fit_lines
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines, always_up
@@ -30,7 +31,7 @@ LEAST_SHARE = 0.01
 """Of a cost, however dear time is, and however many cuts run out of brake."""
 
 
-def tuned_lines(design: Chain, aim: Aim, degree: int, tolerance: float = POLISH_TOLERANCE) -> Polish:
+def tuned_lines(design: Chain, aim: Aim, degree: int, tolerance: float = POLISH_TOLERANCE) -> Descent[PolynomialLines]:
     """Polished lines of `degree` for one aim on `design`; `tolerance` as of `polished`."""
     solution = solve(design, aim)
     return polished(solution, fitted(solution, degree), tolerance)
@@ -42,7 +43,7 @@ def fitted(solution: Solution, degree: int) -> Fit:
     return fit_lines(solution, occupancy.samples, degree)
 
 
-def polished(solution: Solution, fit: Fit, tolerance: float = POLISH_TOLERANCE) -> Polish:
+def polished(solution: Solution, fit: Fit, tolerance: float = POLISH_TOLERANCE) -> Descent[PolynomialLines]:
     """The fitted lines after the polish; several rounds are told as one.
 
     `tolerance` is of the cost that lines can avoid, a part of that where time has a price: not of what cuts cost that
@@ -58,13 +59,13 @@ def polished(solution: Solution, fit: Fit, tolerance: float = POLISH_TOLERANCE) 
         return max(error - unavoidable, LEAST_SHARE * evaluate(at)[0])
 
     wanted = tolerance * (PRICED_TOLERANCE if aim.prices_time else 1.0)
-    rounds: list[Polish] = []
+    rounds: list[Descent[PolynomialLines]] = []
     lines, left = fit.lines, avoidable(fit.lines)
     before = math.inf
     while len(rounds) < MOST_ROUNDS and left < FAR_SHARE * before:
         before, cost = left, evaluate(lines.at(nodes))[0]
         rounds.append(polish(lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS, wanted * before / cost))
-        lines = rounds[-1].lines
+        lines = rounds[-1].best
         left = avoidable(lines)
     evaluations = sum(each.evaluations for each in rounds)
     return replace(rounds[-1], cost_before=rounds[0].cost_before, evaluations=evaluations)

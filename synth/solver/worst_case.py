@@ -68,7 +68,7 @@ def guard_worst_case(
     def lowered(lines: PolynomialLines) -> PolynomialLines:
         for sharpness in SHARPNESS:
             evaluate = smooth_maximum(costs_of, sharpness / float(costs_of(lines.at(nodes)).cost.max()))
-            lines = polish(lines, fit.curvature, nodes, evaluate, ITERATIONS, TOLERANCE).lines
+            lines = polish(lines, fit.curvature, nodes, evaluate, ITERATIONS, TOLERANCE).best
         return lines
 
     def bounded(lines: PolynomialLines) -> tuple[PolynomialLines, NDArray[np.float64], float]:
@@ -77,7 +77,7 @@ def guard_worst_case(
         mean = weighted_mean(costs_of, weights)
         found = [polish(at, fit.curvature, nodes, mean, ITERATIONS, TOLERANCE) for at in (lines, start)]
         lowest = min(found, key=lambda each: each.cost_after)
-        return lowest.lines, weights, 1.0 - lowest.cost_after / float(costs.max())
+        return lowest.best, weights, 1.0 - lowest.cost_after / float(costs.max())
 
     before = worst_predicted(judge, start, target_speed_m_s)
     best, worst, begin, (weights, gap) = start, before, start, (np.full(FACTORS, np.nan), np.nan)

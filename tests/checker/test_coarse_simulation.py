@@ -92,7 +92,7 @@ def test_lost_readings_cost_here_what_they_cost_in_the_simulator(summary: Summar
     """Two simulators that know nothing of one another, without and with a third of the readings lost."""
     from synth.retarder.configuration.config_file import parse_config
     from synth.retarder.configuration.plant_values import with_values
-    from synth.retarder.validation.revalidation import plant_for
+    from synth.retarder.served_class import plant_for
     from synth.simulation.closed_loop import TableController
     from synth.simulation.closed_loop import simulate as simulate_passes
     from synth.simulation.exit_statistics import exit_statistics

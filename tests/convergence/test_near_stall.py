@@ -16,9 +16,10 @@ from synth.simulation.closed_loop import LineController, simulate_many
 from synth.simulation.exit_statistics import exit_statistics
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, persistent_chain
+from synth.solver.descent import Descent
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import commands_of, exit_density, forward_all
-from synth.solver.polish import Polish
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tuned_lines import fitted, polished
 
 TARGET_M_S = 3.0
@@ -40,7 +41,7 @@ def config() -> ResolvedConfig:
 
 
 @cache
-def designed(path_step_m: float, resistances: int) -> tuple[Chain, Polish]:
+def designed(path_step_m: float, resistances: int) -> tuple[Chain, Descent[PolynomialLines]]:
     """The chain with this path step, and the polished lines of ten gondolas."""
     ((_, plant),) = config().plants()
     steps = Resolution(path_step_m, friction_nodes=4, resistance_nodes=resistances)
@@ -49,11 +50,11 @@ def designed(path_step_m: float, resistances: int) -> tuple[Chain, Polish]:
     return chain, polished(solution, fitted(solution, 3))
 
 
-def stalled_by_scenario(chain: Chain, found: Polish) -> np.ndarray:
+def stalled_by_scenario(chain: Chain, found: Descent[PolynomialLines]) -> np.ndarray:
     """Mass that stalls, (I,), as the recursion has it: it may be negative."""
     nothing = np.empty((len(chain.scenarios.weight), 0, 0, 0, 0))
     band = np.empty((len(chain.scenarios.weight), len(chain.drive_m_s2), 2), dtype=np.int64)
-    policy = commands_of(chain, found.lines.at(chain.grid.path_m))
+    policy = commands_of(chain, found.best.at(chain.grid.path_m))
     return forward_all(chain, policy, slice(None), nothing, band)[1][:, 0]
 
 
@@ -63,10 +64,10 @@ def test_no_negative_share_of_the_cuts_stalls(resistances: int) -> None:
     """With two linear cells it was −7e-3: the cost of the design was 0.056² m²/s² where the truth was 0.263²."""
     chain, found = designed(1.0, resistances)
     assert stalled_by_scenario(chain, found).min() > -1e-6
-    density = exit_density(chain, found.lines.at(chain.grid.path_m))
+    density = exit_density(chain, found.best.at(chain.grid.path_m))
     criterion = config().criterion
     cost = density.rms_m_s(TARGET_M_S) ** 2 + criterion.switching_tolerance_m2_s2 * density.switchings
-    lines = found.lines.at(chain.grid.path_m)
+    lines = found.best.at(chain.grid.path_m)
     assert Evaluation(chain, Aim(TARGET_M_S, criterion)).cost(lines) == pytest.approx(cost, rel=1e-4)
 
 
@@ -76,11 +77,11 @@ def test_finer_steps_of_path_change_nothing() -> None:
     simulated = []
     for step_m in (0.5, 1.0):
         chain, found = designed(step_m, 3)
-        controller = LineController(found.lines.at(found.lines.nodes_m(301)))
+        controller = LineController(found.best.at(found.best.nodes_m(301)))
         sample = simulate_many(chain.plant, controller, 5, PASSES)
         statistics = exit_statistics(sample, TARGET_M_S)
         simulated.append(statistics.rms_m_s)
-        on_design = exit_density(chain, found.lines.at(chain.grid.path_m)).rms_m_s(TARGET_M_S)
+        on_design = exit_density(chain, found.best.at(chain.grid.path_m)).rms_m_s(TARGET_M_S)
         assert 0.8 < on_design / statistics.rms_m_s < 1.25
     assert max(simulated) < 1.05 * min(simulated)
     assert max(simulated) < 0.09

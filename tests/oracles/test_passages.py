@@ -306,7 +306,7 @@ def test_the_polish_lowers_the_cost_and_keeps_the_order(solved: Solution) -> Non
     """What it promises is what an evaluation of the result finds; so small a problem leaves little to gain."""
     found = polish_passages(solved, tolerance=1e-8)
     assert found.cost_after < found.cost_before * (1.0 - 1e-5)
-    cost = Evaluation(solved.chain, solved.aim).gradient(found.speeds)[0]
+    cost = Evaluation(solved.chain, solved.aim).gradient(found.best)[0]
     assert cost == pytest.approx(found.cost_after, rel=1e-9)
-    t = found.speeds.switching_m_s
+    t = found.best.switching_m_s
     assert (t[:, :, 1:] >= t[:, :, :-1]).all()

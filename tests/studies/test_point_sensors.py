@@ -82,7 +82,7 @@ def test_speeds_for_a_friction_do_in_the_loop_what_is_predicted_of_them(
     factor = 0.9
     own = speeds_for(chains.design, site.target_m_s, factor)
     predicted = np.sqrt(squares_at(chains.check, own, site.target_m_s, np.array([factor])))[0]
-    known = tabulated(site, replace(tuned, speeds=own))
+    known = tabulated(site, replace(tuned, polish=replace(tuned.polish, best=own)))
     draws = known.loop.draws(stratified_passes(3, 0, 4000), cut_factor=factor)
     draws = draws._replace(resistance_n_kn=np.full_like(draws.resistance_n_kn, site.plant.resistance.mean_n_per_kn))
     found = exit_statistics(known.loop.run(known_controller(known), draws), site.target_m_s)

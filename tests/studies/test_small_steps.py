@@ -63,13 +63,13 @@ def test_every_criterion_differs_from_the_default_in_one_thing() -> None:
 
 def test_a_row_of_the_book_is_that_of_its_case() -> None:
     case = make_case("gondola-4-66t", 2.0)
-    found, verdict = case.comparison.table.statistics, judge_case(case, AcceptanceSettings())
+    found, verdict = case.statistics, judge_case(case, AcceptanceSettings())
     row = row_of(case, verdict)
     low, high = found.rms_ci95_m_s
     rms = f"{found.rms_m_s:.4f} [{low:.4f}, {high:.4f}]"
     assert short_cell(row) == f"{rms}; {few(1e4 * case.brake_power.out_of_brake)}"
     assert short_cell(replace(row, feasible=False)).startswith(f"{rms}°; ")
-    assert row.honesty == Measure(case.comparison.honesty, case.comparison.table.honesty_ci95)
+    assert row.honesty == Measure(case.measured.honesty, case.measured.honesty_ci95)
     assert row.regret == Measure(case.comparison.regret, case.comparison.regret_ci95)
     beaten = replace(case, comparison=replace(case.comparison, baseline_ratio_ci95=(1.1, 1.2)))
     without = row_of(beaten, verdict)

@@ -48,7 +48,7 @@ def test_what_is_told_is_simulated_as_the_check_grid_predicts() -> None:
     fresh = common_passes(plant, stratified_passes(1, 0, 5000))
     solution = solve(design, Aim(target, SQUARED_ERROR_ALONE))
     fit = fitted(solution, 3)
-    lines = told_lines(design, target, polished(solution, fit).lines, fit.curvature)
+    lines = told_lines(design, target, polished(solution, fit).best, fit.curvature)
     factor, weight = told_factors(plant, 13)
     squares = [mean_square(knowing(check, target, float(each), 2), lines.at(float(each))) for each in factor]
     sample = exit_statistics(run_told(fresh.loop, fresh.draws, by_lines(lines)), target)

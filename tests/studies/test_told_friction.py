@@ -26,7 +26,7 @@ def test_knowing_more_is_never_worse(plant_of: Callable[[float], Plant]) -> None
     plant = plant_of(22.0)
     design = persistent_chain(plant, COARSE)
     passes = stratified_passes(1, 0, 6000)
-    common = tuned_lines(design, Aim(3.0, SQUARED_ERROR_ALONE), 3).lines
+    common = tuned_lines(design, Aim(3.0, SQUARED_ERROR_ALONE), 3).best
     unknown = simulate(plant, LineController(common.at(common.nodes_m(301))), passes)
     told = simulate_told(plant, told_friction(design, 3.0, 3, thorough(5, 10)), passes)
     assert np.array_equal(told.weight, unknown.weight)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +19,6 @@ from plant_models import (
     RollingResistance,
     TrackProfile,
 )
-from synth.problem.aim import Aim
-from synth.problem.problem import Problem
 from synth.retarder.case_result import CaseResult, CaseStudy, PolicyMap
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.measured import Measured
@@ -29,10 +27,10 @@ from synth.retarder.grid_check import GridCheck
 from synth.retarder.off_nominal.condition import CONDITIONS
 from synth.retarder.off_nominal.outcome import OffNominal, Outcome
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
-from synth.simulation.passes import ExitSample, PassTrace
+from synth.simulation.passes import TRACE_FACTORS, ExitSample, PassTrace
 from synth.simulation.unavoidable_error import UnavoidableError
+from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
-from synth.solver.polish import Polish
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import (
@@ -85,30 +83,37 @@ def make_case(
     samples = [make_sample(target + bias, factor * spread, seed) for seed, (_, factor) in enumerate(NAMES_AND_SPREAD)]
     density = make_density(target + bias, spread)
     promised = density.rms_m_s(target)
-    table, known, *baselines = (
-        measured(name, sample, samples[0], target, promised if name == "table" else math.nan)
-        for (name, _), sample in zip(NAMES_AND_SPREAD, samples, strict=True)
+    known, *baselines = (
+        measured(name, sample, samples[0], target)
+        for (name, _), sample in zip(NAMES_AND_SPREAD[1:], samples[1:], strict=True)
     )
+    table = make_table(label, plant, target)
     return CaseResult(
         label=label,
-        problem=Problem(plant, Aim(target)),
-        table=make_table(label, plant, target),
+        plant=plant,
+        table=replace(table, predicted=replace(table.predicted, rms_m_s=promised)),
         predicted=density,
-        polish=Polish(make_polynomials(plant), 2.0 * spread**2, spread**2, 20, True, "Optimization terminated"),
+        polish=Descent(make_polynomials(plant), 2.0 * spread**2, spread**2, 20, True, "Optimization terminated"),
+        exit_speeds_m_s=samples[0].exit_speed_m_s.astype(np.float32),
+        exit_weight=samples[0].weight,
+        statistics=exit_statistics(samples[0], target),
+        brake_power=brake_power(samples[0], samples[1], target),
+        unavoidable=make_unavoidable(feasible),
+        traces=tuple(make_trace(plant, target, factor) for factor in TRACE_FACTORS),
         grid=GridCheck(1.02 * promised, promised, again=False, most_off=1.25),
         finding=None,
         estimate=None,
-        exit_speeds_m_s=samples[0].exit_speed_m_s.astype(np.float32),
-        exit_weight=samples[0].weight,
-        brake_power=brake_power(samples[0], samples[1], target),
-        comparison=Comparison(table, known, tuple(baselines)),
-        feasibility=make_feasibility(feasible),
+        comparison=Comparison(known, tuple(baselines)),
+        feasibility=Feasibility(
+            limit_m_s=0.1,
+            entry_m_s=np.linspace(5.0, 6.5, 5),
+            entry_rms_m_s=np.full(5, make_unavoidable(feasible).rms_m_s),
+            served_m_s=(5.0, 6.5) if feasible else None,
+        ),
         study=CaseStudy(
             table_lines=make_lines(plant, target, 129),
             solver_lines=make_lines(plant, target, 76, wiggle=0.05),
             policy_map=make_policy_map(plant, target),
-            traces=tuple(make_trace(plant, target, factor) for factor in (0.8, 1.0, 1.2)),
-            trace_factors=(0.8, 1.0, 1.2),
         ),
         front=None,
         off_nominal=make_off_nominal(spread),
@@ -134,16 +139,10 @@ def make_outcome(change: str, rms: float, nominal: float) -> Outcome:
     return Outcome(change, PASSES, rms, rms_ci95, ratio, ratio_ci95, 0.012, (0.01, 0.015), 0.0, few)
 
 
-def make_feasibility(feasible: bool) -> Feasibility:
-    """Twice the limit everywhere if infeasible, for want of brake power, else a fifth of it."""
+def make_unavoidable(feasible: bool) -> UnavoidableError:
+    """Twice the limit if infeasible, for want of brake power, else a fifth of it."""
     rms_m_s = 0.02 if feasible else 0.2
-    return Feasibility(
-        limit_m_s=0.1,
-        unavoidable=UnavoidableError(rms_m_s, (0.98 * rms_m_s, 1.02 * rms_m_s), too_fast=True),
-        entry_m_s=np.linspace(5.0, 6.5, 5),
-        entry_rms_m_s=np.full(5, rms_m_s),
-        served_m_s=(5.0, 6.5) if feasible else None,
-    )
+    return UnavoidableError(rms_m_s, (0.98 * rms_m_s, 1.02 * rms_m_s), too_fast=True)
 
 
 def make_polynomials(plant: Plant) -> PolynomialLines:
@@ -154,10 +153,10 @@ def make_polynomials(plant: Plant) -> PolynomialLines:
     return PolynomialLines(plant.start_m, plant.exit_m, np.zeros((stages, 2, 4)), has_line)
 
 
-def measured(name: str, sample: ExitSample, table: ExitSample, target: float, promised: float) -> Measured:
+def measured(name: str, sample: ExitSample, table: ExitSample, target: float) -> Measured:
     """`sample` beside that of the table."""
     ratio, interval = rms_ratio(table, sample, target)
-    return Measured(name, exit_statistics(sample, target), promised, None, ratio, interval)
+    return Measured(name, exit_statistics(sample, target), table_ratio=ratio, table_ratio_ci95=interval)
 
 
 def make_lines(plant: Plant, target: float, nodes: int, wiggle: float = 0.0) -> SwitchingLines:

@@ -42,7 +42,7 @@ def statistics(**changes: object) -> ExitStatistics:
 
 def limits(*cases: CaseResult, of: AcceptanceSettings = LIMITS) -> list[Limit]:
     """What the verdict on a book of these cases is made of."""
-    return list(limits_of(judged(cases, of), [case.comparison.table.statistics for case in cases], of, ()))
+    return list(limits_of(judged(cases, of), cases, of, ()))
 
 
 def test_a_book_that_keeps_the_limits() -> None:
@@ -86,8 +86,7 @@ def test_a_tuned_law_that_keeps_the_limit_shows_that_the_position_can() -> None:
 
 def test_cuts_that_are_too_slow_without_any_braking_are_named_so() -> None:
     bad = honest_case(feasible=False)
-    error = replace(bad.feasibility.unavoidable, too_fast=False)
-    verdict = judge_case(replace(bad, feasibility=replace(bad.feasibility, unavoidable=error)), LIMITS)
+    verdict = judge_case(replace(bad, unavoidable=replace(bad.unavoidable, too_fast=False)), LIMITS)
     assert verdict.obstacle == "leaves too slow"
 
 
@@ -184,7 +183,7 @@ def test_a_book_that_the_passes_cannot_judge_says_so() -> None:
 
 def test_a_miss_does_not_count_where_the_passes_cannot_tell_whether_the_case_is_feasible() -> None:
     bad = make_case("gondola-85t", 2.0, spread=0.15)
-    unsure = replace(bad, feasibility=replace(bad.feasibility, unavoidable=UnavoidableError(0.1, (0.09, 0.11), True)))
+    unsure = replace(bad, unavoidable=UnavoidableError(0.1, (0.09, 0.11), True))
     (limit,) = limits(honest_case(), unsure)
     assert limit.kept is None
     assert "0.1000 [0.0900, 0.1100] m/s, too near to the limit to tell whether the case is feasible" in limit.sentence

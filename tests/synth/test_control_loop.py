@@ -10,8 +10,10 @@ import pytest
 
 from plant_models import Plant
 from synth.frame.summary import plain
-from synth.retarder.control_loop import ENTRIES, TOLERANCE_M_S, ControlLoop, control_loop, loop_document
+from synth.retarder.control_loop import TOLERANCE_M_S
 from synth.retarder.estimation.estimator_design import estimator_of
+from synth.retarder.line_control_loop import ENTRIES, LineControlLoop, line_control_loop
+from synth.retarder.served_class import ServedClass
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant, one_pass
 from synth.simulation.nominal_response import nominal_response
@@ -22,9 +24,9 @@ pytest.importorskip("control")
 
 
 @pytest.fixture(scope="module")
-def loop(plant_52t: Plant) -> ControlLoop:
+def loop(plant_52t: Plant) -> LineControlLoop:
     """The loop of a plausible table."""
-    return control_loop(table_for(plant_52t), "gondola", plant_52t)
+    return line_control_loop(table_for(plant_52t), ServedClass("gondola", plant_52t))
 
 
 def test_the_nominal_plant_has_no_chance_left(plant_52t: Plant) -> None:
@@ -76,20 +78,20 @@ def test_a_table_with_estimator_is_followed_too(plant_52t: Plant, entry_u: float
     assert abs(response.exit_speed_m_s - without.exit_speed_m_s) > TOLERANCE_M_S  # so the estimator does something
 
 
-def test_the_loop_agrees_and_its_document_is_plain(loop: ControlLoop) -> None:
+def test_the_loop_agrees_and_its_document_is_plain(loop: LineControlLoop) -> None:
     assert loop.agrees
     assert loop.difference.parted_s is None
     assert len(loop.portrait) == ENTRIES
     entries = [float(response.speed_m_s[0]) for response in loop.portrait]
     assert entries == sorted(entries)
-    document = json.loads(json.dumps(plain(loop_document(loop)), allow_nan=False))
+    document = json.loads(json.dumps(plain(loop.document), allow_nan=False))
     assert document["difference"]["agrees"] is True
     assert document["python_control"]["commands"] == [list(each) for each in loop.response.commands]
     assert document["simulator"]["exit_speed_m_s"] == loop.trace.exit_speed_m_s
     assert len(document["limit_cycles"]) == len(loop.hunting)
 
 
-def test_a_difference_is_found(loop: ControlLoop) -> None:
+def test_a_difference_is_found(loop: LineControlLoop) -> None:
     """Planted: a pass that is 5 mm/s faster for a moment, and one that commands another stage from a sample on."""
     trace = loop.trace
     bump = np.where(np.arange(trace.time_s.size) == trace.time_s.size // 2, 0.005, 0.0)

@@ -69,7 +69,7 @@ def fit(design: Chain) -> Fit:
 
 @pytest.fixture(scope="module")
 def start(design: Chain, fit: Fit) -> PolynomialLines:
-    return polished(solved(design, Criterion()), fit).lines
+    return polished(solved(design, Criterion()), fit).best
 
 
 def solved(design: Chain, criterion: Criterion) -> Solution:
@@ -124,7 +124,7 @@ def test_gradient_is_the_slope_of_the_cost(design: Chain, start: PolynomialLines
 def test_an_asymmetric_table_is_best_by_its_own_cost_and_slower(design: Chain, start: PolynomialLines) -> None:
     asymmetric = Criterion(terminal=ASYMMETRIC)
     solution = solved(design, asymmetric)
-    policies = [each.at(design.grid.path_m) for each in (polished(solution, fitted(solution, DEGREE)).lines, start)]
+    policies = [each.at(design.grid.path_m) for each in (polished(solution, fitted(solution, DEGREE)).best, start)]
     own, other = (Evaluation(design, solution.aim).cost(policy) for policy in policies)
     assert own < 0.95 * other
     slower, default = (exit_density(design, policy) for policy in policies)
@@ -202,7 +202,7 @@ def test_a_limit_that_no_price_meets_is_said_to_be_so(
     coarse = persistent_chain(weak, COARSE)
     solution = solved(coarse, Criterion())
     own = fitted(solution, DEGREE)
-    begin = polished(solution, own).lines
+    begin = polished(solution, own).best
     fine = check_chain(weak, finer_for_check(COARSE))
     _, found = keep_overspeed_limit(solution, fine, own, begin, OverspeedLimit(0.1, 0.01))
     print(found.sentence, found.rounds)

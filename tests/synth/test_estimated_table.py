@@ -114,7 +114,7 @@ def test_lines_for_the_estimate_are_better_than_those_for_the_measured_speed(
     plant_of: Callable[[float], Plant], passes: RandomPasses
 ) -> None:
     plant = plant_of(36.0)
-    measured = tuned_lines(persistent_chain(plant, COARSE), Aim(3.0), 3).lines
+    measured = tuned_lines(persistent_chain(plant, COARSE), Aim(3.0), 3).best
     made = made_for(plant, 3.0, passes)
     assert made.rms_after_m_s <= made.rms_before_m_s
     fresh = stratified_passes(12, 0, 4000)
@@ -129,7 +129,7 @@ def test_the_chain_says_what_passes_with_a_white_error_say(
     """The two ways to judge one design: the exact recursion on its grid, and simulated passes without a grid."""
     plant = uncertain(plant_of(36.0), 0.0)
     chain = estimate_chain(plant, Resolution(), 3.0)
-    lines = tuned_lines(chain, Aim(3.0), 3).lines
+    lines = tuned_lines(chain, Aim(3.0), 3).best
     exact = Evaluation(chain, Aim(3.0)).rms_m_s(lines.at(chain.grid.path_m))
     sampled = rms_with_white_error(plant, lines, 3.0, stratified_passes(14, 0, 6000))
     assert exact == pytest.approx(sampled, rel=0.15)
@@ -235,5 +235,5 @@ def test_a_white_error_enters_the_commands_alone(plant_of: Callable[[float], Pla
     )
     seen = replace(persistent_chain(plant, coarse), measurement=SmoothMeasurement(0.02))
     other = replace(plant, sensor=replace(plant.sensor, noise_m_s=0.02, resolution_m_s=0.0))
-    lines = [tuned_lines(chain, Aim(3.0), 3).lines for chain in (seen, persistent_chain(other, coarse))]
+    lines = [tuned_lines(chain, Aim(3.0), 3).best for chain in (seen, persistent_chain(other, coarse))]
     np.testing.assert_array_equal(lines[0].coefficients, lines[1].coefficients)

@@ -159,5 +159,5 @@ def test_an_exact_prediction_says_that_it_counts_on_every_reading() -> None:
     case = make_case()
     assert not case.warnings
     lossy = replace(case.plant, sensor=replace(case.plant.sensor, missed_share=0.2))
-    [warning] = replace(case, problem=replace(case.problem, plant=lossy)).warnings
+    [warning] = replace(case, plant=lossy).warnings
     assert warning.startswith("the prediction of the table counts on every reading, but 20 % are lost")

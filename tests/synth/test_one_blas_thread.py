@@ -25,7 +25,7 @@ plants = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(plants)
 design = persistent_chain(plants.random_plant(), plants.COARSE)
 for target_m_s in (1.5, 2.0, 2.5, 3.0):
-    print(tuned_lines(design, Aim(target_m_s, Criterion(1.0, 1e-5)), 3).lines.coefficients.tobytes().hex())
+    print(tuned_lines(design, Aim(target_m_s, Criterion(1.0, 1e-5)), 3).best.coefficients.tobytes().hex())
 """
 
 NOISE = """

@@ -9,7 +9,8 @@ import pytest
 from synth.frame.exhibits import Chart
 from synth.frame.picture.studio import Studio, draw_chart
 from synth.retarder.forms.table_file import file_stem, is_infeasible
-from synth.retarder.shown.pictures import exit_density, exits_chart, lines_chart
+from synth.retarder.shown.case_charts import exit_density, exits_chart
+from synth.retarder.shown.pictures import lines_chart
 from tests.synth.case_factory import make_case
 
 

@@ -107,7 +107,7 @@ def test_hard_cases_are_drawn_too(cases: list[CaseResult]) -> None:
     hard = {
         "two stages, no passes, no baselines": replace(
             make_case(stages=2),
-            study=replace(make_case(stages=2).study, traces=(), trace_factors=()),
+            traces=(),
             comparison=replace(cases[0].comparison, baselines=()),
         ),
         "errors wider than the picture": make_case(spread=1.5),
@@ -154,7 +154,7 @@ def test_the_map_shows_command_and_indifference_where_they_are(cases: list[CaseR
 
 
 def test_every_part_of_a_pass_is_drawn_in_exactly_one_stage(cases: list[CaseResult]) -> None:
-    trace = cases[0].study.traces[1]
+    trace = cases[0].traces[1]
     shown = [parts_in_stage((trace,), stage)[1][:-1] for stage in range(3)]
     segments = sum(int(np.count_nonzero(np.isfinite(v[1:]) & np.isfinite(v[:-1]))) for v in shown)
     assert segments == trace.speed_m_s.size - 1
@@ -193,7 +193,7 @@ def test_roles_and_names(cases: list[CaseResult]) -> None:
     assert found.best_baseline is not None
     assert found.best_baseline.name == "energy rule"
     assert [len(group) for group in by_class(cases)] == [2, 2]
-    assert cases[2].feasibility.obstacle == "out of brake power"
+    assert cases[2].unavoidable.obstacle == "out of brake power"
     assert file_stem("exit-density", "Four tanks, 3.5 m/s") == "exit-density-four-tanks-3.5-m-s"
 
 
@@ -209,7 +209,7 @@ def test_a_logarithmic_axis_has_two_marks_at_least(low: float, ratio: float) -> 
 
 
 def test_a_stalled_pass_is_called_so(cases: list[CaseResult]) -> None:
-    assert outcome(replace(cases[0].study.traces[0], stalled=True)) == "stopped in the position"
+    assert outcome(replace(cases[0].traces[0], stalled=True)) == "stopped in the position"
 
 
 def test_drawing_needs_neither_pyplot_nor_kernels(cases: list[CaseResult], tmp_path: Path) -> None:

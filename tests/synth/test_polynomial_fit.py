@@ -90,8 +90,8 @@ def test_polish_lowers_the_exact_cost_and_keeps_the_gap(design: Chain, fit: Fit)
     result = polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, 25)
     assert result.cost_before == pytest.approx(evaluate(fit.lines.at(design.grid.path_m))[0], rel=1e-12)
     assert result.cost_after < 0.8 * result.cost_before
-    assert evaluate(result.lines.at(design.grid.path_m))[0] == pytest.approx(result.cost_after, rel=1e-3)
-    assert gap_of(result.lines) >= MINIMUM_GAP_M_S - 1e-12
+    assert evaluate(result.best.at(design.grid.path_m))[0] == pytest.approx(result.cost_after, rel=1e-3)
+    assert gap_of(result.best) >= MINIMUM_GAP_M_S - 1e-12
     assert result.evaluations <= 40
 
 
@@ -110,14 +110,14 @@ def test_a_polish_that_opening_spoils_leaves_the_lines_as_they_were(
 
     monkeypatch.setattr("synth.solver.polish.opened", lambda lines: moved)
     result = polish(fit.lines, fit.curvature, nodes, evaluate, 25)
-    assert result.lines is fit.lines
+    assert result.best is fit.lines
     assert result.cost_after == result.cost_before > 0.0
 
 
 def test_polish_ends_where_the_projected_gradient_is_small(design: Chain, fit: Fit) -> None:
     """A Newton step along the whitened gradient must not promise more than a few per cent of the cost."""
     evaluate = evaluate_on(design)
-    best = polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, 40).lines
+    best = polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, 40).best
     gains = []
     for lines in (fit.lines, best):
         cost, by_lines = evaluate(lines.at(design.grid.path_m))

@@ -99,20 +99,20 @@ FAILED = FailedCase("gondola-85t", 1.5, "the grid is too coarse")
 HASHES = {"tables/a&b.json": "ef" * 32}
 
 
-def found_book(cases: tuple[CaseResult, ...] = CASES, config: ResolvedConfig = CONFIG) -> FoundBook:
+def found_book(cases: tuple[CaseResult, ...] = CASES, config: ResolvedConfig = CONFIG) -> FoundBook[CaseResult]:
     """These cases as a tune has them, and one without a table."""
     book = Book(config, "2026-11-20T22:46:00Z", cases, (FAILED,))
     return FoundBook(book, judged(cases, config.acceptance), ())
 
 
-def told_of(found: FoundBook) -> Told:
+def told_of(found: FoundBook[CaseResult]) -> Told:
     """The run that ended so."""
     verdict = Verdict(tuple(COMMAND.limits(found)))
     head = head_of(found.book.config)
     return Told("tune", head, found.book.created, verdict, tuple(COMMAND.show(found)), COMMAND.limits_of_use)
 
 
-def html_of(found: FoundBook, hashes: Mapping[str, str] = HASHES) -> str:
+def html_of(found: FoundBook[CaseResult], hashes: Mapping[str, str] = HASHES) -> str:
     """Its page; every chart is the same empty picture."""
     told, drawing = told_of(found), SVG
     charts = (each for each in exhibits_of(told.chapters) if isinstance(each, Chart))
@@ -121,7 +121,7 @@ def html_of(found: FoundBook, hashes: Mapping[str, str] = HASHES) -> str:
     )
 
 
-def table_of(found: FoundBook, name: str) -> Table:
+def table_of(found: FoundBook[CaseResult], name: str) -> Table:
     """One of its tables."""
     (table,) = (each for each in exhibits_of(told_of(found).chapters) if isinstance(each, Table) and each.name == name)
     return table

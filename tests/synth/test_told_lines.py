@@ -39,7 +39,7 @@ def beginning(design: Chain, target_m_s: float, degree: int) -> tuple[Polynomial
     """Polished lines for all frictions, and the fit that they began with."""
     solution = solve(design, Aim(target_m_s, SQUARED_ERROR_ALONE))
     fit = fitted(solution, degree)
-    return polished(solution, fit).lines, fit
+    return polished(solution, fit).best, fit
 
 
 @pytest.mark.parametrize(("mass_t", "target_m_s"), [(22.0, 3.0), (66.0, 2.0)])

@@ -11,8 +11,10 @@ import pytest
 
 from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import Book, tune
 from synth.retarder.watcher import Teller
+from synth.simulation.passes import TRACE_FACTORS
 from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable, read_json, write_json
 
@@ -44,31 +46,31 @@ def directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def book(directory: Path) -> Book:
+def book(directory: Path) -> Book[CaseResult]:
     said: list[str] = []
     store = partial(stored, directory=directory)
-    result = tune(parse_config(SMALL, "small.toml"), store, Teller(said.append), workers=2)
+    result = tune(parse_config(SMALL, "small.toml"), RadarEpochs(), store, Teller(said.append), workers=2)
     assert any("to 4 m/s" in sentence for sentence in said)
     return result
 
 
 @pytest.fixture
-def case(book: Book) -> CaseResult:
+def case(book: Book[CaseResult]) -> CaseResult:
     return book.cases[0]
 
 
-def test_the_table_on_disk_is_the_one_that_was_validated(book: Book, directory: Path) -> None:
+def test_the_table_on_disk_is_the_one_that_was_validated(book: Book[CaseResult], directory: Path) -> None:
     assert sorted(p.name for p in directory.iterdir()) == sorted(f"{c.table.id}.json" for c in book.cases)
     for case in book.cases:
         assert read_json(directory / f"{case.table.id}.json") == case.table
         assert case.table.validated is not None
-        assert case.table.validated.rms_m_s == case.comparison.table.statistics.rms_m_s
+        assert case.table.validated.rms_m_s == case.statistics.rms_m_s
         assert json.loads((directory / f"{case.table.id}.json").read_bytes())["generator"]["name"] == "retarder-synth"
 
 
-def test_the_prediction_is_honest_and_who_is_told_the_friction_is_no_worse(book: Book) -> None:
+def test_the_prediction_is_honest_and_who_is_told_the_friction_is_no_worse(book: Book[CaseResult]) -> None:
     for case in book.cases:
-        figures, table = case.comparison, case.comparison.table
+        figures, table = case.comparison, case.measured
         assert table.statistics.rms_m_s < 0.06
         assert 0.85 < table.predicted_rms_m_s / table.statistics.rms_m_s < 1.15
         told = figures.friction_known
@@ -76,7 +78,7 @@ def test_the_prediction_is_honest_and_who_is_told_the_friction_is_no_worse(book:
         assert told.table_ratio >= 1.0  # who is told the friction is no worse, and need not use it
         assert told.table_ratio_ci95[1] < 1.3
         assert told.table_ratio_ci95[1] - told.table_ratio_ci95[0] < 0.1  # on the same passes
-        assert len(figures.entries) == 4
+        assert len(case.controllers) == 4
 
 
 def test_the_map_agrees_with_the_lines_and_marks_indifference(case: CaseResult) -> None:
@@ -98,20 +100,20 @@ def test_the_map_agrees_with_the_lines_and_marks_indifference(case: CaseResult) 
 
 def test_feasibility_falls_with_entry_speed(case: CaseResult) -> None:
     found = case.feasibility
-    assert found.feasible
+    assert not case.unavoidable.forbids(found.limit_m_s)
     assert found.served_m_s is not None
     assert found.served_m_s[0] < case.target_speed_m_s  # downhill a slower cut reaches it too
     assert found.entry_rms_m_s[-1] > found.entry_rms_m_s[len(found.entry_m_s) // 2]
 
 
-def test_no_controller_of_a_case_has_less_than_the_unavoidable_error(book: Book) -> None:
+def test_no_controller_of_a_case_has_less_than_the_unavoidable_error(book: Book[CaseResult]) -> None:
     for case in book.cases:
-        least = case.feasibility.unavoidable.rms_m_s
-        assert 0.0 < least < min(entry.statistics.rms_m_s for entry in case.comparison.entries)
+        least = case.unavoidable.rms_m_s
+        assert 0.0 < least < min(entry.statistics.rms_m_s for entry in case.controllers)
 
 
 def test_traces_are_passes_of_the_exported_table(case: CaseResult) -> None:
-    for trace, factor in zip(case.study.traces, case.study.trace_factors, strict=True):
+    for trace, factor in zip(case.traces, TRACE_FACTORS, strict=True):
         assert trace.exit_speed_m_s == pytest.approx(case.target_speed_m_s, abs=0.3), factor
         assert np.all(np.diff(trace.path_m) >= 0.0)
 

@@ -14,7 +14,8 @@ from scripts.studies.result import read_result, run_study
 from synth.problem.resolution import finer_for_check
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.rounded_table import with_prediction
-from synth.retarder.validation.revalidation import Rehearsal, Revalidation, plant_for, revalidated
+from synth.retarder.served_class import plant_for
+from synth.retarder.validation.revalidation import Rehearsal, Revalidation, revalidated
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.controllers import full_brake
 from synth.simulation.exit_statistics import brake_power, exit_statistics

@@ -281,7 +281,9 @@ def test_an_infeasible_case_stands_outside_the_verdict(command: Command, config:
     assert (code, found["verdict"]) == (0, "infeasible")  # as the summary beside it says
 
 
-def test_tune_tells_that_it_leaves_point_sensors_aside(command: Command, config: Path, tmp_path: Path) -> None:
+def test_tune_leaves_point_sensors_aside_and_validate_takes_tables_of_both_kinds(
+    command: Command, tuned_points: Path, tmp_path: Path
+) -> None:
     text = changed(
         CONFIG,
         ("exit_speeds_m_s = [2.0, 2.5]", "exit_speeds_m_s = [2.5]"),
@@ -290,6 +292,11 @@ def test_tune_tells_that_it_leaves_point_sensors_aside(command: Command, config:
     (tmp_path / "one.toml").write_text(text)
     ran = command("tune", tmp_path / "one.toml", "-o", tmp_path / "out")
     assert "tables are made for the radar of [sensor]; 'retarder-synth sensors tune' makes those for" in ran.err
+    shutil.copy(tuned_points / "tables" / f"{TABLE}.json", tmp_path / "out" / "tables")
+    ran = command("validate", tmp_path / "out" / "tables", "--config", tmp_path / "one.toml", "-o", tmp_path / "again")
+    found = json.loads((tmp_path / "again" / "summary.json").read_bytes())["tables"]["tables"]
+    assert [each["id"] for each in found] == ["gondola-4-22t-to-2.5-m-s", TABLE]
+    assert [each["confirmed"] for each in found] == [True, True]
 
 
 @pytest.mark.long

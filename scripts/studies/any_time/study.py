@@ -107,7 +107,7 @@ class Bench:
         """Surfaces polished from the stage-locked cubics."""
         stages = np.asarray(self.case.plant.position.stage_pressures_kpa[: len(self.cubics.has_line)])
         aim = Aim(self.case.target_m_s, self.config.criterion)
-        return polish_surfaces(surfaces_of_lines(self.cubics, stages, degrees), self.evaluation, aim).surfaces
+        return polish_surfaces(surfaces_of_lines(self.cubics, stages, degrees), self.evaluation, aim).best
 
     def controller(self, surfaces: PolynomialSurfaces, gauge_factor: float = 1.0) -> TableController:
         """The table of `surfaces` with a gauge that shows so many times the pressure."""

@@ -43,7 +43,7 @@ def tables_by_degree(
     target_m_s, plant = solution.aim.target_speed_m_s, solution.chain.plant
     for degree in degrees:
         fit = fit_lines(solution, occupancy.samples, degree)
-        table = table_of(plant, polished(solution, fit).lines, target_m_s, origin)
+        table = table_of(plant, polished(solution, fit).best, target_m_s, origin)
         before = table_of(plant, fit.lines, target_m_s, origin)
         if table is not None:
             rms = predict(check, table).rms_m_s(target_m_s)

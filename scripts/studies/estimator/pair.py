@@ -99,7 +99,7 @@ def designed(
 ) -> tuple[Pair, PolynomialLines, PolynomialLines]:
     """(both, lines for the measured speed, lines for the estimated one)."""
     design = persistent_chain(problem.plant, config.resolution)
-    lines = tuned_lines(design, problem.aim, config.fit.degree).lines
+    lines = tuned_lines(design, problem.aim, config.fit.degree).best
     solution = solve(estimate_chain(problem.plant, config.resolution, lowest_target_m_s), problem.aim)
     days = tuning_days(problem.plant, tuning)
     _, made = estimated_lines(problem.plant, solution, config.fit.degree, tuning, days)

@@ -16,7 +16,7 @@ from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup, o
 from synth.retarder.comparison.baselines import TunedBaseline, tune_baselines
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.failed_case import FailedCase
-from synth.retarder.tuned_table import ValidatedTable, read_back, solutions, tuned_table, validated_table
+from synth.retarder.tuned_table import ValidatedLines, read_back, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
@@ -62,7 +62,7 @@ def figures_of(case: RandomCase, config: ResolvedConfig) -> CutFigures:
     )
 
 
-def beside_without(config: ResolvedConfig, setup: ClassSetup, validated: ValidatedTable) -> BesideWithout:
+def beside_without(config: ResolvedConfig, setup: ClassSetup, validated: ValidatedLines) -> BesideWithout:
     """The table beside that of `config`, without estimator, on its plant and where friction is weak."""
     ((label, plant),) = config.plants()
     target, passes = validated.table.target_speed_m_s, setup.passes.passes
@@ -76,12 +76,12 @@ def beside_without(config: ResolvedConfig, setup: ClassSetup, validated: Validat
     )
 
 
-def best_of(rules: Sequence[TunedBaseline], setup: ClassSetup, table: ValidatedTable) -> Beside:
+def best_of(rules: Sequence[TunedBaseline], setup: ClassSetup, table: ValidatedLines) -> Beside:
     """The rule of least rms on the passes of `setup`, beside the table on the same passes."""
     return min((beside(rule, setup, table) for rule in rules), key=lambda each: each.rms_m_s)
 
 
-def beside(rule: TunedBaseline, setup: ClassSetup, validated: ValidatedTable) -> Beside:
+def beside(rule: TunedBaseline, setup: ClassSetup, validated: ValidatedLines) -> Beside:
     """One rule beside the table."""
     target = validated.table.target_speed_m_s
     sample = setup.passes.run(rule.controller)

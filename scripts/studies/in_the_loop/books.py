@@ -9,6 +9,7 @@ from plant_models import Plant
 from scripts.studies.cases import of_masses
 from scripts.studies.study import Tell
 from synth.retarder.configuration.config_file import load_config
+from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
 from synth.retarder.watcher import Teller
@@ -28,7 +29,7 @@ def tuned_book(config: Path | None, estimator: bool, masses_t: tuple[float, ...]
     """The book of a configuration (the built-in one for None), of all its cuts or of those of these masses."""
     loaded = of_masses(load_config(config), masses_t)
     regulated = replace(loaded, regulator=loaded.regulator.model_copy(update={"estimator": estimator}))
-    cases = tune(regulated, read_back, Teller(tell)).whole
+    cases = tune(regulated, RadarEpochs(), read_back, Teller(tell)).whole
     book = TableBook(tuple(case.table for case in cases))
     return Tuned(book, tuple(case.plant for case in cases), regulated.sha256)
 

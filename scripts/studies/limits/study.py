@@ -122,7 +122,7 @@ def changed(case: Case, change: Change, config: ResolvedConfig, passes: RandomPa
     if change.speed_step_m_s is not None:
         resolution = replace(resolution, speed_step_m_s=min(resolution.speed_step_m_s, change.speed_step_m_s))
     design = finer(persistent_chain(change.plant, resolution))  # without a spread the polish would live on the grid
-    lines = tuned_lines(design, Aim(case.target_m_s, free(config)), change.degree).lines
+    lines = tuned_lines(design, Aim(case.target_m_s, free(config)), change.degree).best
     return simulated(case, change, controller_for(case, lines), passes)
 
 

@@ -53,8 +53,7 @@ def tables_from(config: ResolvedConfig, case: Case, tuned: TunedTable) -> dict[D
     def stored(lines: PolynomialLines | PolynomialSurfaces, of: Estimator | None) -> ControllerTable:
         return read_back(rounded(config, case.plant, lines, case.target_m_s, of))
 
-    made = {Decisions.AT_REST: stored(tuned.lines, estimator)}
-    if tuned.surfaces is not None:
-        kept = tuned.surfaces.polish.surfaces if tuned.surfaces.estimate is None else tuned.surfaces.estimate.lines
-        made[Decisions.AT_ANY_TIME] = stored(kept, estimator)
+    made = {Decisions.AT_REST: stored(tuned.at_rest.lines, estimator)}
+    if tuned.at_any_time is not None:
+        made[Decisions.AT_ANY_TIME] = stored(tuned.at_any_time.lines, estimator)
     return made

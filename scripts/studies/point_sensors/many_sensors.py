@@ -94,6 +94,6 @@ def row_of(site: Site, noise: Noise, deciding: int, passes: RandomPasses, resolu
 def radar_exits(site: Site, plant: Plant, passes: RandomPasses, resolution: Resolution) -> ExitSample:
     """The passes under the table of a radar, made on the same grid."""
     design = persistent_chain(plant, replace(resolution, transient_substeps=1))
-    lines = tuned_lines(design, site.aim, DEGREE).lines
+    lines = tuned_lines(design, site.aim, DEGREE).best
     table = rounded(site.config, plant, lines, site.target_m_s)
     return common_passes(plant, passes).run(TableController(table))

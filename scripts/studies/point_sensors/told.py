@@ -66,7 +66,7 @@ def told_bound(chains: PassageChains, speeds: PassageSpeeds, target_m_s: float, 
 def speeds_for(design: Chain, target_m_s: float, factor: float) -> PassageSpeeds:
     """Switching speeds of least mean square error for cuts of one friction, solved and polished."""
     known = with_known_friction(design, factor)
-    return rounded(polish_passages(solve(known, Aim(target_m_s, SQUARED_ERROR_ALONE))).speeds)
+    return rounded(polish_passages(solve(known, Aim(target_m_s, SQUARED_ERROR_ALONE))).best)
 
 
 def squares_at(

@@ -14,8 +14,8 @@ from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.estimation.simulated_prediction import simulated_prediction
 from synth.retarder.failed_case import FailedCase, require_none
 from synth.retarder.rounded_table import with_prediction
+from synth.retarder.served_class import plant_for
 from synth.retarder.tuned_table import solutions, tuned_table, validated_table
-from synth.retarder.validation.revalidation import plant_for
 from synth.retarder.watcher import Watcher
 from synth.simulation.controllers import TableController
 from synth.solver.backward_induction import Solution

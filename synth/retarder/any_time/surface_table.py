@@ -14,7 +14,8 @@ from synth.solver.any_time.estimate_error import EstimateError
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces, surfaces_of_lines
 from synth.solver.any_time.sampled_chain import check_sampled_chain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
-from synth.solver.any_time.surface_polish import NEGLIGIBLE_MASS, SurfacePolish, polish_surfaces
+from synth.solver.any_time.surface_polish import NEGLIGIBLE_MASS, polish_surfaces
+from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity, without_negative
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED, surfaces_of, tabulate
@@ -37,7 +38,7 @@ def starting_surfaces(plant: Plant, lines: PolynomialLines, has_gauge: bool) -> 
 
 def polished_surfaces(
     plant: Plant, aim: Aim, start: PolynomialSurfaces, steps: Resolution, estimate: EstimateError | None = None
-) -> SurfacePolish:
+) -> Descent[PolynomialSurfaces]:
     """The surfaces of least cost near `start`, on the grid `steps`, for the measured or an estimated speed."""
     chain = replace(sampled_chain(plant, steps), estimate=estimate)
     return polish_surfaces(start, SurfaceEvaluation(chain, negligible_mass=NEGLIGIBLE_MASS), aim)

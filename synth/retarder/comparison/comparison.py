@@ -1,4 +1,4 @@
-"""The closed loops of one case side by side, each by its role."""
+"""What the table of a case is compared with, each closed loop by its role."""
 
 from __future__ import annotations
 
@@ -11,14 +11,13 @@ from synth.simulation.replicates import Interval
 
 @dataclass(frozen=True)
 class Comparison:
-    """Our table and what it is compared with, all on the same passes.
+    """What our table is compared with, all on the passes that it had.
 
     `friction_known`: the same kind of regulator, told the friction of every cut; `baselines`: tuned classical laws;
     `baseline_ratio_ci95`: of rms of the friction-known regulator / rms of the best of them, paired, NaN without any;
     `at_rest`: where commands come at any time, the lines that the same tune makes for commands at rest.
     """
 
-    table: Measured
     friction_known: Measured
     baselines: tuple[Measured, ...]
     baseline_ratio_ci95: Interval = UNKNOWN
@@ -26,19 +25,14 @@ class Comparison:
 
     @property
     def entries(self) -> tuple[Measured, ...]:
-        """All controllers: the table first, the baselines last but for lines at rest."""
+        """All of them: the baselines last but for lines at rest."""
         at_rest = () if self.at_rest is None else (self.at_rest,)
-        return (self.table, self.friction_known, *self.baselines, *at_rest)
+        return (self.friction_known, *self.baselines, *at_rest)
 
     @property
     def best_baseline(self) -> Measured | None:
         """The baseline of least rms, None if there is none."""
         return min(self.baselines, key=lambda entry: entry.statistics.rms_m_s, default=None)
-
-    @property
-    def honesty(self) -> float:
-        """Predicted rms / simulated rms of the table."""
-        return self.table.honesty
 
     @property
     def has_reference(self) -> bool:

@@ -18,7 +18,7 @@ from synth.retarder.any_time.surface_table import trial_table
 from synth.retarder.class_setup import ClassSetup
 from synth.retarder.comparison.told_regulator import Told, best_by_others, by_lines, run_told
 from synth.retarder.estimation.told_estimator import told_with_estimator, told_with_estimator_at_any_time
-from synth.retarder.tuned_table import TunedTable, ValidatedTable
+from synth.retarder.tuned_table import TunedTable, ValidatedLines
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.passes import ExitSample
@@ -28,7 +28,7 @@ from synth.solver.any_time.told_surfaces import told_surfaces
 from synth.solver.told_lines import told_lines
 
 
-def friction_bound(setup: ClassSetup, tuned: TunedTable, validated: ValidatedTable) -> ExitSample:
+def friction_bound(setup: ClassSetup, tuned: TunedTable, validated: ValidatedLines) -> ExitSample:
     """The common passes under the reference of a table that was tuned and validated on `setup`."""
     regulators = told_regulators(setup, tuned, validated.table.target_speed_m_s)
     return bound_of(setup.passes, regulators, validated.sample, validated.table.target_speed_m_s)
@@ -42,14 +42,15 @@ def bound_of(passes: CommonPasses, regulators: Sequence[Told], sample: ExitSampl
 def told_regulators(setup: ClassSetup, tuned: TunedTable, target_m_s: float) -> Sequence[Told]:
     """Regulators of the table's kind that are told the friction; where that commands at any time, and one at rest."""
     told: list[Told] = []
-    if setup.estimator is None or tuned.estimate is None:
-        if tuned.surfaces is not None:
-            told.append(by_surfaces(setup.plant, target_m_s, tuned.surfaces.polish.surfaces))
-        return [*told, by_lines(told_lines(setup.design, target_m_s, tuned.lines, tuned.design.fit.curvature))]
+    lines, surfaces = tuned.at_rest, tuned.at_any_time
+    if setup.estimator is None or lines.estimate is None:
+        if surfaces is not None:
+            told.append(by_surfaces(setup.plant, target_m_s, surfaces.lines))
+        return [*told, by_lines(told_lines(setup.design, target_m_s, lines.lines, tuned.design.fit.curvature))]
     tuning = setup.passes.of_others(setup.estimator.tuning)
-    if tuned.surfaces is not None and tuned.surfaces.estimate is not None:
-        told.append(told_with_estimator_at_any_time(setup.plant, tuned.surfaces.estimate, tuning, target_m_s))
-    return [*told, told_with_estimator(tuned.estimate, tuning, target_m_s)]
+    if surfaces is not None and surfaces.estimate is not None:
+        told.append(told_with_estimator_at_any_time(setup.plant, surfaces.estimate, tuning, target_m_s))
+    return [*told, told_with_estimator(lines.estimate, tuning, target_m_s)]
 
 
 def by_surfaces(plant: Plant, target_m_s: float, common: PolynomialSurfaces) -> Told:

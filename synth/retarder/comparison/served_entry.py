@@ -13,7 +13,7 @@ from synth.retarder.feasibility import Feasibility
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.controllers import fixed
 from synth.simulation.exit_range import ExitRange, exit_range
-from synth.simulation.unavoidable_error import excess_and_lack_m_s, unavoidable_error
+from synth.simulation.unavoidable_error import excess_and_lack_m_s
 
 ENTRY_POINTS, ENTRY_PASSES = 24, 500
 """Entry speeds that are looked at, and passes at each of them: the same, but for the speed."""
@@ -53,12 +53,11 @@ def entry_sweep(passes: CommonPasses, count: int = ENTRY_PASSES) -> EntrySweep:
     return EntrySweep(entry, exit_range(passes.loop(plant.top_stage + 1), at_entry))
 
 
-def feasibility_of(passes: CommonPasses, sweep: EntrySweep, target_m_s: float, limit_m_s: float) -> Feasibility:
-    """What the position can do for a target: to `passes`, and by entry speed in a `sweep`."""
-    found, rms = passes.exit_range, sweep.unavoidable_rms_m_s(target_m_s)
+def feasibility_of(sweep: EntrySweep, target_m_s: float, limit_m_s: float) -> Feasibility:
+    """What the position can do for a target by entry speed, in a `sweep`."""
+    rms = sweep.unavoidable_rms_m_s(target_m_s)
     return Feasibility(
         limit_m_s=limit_m_s,
-        unavoidable=unavoidable_error(found.slowest, found.fastest, target_m_s),
         entry_m_s=sweep.entry_m_s,
         entry_rms_m_s=rms,
         served_m_s=served(sweep.entry_m_s, rms, limit_m_s),

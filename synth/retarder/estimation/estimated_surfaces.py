@@ -20,7 +20,8 @@ from synth.retarder.estimation.estimator_design import error_of_estimate
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
-from synth.solver.any_time.surface_polish import SurfacePolish, opened
+from synth.solver.any_time.surface_polish import opened
+from synth.solver.descent import Descent
 from synth.solver.polynomial_lines import PolynomialLines
 from tuning_tables.estimator import Estimator
 
@@ -41,7 +42,7 @@ RESISTANCES = 2
 
 def estimated_surfaces(
     plant: Plant, aim: Aim, made: EstimatedTable[PolynomialLines], has_gauge: bool, tuning: RandomPasses
-) -> tuple[SurfacePolish, Untrimmed[PolynomialSurfaces]]:
+) -> tuple[Descent[PolynomialSurfaces], Untrimmed[PolynomialSurfaces]]:
     """How surfaces were polished from the lines that were `made` for the estimator and commands at rest; and these, to
     be trimmed. `tuning`: passes on which the error of the estimate is found.
     """
@@ -60,7 +61,7 @@ def estimated_surfaces(
     criterion = aim.criterion
     prices = criterion.switching_tolerance_m2_s2, criterion.time_price_m2_s3, criterion.terminal
     trim = Trim(TRIM_TERMS, TRIM_EVALUATIONS, *prices)
-    return polish, Untrimmed(polish.surfaces, made.estimator, made.error_m_s, controller, opened, trim)
+    return polish, Untrimmed(polish.best, made.estimator, made.error_m_s, controller, opened, trim)
 
 
 def estimate_resolution(plant: Plant, target_m_s: float, error_m_s: float) -> Resolution:

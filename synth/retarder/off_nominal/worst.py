@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from synth.retarder.case_names import case_name
 from synth.retarder.case_result import CaseResult
 from synth.retarder.judgement import interval_text
 from synth.retarder.off_nominal.outcome import Outcome
@@ -25,7 +24,7 @@ class Worst:
         """In a sentence."""
         found = self.outcome
         return (
-            f"Off nominal, for which there is no limit, the worst is {case_name(self.case)} with {found.change}: rms "
+            f"Off nominal, for which there is no limit, the worst is {self.case.name} with {found.change}: rms "
             f"{found.rms_m_s:.4f} {interval_text(found.rms_ci95_m_s)} m/s, {self.ratio:.1f} times the nominal."
         )
 

@@ -13,6 +13,7 @@ from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of, require_room, sensors_left_aside
 from synth.retarder.exit_figures import CHANCE_ONLY
 from synth.retarder.permissions.options import PermissionsOptions
+from synth.retarder.radar_epochs import RadarEpochs
 
 if TYPE_CHECKING:
     from synth.retarder.permissions.permission import AllPermissions
@@ -46,7 +47,7 @@ def resolve(asked: Asked[ResolvedConfig, PermissionsOptions]) -> AskedPermission
     from synth.retarder.permissions.refusal import require_tellable
 
     require_tellable(asked.settings, asked.place, "permissions")
-    require_room(asked.settings, asked.place, asked.options.workers)
+    require_room(asked.settings, RadarEpochs(), asked.place, asked.options.workers)
     return AskedPermissions(asked.settings, asked.place, asked.options.workers)
 
 

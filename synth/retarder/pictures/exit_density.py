@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,7 +12,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
 from synth.frame.picture.house_style import (
     GREY,
     INK,
@@ -25,62 +23,30 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.retarder.case_names import cut_name
-from synth.retarder.case_result import CaseResult
 from synth.retarder.exit_bins import NARROW_M_S, WIDE_M_S, prediction_origin
-from synth.simulation.exit_statistics import OVERSPEED_M_S, ExitStatistics
+from synth.retarder.tuned_case import TunedCase
+from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.solver.exit_density import ExitDensity
 
 LEAST = 1e-4
 """Bottom of the logarithmic panel, 1/(m/s): one cut in 100 000 in a wide bin."""
 
 
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class DrawnExits:
-    """What is drawn of one case: simulated exits, each standing for `exit_weight` cuts, and the predicted density."""
-
-    target_speed_m_s: float
-    exit_speeds_m_s: NDArray[np.float32]
-    exit_weight: NDArray[np.float64]
-    predicted: ExitDensity
-    predicted_rms_m_s: float
-    statistics: ExitStatistics
-
-
-def exit_density(cases: Sequence[CaseResult]) -> Figure:
-    """The exits of cases of one class with lines; see `density_figure`."""
-    exits = [
-        DrawnExits(
-            case.target_speed_m_s,
-            case.exit_speeds_m_s,
-            case.exit_weight,
-            case.predicted,
-            case.comparison.table.predicted_rms_m_s,
-            case.comparison.table.statistics,
-        )
-        for case in cases
-    ]
-    return density_figure(cut_name(cases[0]), exits, prediction_origin(cases))
-
-
-def density_figure(subject: str, exits: Sequence[DrawnExits], origin: str) -> Figure:
-    """One column a case: density in 1/(m/s) over exit speed in m/s, near the target, and its tails logarithmically.
-
-    `origin`: what the predictions come from, for the legend.
-    """
-    columns = len(exits)
-    figure = new_figure(3.9 * columns + 0.7, 6.4, "Exit speed, predicted and simulated", subject)
+def exit_density(cases: Sequence[TunedCase]) -> Figure:
+    """One column for each of these cases of one class: density in 1/(m/s) over exit speed in m/s, near the target, and
+    its tails logarithmically."""
+    columns = len(cases)
+    figure = new_figure(3.9 * columns + 0.7, 6.4, "Exit speed, predicted and simulated", cases[0].cut_name)
     in_legend = min(4, 2 * columns)  # beside each other: a single panel is narrow
     place(figure, left=0.8, right=0.2, bottom=0.75 + 0.2 * math.ceil(4 / in_legend), top=1.25, w=0.2, h=0.22)
     panels = figure.subplots(2, columns, squeeze=False)
-    for column, each in enumerate(exits):
+    for column, each in enumerate(cases):
         draw_case(panels[0, column], panels[1, column], each)
     panels[0, 0].set_ylabel("density, 1/(m/s)", fontsize=9)
     panels[1, 0].set_ylabel("the same, logarithmic", fontsize=9)
     handles = [
         Patch(facecolor=SKY, label="simulated passes"),
-        Line2D([], [], color=VERMILLION, linewidth=1.4, label=origin),
+        Line2D([], [], color=VERMILLION, linewidth=1.4, label=prediction_origin(cases)),
         Line2D([], [], color=INK, linewidth=1.2, label="target"),
         Line2D([], [], color=GREY, linewidth=1.2, linestyle="--", label=f"target ± {OVERSPEED_M_S:g} m/s"),
     ]
@@ -88,7 +54,7 @@ def density_figure(subject: str, exits: Sequence[DrawnExits], origin: str) -> Fi
     return figure
 
 
-def draw_case(near: Axes, tails: Axes, case: DrawnExits) -> None:
+def draw_case(near: Axes, tails: Axes, case: TunedCase) -> None:
     """Both panels of one case."""
     target, speeds, share = case.target_speed_m_s, case.exit_speeds_m_s, case.exit_weight / case.exit_weight.sum()
     speed, predicted = predicted_density(case.predicted)
@@ -129,13 +95,13 @@ def bin_edges_m_s(target_m_s: float, highest_m_s: float) -> NDArray[np.float64]:
     return np.append(0.0, edges[edges > 1e-9])
 
 
-def panel_title(case: DrawnExits) -> str:
+def panel_title(case: TunedCase) -> str:
     """Target, both rms with the interval of the simulated one, stalls if there are any."""
     found = case.statistics
     low, high = found.rms_ci95_m_s
     lines = [
         f"target {case.target_speed_m_s:g} m/s",
-        f"predicted rms {case.predicted_rms_m_s:.4f} m/s",
+        f"predicted rms {case.table.predicted.rms_m_s:.4f} m/s",
         f"simulated rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s",
     ]
     if found.stalled:

@@ -13,7 +13,7 @@ from synth.frame.picture.house_style import BLUE, GREEN, GREY, INK, VERMILLION, 
 from synth.retarder.comparison.cycle_wave import cycle_wave
 from synth.retarder.comparison.describing_function import describing_function_analysis
 from synth.retarder.comparison.limit_cycle import Hunting, LimitCycle
-from synth.retarder.control_loop import ControlLoop
+from synth.retarder.line_control_loop import LineControlLoop
 from synth.retarder.pictures.table_picture import subject
 
 PERIODS = 2
@@ -22,7 +22,7 @@ CRUDE_FROM = 2.0
 """Ratio of slopes from which the first harmonic is called crude: at 2.5 amplitude and period were 40 and 22 % off."""
 
 
-def loop_cycle(loop: ControlLoop, hunting: Hunting) -> Figure:
+def loop_cycle(loop: LineControlLoop, hunting: Hunting) -> Figure:
     """The cycle of `hunting`: closed form and first harmonic over time; relay and loop in the complex plane."""
     cycle = hunting.cycle
     where = (
@@ -60,7 +60,7 @@ def harmonic_label(cycle: LimitCycle) -> str:
     return f"{word} 1 : {ratio:.1f}"
 
 
-def draw_wave(axes: Axes, loop: ControlLoop, cycle: LimitCycle) -> None:
+def draw_wave(axes: Axes, loop: LineControlLoop, cycle: LimitCycle) -> None:
     """Speed above the middle of the lines in cm/s over time."""
     wave = cycle_wave(loop.plant, cycle)
     time = np.concatenate([wave.time_s + i * cycle.period_s for i in range(PERIODS)])

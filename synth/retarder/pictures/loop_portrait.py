@@ -23,7 +23,7 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.retarder.control_loop import LINE_NODES, ControlLoop
+from synth.retarder.line_control_loop import LINE_NODES, LineControlLoop
 from synth.retarder.pictures.policy_map import finite
 from synth.retarder.pictures.table_picture import stages_in_use, subject
 from synth.simulation.nominal_response import NominalResponse
@@ -38,7 +38,7 @@ NEAR_M_S = 0.35
 """Half the height of the enlarged part."""
 
 
-def loop_portrait(loop: ControlLoop) -> Figure:
+def loop_portrait(loop: LineControlLoop) -> Figure:
     """The whole pass on the left, its end around the commanded speed enlarged on the right."""
     title = "Phase portrait of the nominal loop, by python-control"
     figure = new_figure(13.0, 6.4, title, subject(loop.table))
@@ -57,7 +57,7 @@ def loop_portrait(loop: ControlLoop) -> Figure:
     return figure
 
 
-def draw(axes: Axes, loop: ControlLoop) -> None:
+def draw(axes: Axes, loop: LineControlLoop) -> None:
     """Lines, passes coloured by the commanded stage, zones, and where two stages can hunt."""
     path = np.linspace(*loop.table.valid.s_m, LINE_NODES)
     lines = lines_of(loop.table, path)
@@ -87,7 +87,7 @@ def while_in(response: NominalResponse, stage: int) -> tuple[NDArray[np.float64]
     return response.path_m, np.where(inside, response.speed_m_s, np.nan)
 
 
-def entries(loop: ControlLoop) -> list[Line2D | Patch]:
+def entries(loop: LineControlLoop) -> list[Line2D | Patch]:
     """What colours and strokes mean."""
     shown: list[Line2D | Patch] = [
         Line2D([], [], color=colour_of(stage.k), linewidth=2.0, label=f"stage {stage.k}: {stage.pressure_kpa:g} kPa")

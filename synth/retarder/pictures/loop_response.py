@@ -12,12 +12,10 @@ from synth.retarder.control_loop import TOLERANCE_M_S, ControlLoop
 from synth.retarder.passage_control_loop import PassageControlLoop
 from synth.retarder.pictures.table_picture import subject
 
-AnyLoop = ControlLoop | PassageControlLoop
-
 TIME = "time since the regulator took over, s"
 
 
-def loop_response(loop: AnyLoop) -> Figure:
+def loop_response(loop: ControlLoop) -> Figure:
     """Speed over path, the difference of speed, overpressure and stage over time."""
     figure = new_figure(11.5, 6.2, "Nominal response: python-control and the simulator", subject(loop.table))
     place(figure, left=0.65, right=0.2, bottom=0.95, top=0.85, w=0.17, h=0.42)
@@ -40,7 +38,7 @@ def loop_response(loop: AnyLoop) -> Figure:
     return figure
 
 
-def draw_speed(axes: Axes, loop: AnyLoop) -> None:
+def draw_speed(axes: Axes, loop: ControlLoop) -> None:
     """Speed in m/s over path in m, with the exit speeds in the title."""
     response, trace, target = loop.response, loop.trace, loop.table.target_speed_m_s
     axes.plot(response.path_m, response.speed_m_s, color=BLUE, linewidth=3.0, alpha=0.45)
@@ -55,7 +53,7 @@ def draw_speed(axes: Axes, loop: AnyLoop) -> None:
     axes.set(xlim=(loop.plant.start_m, loop.plant.exit_m), ylim=(0.0, None))
 
 
-def draw_difference(axes: Axes, loop: AnyLoop) -> None:
+def draw_difference(axes: Axes, loop: ControlLoop) -> None:
     """python-control less simulator in mm/s, at the events of the simulator."""
     found, time = loop.difference, loop.trace.time_s
     speed = np.interp(time, loop.response.time_s, loop.response.speed_m_s)
@@ -73,7 +71,7 @@ def draw_difference(axes: Axes, loop: AnyLoop) -> None:
     axes.set_ylim(-reach, reach)
 
 
-def draw_pressure(axes: Axes, loop: AnyLoop) -> None:
+def draw_pressure(axes: Axes, loop: ControlLoop) -> None:
     """Pressure above the touch of the pads over time: integrated by one, played in steps by the other."""
     touch_kpa = loop.plant.position.force.touch_pressure_kpa
     over = np.maximum(0.0, loop.response.pressure_kpa - touch_kpa)
@@ -85,7 +83,7 @@ def draw_pressure(axes: Axes, loop: AnyLoop) -> None:
     axes.set_ylim(0.0, None)
 
 
-def draw_stage(axes: Axes, loop: AnyLoop) -> None:
+def draw_stage(axes: Axes, loop: ControlLoop) -> None:
     """Commanded stage over time."""
     axes.step(loop.response.time_s, loop.response.stage, where="post", color=BLUE, linewidth=3.0, alpha=0.45)
     axes.step(loop.trace.time_s, loop.trace.stage, where="post", color=VERMILLION, linewidth=1.2, linestyle="--")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from synth.retarder.control_loop import ControlLoop
+from synth.retarder.line_control_loop import LineControlLoop
 from synth.retarder.passage_control_loop import PassageControlLoop
 from synth.retarder.pictures.block_diagram import block_diagram
 from synth.retarder.pictures.block_layout import POINT_SENSOR_ROUTES, RADAR_ROUTES
@@ -14,7 +14,7 @@ from synth.simulation.structure.passage_diagram import passage_diagram
 from synth.simulation.structure.radar_diagram import radar_diagram
 
 
-def loop_structure(loop: ControlLoop | PassageControlLoop) -> Figure:
+def loop_structure(loop: LineControlLoop | PassageControlLoop) -> Figure:
     """The parts of the loop and their wires. `ValueError` for a table with an estimator."""
     if isinstance(loop, PassageControlLoop):
         return block_diagram(

@@ -19,7 +19,6 @@ from synth.frame.picture.house_style import (
     dress,
     mark_zones,
 )
-from synth.retarder.case_names import cut_name, target_name
 from synth.retarder.case_result import CaseResult
 from synth.retarder.command_panels import DOWN, HATCH, HOLD, UP, command_image, label_panels, stage_panels
 from synth.retarder.pictures.speed_window import speed_window_m_s
@@ -31,7 +30,7 @@ PASSES_SHOWN = 3
 def policy_map(case: CaseResult) -> Figure:
     """Path in m across, speed in m/s upwards; colours: command, hatched: several commands cost the same."""
     stages = case.study.solver_lines.stages
-    figure, grid = stage_panels("Best command by stage", f"{cut_name(case)}, {target_name(case)}", stages)
+    figure, grid = stage_panels("Best command by stage", f"{case.cut_name}, {case.target_name}", stages)
     for stage in range(stages):
         draw_stage(grid.flat[stage], case, stage)
     label_panels(grid, stages)
@@ -55,7 +54,7 @@ def draw_stage(axes: Axes, case: CaseResult, stage: int) -> None:
     for dots, line, colour, style in sides:
         axes.plot(raw.nodes_m, finite(dots[stage]), ".", color=colour, markersize=2.2, zorder=3)
         axes.plot(exported.nodes_m, finite(line[stage]), style, color=colour, linewidth=2.2, zorder=5)
-    axes.plot(*parts_in_stage(case.study.traces[:PASSES_SHOWN], stage), color=INK, linewidth=0.8, zorder=6)
+    axes.plot(*parts_in_stage(case.traces[:PASSES_SHOWN], stage), color=INK, linewidth=0.8, zorder=6)
     mark_zones(axes, case.plant.position.zones_m, case.plant.start_m)
     dress(axes, f"stage {stage} · {case.plant.position.stage_pressures_kpa[stage]:g} kPa")
     axes.grid(False)

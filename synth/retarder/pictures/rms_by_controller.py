@@ -70,16 +70,16 @@ def rms_by_controller(cases: Sequence[CaseResult], limit_m_s: float) -> Figure:
     axes = figure.subplots()
     dress(axes, y="rms of exit speed − target, m/s")
     axes.grid(False, axis="x")
-    for place_no, entries in enumerate(zip(*(case.comparison.entries for case in cases), strict=False)):
+    for place_no, entries in enumerate(zip(*(case.controllers for case in cases), strict=False)):
         draw_controller(axes, place_no, entries)
     axes.axhline(limit_m_s, color=INK, linewidth=1.2, linestyle="--", zorder=1)
     logarithmic_y(axes, values_m_s(cases, limit_m_s))
     axes.set_xlim(-0.5, len(cases) - 0.5)
     axes.text(-0.47, limit_m_s * 1.02, "acceptance limit", fontsize=8, va="bottom")
-    mark_cases(axes, cases)
+    mark_cases(axes, cases, limit_m_s)
     # Four columns of entries, the longest of which is a sentence, need 8.6 inches.
     columns = 4 if figure.get_size_inches()[0] >= 8.6 else 3
-    legend_below(figure, legend_entries(cases[0].comparison.entries), columns=columns)
+    legend_below(figure, legend_entries(cases[0].controllers), columns=columns)
     return figure
 
 
@@ -104,8 +104,8 @@ def draw_controller(axes: Axes, place_no: int, entries: Sequence[Measured]) -> N
         axes.plot(x, predicted, look.marker, color=look.colour, markersize=6, markerfacecolor="white", zorder=2.5)
 
 
-def mark_cases(axes: Axes, cases: Sequence[CaseResult]) -> None:
-    """Targets and classes under the axis; infeasible cases grey, with the reason."""
+def mark_cases(axes: Axes, cases: Sequence[CaseResult], limit_m_s: float) -> None:
+    """Targets and classes under the axis; cases that cannot keep the limit grey, with the reason."""
     axes.set_xticks(range(len(cases)), [f"{case.target_speed_m_s:g} m/s" for case in cases])
     axes.tick_params(axis="x", length=0)
     start = 0
@@ -120,18 +120,18 @@ def mark_cases(axes: Axes, cases: Sequence[CaseResult]) -> None:
             axes.axvline(end, color=GREY, linewidth=0.8)
         start += len(group)
     for index, case in enumerate(cases):
-        if not case.feasibility.feasible:
+        if case.unavoidable.forbids(limit_m_s):
             axes.axvspan(index - 0.5, index + 0.5, color=PALE_GREY, zorder=0)
             axes.text(
-                index - 0.46, 0.02, case.feasibility.obstacle, transform=axes.get_xaxis_transform(), rotation=90,
+                index - 0.46, 0.02, case.unavoidable.obstacle, transform=axes.get_xaxis_transform(), rotation=90,
                 va="bottom", fontsize=8, color=INK,
             )  # fmt: skip
 
 
 def values_m_s(cases: Sequence[CaseResult], limit_m_s: float) -> list[float]:
     """Everything that the figure must have room for."""
-    entries = [entry for case in cases for entry in case.comparison.entries]
-    predicted = [case.comparison.table.predicted_rms_m_s for case in cases]
+    entries = [entry for case in cases for entry in case.controllers]
+    predicted = [case.table.predicted.rms_m_s for case in cases]
     return [limit_m_s, *(entry.statistics.rms_m_s for entry in entries), *predicted]
 
 

@@ -17,9 +17,8 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.retarder.case_names import cut_name, target_name
 from synth.retarder.case_result import CaseResult
-from synth.simulation.passes import PassTrace
+from synth.simulation.passes import TRACE_FACTORS, PassTrace
 
 
 def sample_passes(case: CaseResult) -> Figure:
@@ -27,14 +26,12 @@ def sample_passes(case: CaseResult) -> Figure:
 
     The legend gives each pass its friction factor ξ_cut and the speed it left with.
     """
-    figure = new_figure(11.0, 5.2, "Sample passes", f"{cut_name(case)}, {target_name(case)}")
+    figure = new_figure(11.0, 5.2, "Sample passes", f"{case.cut_name}, {case.target_name}")
     place(figure, left=0.65, right=0.2, bottom=0.95, top=0.85, w=0.17, h=0.24)
     grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1.0))
     speed, pressure, stage = (figure.add_subplot(grid[part]) for part in ((slice(None), 0), (0, 1), (1, 1)))
     handles: list[Line2D] = []
-    for trace, factor, colour, style in zip(
-        case.study.traces, case.study.trace_factors, LINE_COLOURS, LINE_STYLES, strict=False
-    ):
+    for trace, factor, colour, style in zip(case.traces, TRACE_FACTORS, LINE_COLOURS, LINE_STYLES, strict=False):
         speed.plot(trace.path_m, trace.speed_m_s, color=colour, linestyle=style, linewidth=1.6)
         pressure.step(trace.time_s, trace.overpressure_kpa, where="post", color=colour, linestyle=style, linewidth=1.3)
         stage.step(trace.time_s, trace.stage, where="post", color=colour, linestyle=style, linewidth=1.3)
@@ -43,7 +40,7 @@ def sample_passes(case: CaseResult) -> Figure:
     finish_speed(speed, case)
     dress(pressure, "pressure above the touch of the pads, kPa")
     dress(stage, "commanded stage", "time since the regulator took over, s")
-    last_s = max((float(trace.time_s[-1]) for trace in case.study.traces), default=1.0)
+    last_s = max((float(trace.time_s[-1]) for trace in case.traces), default=1.0)
     pressure.tick_params(labelbottom=False)
     pressure.set(xlim=(0.0, last_s), ylim=(0.0, None))
     stage.set(
@@ -59,7 +56,7 @@ def finish_speed(axes: Axes, case: CaseResult) -> None:
     """Target, the place where the last axle has left the last zone, zones and labels of the speed panel."""
     axes.axhline(case.target_speed_m_s, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), zorder=1)
     axes.annotate(
-        target_name(case), (case.plant.start_m, case.target_speed_m_s), (4.0, -4.0), textcoords="offset points",
+        case.target_name, (case.plant.start_m, case.target_speed_m_s), (4.0, -4.0), textcoords="offset points",
         va="top", fontsize=8.5,
     )  # fmt: skip
     mark_zones(axes, case.plant.position.zones_m, case.plant.start_m)
@@ -69,7 +66,7 @@ def finish_speed(axes: Axes, case: CaseResult) -> None:
         textcoords="offset points", va="center", fontsize=8, color=GREY,
     )  # fmt: skip
     dress(axes, "true speed, m/s", "path of the first axle, m")
-    highest = max((float(trace.speed_m_s.max()) for trace in case.study.traces), default=case.plant.entry.high_m_s)
+    highest = max((float(trace.speed_m_s.max()) for trace in case.traces), default=case.plant.entry.high_m_s)
     axes.set(xlim=(case.plant.start_m, case.plant.exit_m), ylim=(0.0, 1.05 * highest))
 
 

@@ -10,7 +10,6 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection  # typ
 from numpy.typing import NDArray
 
 from synth.frame.picture.house_style import BLUE, INK, VERMILLION, legend_below, new_figure
-from synth.retarder.case_names import cut_name, target_name
 from synth.retarder.case_result import CaseResult
 from synth.retarder.pictures.speed_window import speed_window_m_s
 from synth.retarder.pictures.stage_surfaces import sheet, stage_surfaces
@@ -24,7 +23,7 @@ POINTS_PER_STAGE = 3
 
 def surfaces(case: CaseResult) -> Figure:
     """The exported lines of a case over path and pressure; see `surface_figure`."""
-    subject = f"{cut_name(case)}, {target_name(case)}"
+    subject = f"{case.cut_name}, {case.target_name}"
     if case.table.has_gauge:
         return stage_surfaces(case.table, subject, speed_window_m_s(case))
     stages = case.study.table_lines.stages

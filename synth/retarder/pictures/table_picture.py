@@ -32,34 +32,32 @@ from synth.retarder.pictures.sample_passes import outcome
 from synth.retarder.pictures.stage_surfaces import stage_surfaces
 from synth.retarder.pictures.surfaces import PATH_POINTS, surface_figure
 from synth.simulation.exit_statistics import exit_statistics
-from synth.simulation.passes import ExitSample, PassTrace
+from synth.simulation.passes import TRACE_FACTORS, ExitSample, PassTrace
 from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable
 from tuning_tables.passages.passage_table import PassageTable
 
 LINE_POINTS = 201
-FACTORS = (0.8, 1.0, 1.2)
 PASSES = 5000
 """Exits that are drawn."""
 
 
 @dataclass(frozen=True)
 class Passes:
-    """Simulated passes of a table: a sample of exits, and a few passes with their friction factors."""
+    """Simulated passes of a table: a sample of exits, and a few passes with the friction factors `TRACE_FACTORS`."""
 
     sample: ExitSample
     traces: tuple[PassTrace, ...]
-    factors: tuple[float, ...]
 
 
 def drawn_passes(table: ControllerTable, plant: Plant, seed: int) -> Passes:
-    """`PASSES` stratified passes of `plant` under `table`, and the first three of them at the friction of `FACTORS`."""
+    """`PASSES` stratified passes of `plant` under `table`, and the first of them at `TRACE_FACTORS`."""
     from synth.simulation.closed_loop import TableController, simulate, trace  # a picture of lines needs no kernel
     from synth.simulation.stratified_passes import stratified_passes
 
     passes, law = stratified_passes(seed, 0, PASSES), TableController(table)
-    traces = tuple(trace(plant, law, passes, i, cut_factor=factor) for i, factor in enumerate(FACTORS))
-    return Passes(simulate(plant, law, passes), traces, FACTORS)
+    traces = tuple(trace(plant, law, passes, i, cut_factor=factor) for i, factor in enumerate(TRACE_FACTORS))
+    return Passes(simulate(plant, law, passes), traces)
 
 
 def table_lines(table: ControllerTable, passes: Passes | None) -> Figure:
@@ -129,7 +127,7 @@ def table_passes(table: ControllerTable, passes: Passes) -> Figure:
     grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0))
     speed, pressure, exits = (figure.add_subplot(grid[part]) for part in ((0, 0), (1, 0), (slice(None), 1)))
     handles: list[Line2D] = []
-    for trace, factor, colour, style in zip(passes.traces, passes.factors, LINE_COLOURS, LINE_STYLES, strict=False):
+    for trace, factor, colour, style in zip(passes.traces, TRACE_FACTORS, LINE_COLOURS, LINE_STYLES, strict=False):
         speed.plot(trace.path_m, trace.speed_m_s, color=colour, linestyle=style, linewidth=1.5)
         pressure.step(trace.time_s, trace.overpressure_kpa, where="post", color=colour, linestyle=style, linewidth=1.3)
         label = f"friction factor {factor:.2f}: {outcome(trace)}"

@@ -13,8 +13,8 @@ from synth.retarder.class_setup import class_setup, origin_of, validation_passes
 from synth.retarder.configuration.cut_class import CutClass
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.forms.table_file import read_tables
+from synth.retarder.served_class import plant_for
 from synth.retarder.tuned_table import solutions, tuned_table
-from synth.retarder.validation.revalidation import plant_for
 from synth.solver.one_blas_thread import one_blas_thread
 from tuning_tables import ControllerTable
 

@@ -96,7 +96,7 @@ def radar_rms(case: LayoutCase, resolution: Resolution) -> tuple[float, ...]:
 
 def radar_rms_for(plant: Plant, aim: Aim, resolution: Resolution) -> float:
     """Predicted rms of the polished polynomial lines of one aim."""
-    lines = tuned_lines(persistent_chain(plant, resolution), aim, RADAR_DEGREE).lines
+    lines = tuned_lines(persistent_chain(plant, resolution), aim, RADAR_DEGREE).best
     check = check_chain(plant, finer_for_check(resolution))
     density = resolved_density(check, lines.at(check.grid.path_m), aim.target_speed_m_s)
     return density.rms_m_s(aim.target_speed_m_s)

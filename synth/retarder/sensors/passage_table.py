@@ -7,8 +7,8 @@ import numpy as np
 from plant_models import Plant, PointSensors, deciding_passages, every_axle
 from plant_models.credible_motion import credible_motion
 from synth.retarder.sensors.tuned_passages import TunedPassages
-from synth.solver.tabulate import LOWEST_VALID_SPEED_M_S, prediction_of
-from tuning_tables import CutId, Generator, RetarderId
+from synth.solver.tabulate import LOWEST_VALID_SPEED_M_S, cut_of, prediction_of, retarder_of
+from tuning_tables import Generator
 from tuning_tables.approach import Approach
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
@@ -30,10 +30,8 @@ def passage_table(tuned: TunedPassages, generator: Generator, table_id: str, cre
         id=table_id,
         created=created,
         generator=generator,
-        retarder=RetarderId(
-            position.name, position.zones_m, float(plant.exit_m), float(position.pneumatics.dead_band_kpa)
-        ),
-        cut=CutId(plant.cut.category, float(plant.cut.mass_t), plant.cut.axle_offsets_m, plant.cut.category_number),
+        retarder=retarder_of(plant),
+        cut=cut_of(plant),
         target_speed_m_s=float(tuned.aim.target_speed_m_s),
         pressure_kpa=tuple(float(pressure) for pressure in position.stage_pressures_kpa),
         sensors=layout_of(sensors),

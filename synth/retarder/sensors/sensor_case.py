@@ -1,21 +1,32 @@
-"""What a tune for point sensors finds out about one case (cut class × target speed)."""
+"""One case of a tune for point sensors: its table, and what became of the passages at which it decides."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models import Plant, PointSensors
 from plant_models.frozen_arrays import frozen_arrays
-from synth.retarder.case_result import MOST_ESCAPED
-from synth.simulation.exit_statistics import BrakePower, ExitStatistics
-from synth.simulation.passage_sample import PassageTrace
+from synth.problem.aim import Aim
+from synth.retarder.epochs import Store
+from synth.retarder.sensors.passage_table import passage_table
+from synth.retarder.sensors.sensor_class import SensorClass, SensorPasses
+from synth.retarder.sensors.tuned_passages import tuned_passages
+from synth.retarder.tuned_case import TunedCase
+from synth.retarder.validated_table import validated
+from synth.simulation.passage_controller import of_table
+from synth.simulation.passage_sample import (
+    HEARD,
+    MISTAKEN,
+    TAKEN,
+    UNFINISHED,
+    PassageSample,
+    PassageTrace,
+    shares_of_outcomes,
+)
+from synth.simulation.passes import TRACE_FACTORS, ExitSample
 from synth.simulation.replicates import Interval
-from synth.simulation.unavoidable_error import UnavoidableError
-from synth.solver.exit_density import ExitDensity
-from synth.solver.passage_polish import PassagePolish
+from synth.simulation.unavoidable_error import UnavoidableError, unavoidable_error
 from tuning_tables.passages.passage_table import PassageTable
 
 
@@ -36,57 +47,53 @@ class HeardShares:
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
-class SensorCase:
-    """One case: the table as read back, its prediction, and what the closed loop says of it.
+class SensorCase(TunedCase):
+    """One case of tables for point sensors.
 
-    `exit_speeds_m_s` simulated, stalls as 0, `exit_weight`: how many cuts each pass stands for. `unavoidable`: the
-    error that no rule with these sensors avoids; slowest are cuts under the harder braking of two, the table and full
-    brake at every passage. `traces`: passes with the friction factors `trace_factors`.
+    Slowest of the passes behind `unavoidable` are cuts under the harder braking of two, the table and full brake at
+    every passage.
     """
 
-    label: str
-    plant: Plant
-    sensors: PointSensors
     table: PassageTable
-    predicted: ExitDensity
-    polish: PassagePolish
-    exit_speeds_m_s: NDArray[np.float32]
-    exit_weight: NDArray[np.float64]
-    statistics: ExitStatistics
-    brake_power: BrakePower
-    unavoidable: UnavoidableError
-    heard: HeardShares
     traces: tuple[PassageTrace, ...]
-    trace_factors: tuple[float, ...]
+    heard: HeardShares
 
-    @property
-    def target_speed_m_s(self) -> float:
-        """The commanded exit speed."""
-        return self.table.target_speed_m_s
 
-    @property
-    def name(self) -> str:
-        """Cut class and target in one line."""
-        return f"{self.label}, target {self.target_speed_m_s:g} m/s"
+def sensor_case(setup: SensorClass, aim: Aim, store: Store[PassageTable]) -> SensorCase:
+    """Tune one case; the table is simulated as read back from where it is stored, and stored with the figures."""
+    passes, target_m_s = setup.passes, aim.target_speed_m_s
+    tuned = tuned_passages(setup.chains, aim)
+    table = passage_table(tuned, *setup.origin.stamp(setup.label, target_m_s))
+    found = validated(table, store, lambda kept: passes.run(of_table(kept, tracking=True)), setup.passes.at_full_brake)
+    controller = of_table(found.table, tracking=True)
+    return SensorCase(
+        label=setup.label,
+        plant=setup.plant,
+        table=found.table,
+        predicted=tuned.predicted,
+        polish=tuned.polish,
+        exit_speeds_m_s=found.sample.exit_speed_m_s.astype(np.float32),
+        exit_weight=found.sample.weight,
+        statistics=found.statistics,
+        brake_power=found.brake_power,
+        unavoidable=unavoidable(passes, found.sample, target_m_s),
+        traces=tuple(passes.trace(controller, i, factor) for i, factor in enumerate(TRACE_FACTORS)),
+        heard=heard_shares(found.sample),
+    )
 
-    @property
-    def cut_name(self) -> str:
-        """Cut class with what matters of the cut: category, mass, axles."""
-        cut = self.plant.cut
-        return f"{self.label} (category {cut.category}, {cut.mass_t:g} t, {cut.axles} axles)"
 
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What throws doubt on the figures of the case, a sentence each."""
-        found = []
-        if not self.polish.converged:
-            found.append(
-                f"the polish ended before it converged ({self.polish.status}): its switching speeds are the best of "
-                f"{self.polish.evaluations} evaluations"
-            )
-        if self.predicted.escaped > MOST_ESCAPED:
-            found.append(
-                f"a probability of {self.predicted.escaped:.1e} left the top of the speed grid in the prediction, "
-                f"where {MOST_ESCAPED:g} is allowed: lower grid.speed_step_m_s"
-            )
-        return tuple(found)
+def unavoidable(passes: SensorPasses, sample: ExitSample, target_m_s: float) -> UnavoidableError:
+    """The error that no rule with these sensors avoids; `sample`: the passes under a table."""
+    slowest = np.minimum(sample.exit_speed_m_s, passes.at_full_brake.exit_speed_m_s)
+    return unavoidable_error(replace(sample, exit_speed_m_s=slowest), passes.released, target_m_s)
+
+
+def heard_shares(sample: PassageSample) -> HeardShares:
+    """Passages that found a change of stage unfinished, or were mistaken."""
+    taken, heard = (np.isin(sample.outcome, outcomes).sum(axis=0) for outcomes in (TAKEN, HEARD))
+    return HeardShares(
+        shares_of_outcomes(sample, (UNFINISHED,), TAKEN),
+        shares_of_outcomes(sample, MISTAKEN, HEARD),
+        tuple(taken.tolist()),
+        tuple(heard.tolist()),
+    )

@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 
 from plant_models import Plant, PointSensors
-from plant_models.cut import Cut
 from synth.kernels.loop.passes import Draws
 from synth.problem.resolution import Resolution
 from synth.retarder.class_setup import Origin
@@ -22,9 +21,6 @@ from synth.simulation.passage_sample import PassageSample, PassageTrace
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.tabulate import LOWEST_VALID_SPEED_M_S
-
-TRACE_STEP_S = 0.05
-"""Between points of a traced pass, which has events of its own only at coils and changes of pressure."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +48,7 @@ class SensorPasses:
     def trace(self, controller: PassageController, index: int, cut_factor: float) -> PassageTrace:
         """Pass `index`, but with the friction factor `cut_factor`; points at most `TRACE_STEP_S` apart."""
         draws = self.loop.draws(self.passes.part(index, index + 1), cut_factor)
-        return filled_trace(self.loop, self.loop.follow(controller, draws), draws, TRACE_STEP_S)
+        return filled_trace(self.loop, self.loop.follow(controller, draws), draws)
 
 
 @dataclass(frozen=True)
@@ -65,15 +61,6 @@ class SensorClass:
     chains: PassageChains
     passes: SensorPasses
     origin: Origin
-
-    @property
-    def cut(self) -> Cut:
-        """The cut of the class."""
-        return self.plant.cut
-
-    def table_id(self, target_speed_m_s: float) -> str:
-        """Name of the table for a target, also as a file name."""
-        return f"{self.label}-to-{target_speed_m_s:g}-m-s"
 
 
 def sensor_class(

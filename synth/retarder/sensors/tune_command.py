@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.command import Asked, Command, Head, Work
 from synth.frame.exhibits import Chapter, Sentence
 from synth.frame.input_error import InputError
 from synth.frame.settings.settings_file import BUILT_IN
+from synth.retarder.asked_tune import AskedTune, asked_tune, drawing, limits, steps, tuned
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.point_sensors.resolved_sensors import ResolvedSensors
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.configured import head_of, require_memory_for
+from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY, NOT_CERTIFIED
+from synth.retarder.sensors.passage_epochs import PassageEpochs
 from synth.retarder.sensors.tune_options import SensorsTuneOptions
 
 if TYPE_CHECKING:
-    from synth.frame.results_directory import ResultsDirectory
-    from synth.retarder.sensors.found_passages import FoundPassages
+    from synth.frame.exhibits import File
+    from synth.retarder.found_book import FoundBook
+    from synth.retarder.sensors.sensor_case import SensorCase
+    from synth.retarder.tune import Book
     from tuning_tables.passages.passage_table import PassageTable
 
 LIMITS_OF_USE = (
@@ -36,16 +37,6 @@ LIMITS_OF_USE = (
 )
 
 
-@dataclass(frozen=True)
-class AskedSensors:
-    """A configuration with its sensors, what messages call its file, and how many classes are solved at once."""
-
-    config: ResolvedConfig
-    sensors: ResolvedSensors
-    place: str
-    workers: int
-
-
 def read(text: str, place: str) -> ResolvedConfig:
     """The configuration in `text`; the one that `init --sensors` prints where there is no file."""
     from synth.retarder.configuration.point_sensors.template import built_in_sensors
@@ -53,7 +44,7 @@ def read(text: str, place: str) -> ResolvedConfig:
     return built_in_sensors() if place == BUILT_IN else parse_config(text, place)
 
 
-def resolve(asked: Asked[ResolvedConfig, SensorsTuneOptions]) -> AskedSensors:
+def resolve(asked: Asked[ResolvedConfig, SensorsTuneOptions]) -> AskedTune[SensorCase, PassageTable]:
     """Refuse a configuration without sensors, what they cannot keep, and what does not fit into memory."""
     config, place = asked.settings, asked.place
     if config.sensors is None:
@@ -66,67 +57,60 @@ def resolve(asked: Asked[ResolvedConfig, SensorsTuneOptions]) -> AskedSensors:
             f"{place}: criterion.p_overspeed and criterion.worst_friction_* can be kept only by tables for a radar; "
             "set them back to 1"
         )
-    workers = asked.options.workers_for(len(config.cuts))
-    for label, plant in config.plants():
-        require_memory_for(label, config.sensors.serving(plant), (config.resolution,), place, workers)
-    return AskedSensors(config, config.sensors, place, workers)
+    return asked_tune(config, place, PassageEpochs(config.sensors), asked.options)
 
 
-def head(asked: AskedSensors) -> Head:
+def head(asked: AskedTune[SensorCase, PassageTable]) -> Head:
     """What is said of the configuration."""
     return head_of(asked.config)
 
 
-def steps(asked: AskedSensors) -> Steps:
-    """A step for each case."""
-    return Steps(len(asked.config.problems()), "tuning", "cases")
+def compute(asked: AskedTune[SensorCase, PassageTable], work: Work) -> FoundBook[SensorCase]:
+    """The book, and its tables as C99 and as Structured Text."""
+    from synth.retarder.tune import no_notice
+
+    return tuned(asked, work, no_notice, found_book)
 
 
-def drawing(asked: AskedSensors) -> int:
-    """As many processes as classes are solved at once."""
-    return asked.workers
+def found_book(book: Book[SensorCase]) -> FoundBook[SensorCase]:
+    """The book with its verdicts and files."""
+    from synth.retarder.acceptance import judged
+    from synth.retarder.found_book import FoundBook
+
+    return FoundBook(book, judged(book.cases, book.config.acceptance), *book_files(book))
 
 
-def compute(asked: AskedSensors, work: Work) -> FoundPassages:
-    """The book; its tables are written as they are made. `InputError` where no case has a table."""
-    from synth.kernels.cache import guarded
-    from synth.retarder.first_run import compiled_beside
-    from synth.retarder.sensors.found_passages import found_passages
-    from synth.retarder.sensors.sensor_tune import tune_sensors
-    from synth.retarder.tables_refused import require_a_table, tables_refused
+def book_files(book: Book[SensorCase]) -> tuple[tuple[File, ...], str]:
+    """The tables together, and why they are no Structured Text, '' where they are: 16 bits do not count all.
 
-    with compiled_beside(work.progress.note), tables_refused(asked.place, asked.config):
-        store = partial(stored, directory=work.directory)
-        book = guarded(tune_sensors, asked.config, asked.sensors, store, work.progress, asked.workers)
-        require_a_table(book.cases, book.failed)
-        return found_passages(book)
+    `InvalidTable` where they make no book.
+    """
+    from synth.frame.exhibits import File
+    from synth.retarder.forms.table_forms import c_form, csv_form, plc_form
+    from tuning_tables import InvalidTable
 
-
-def stored(table: PassageTable, directory: ResultsDirectory) -> PassageTable:
-    """Write `table` as JSON; the table as a controller will load it."""
-    from tuning_tables.json_file import read_json, to_json
-    from tuning_tables.passages.passage_table import PassageTable
-
-    return read_json(directory.write(f"tables/{table.id}.json", to_json(table)), PassageTable)
+    tables = [case.table for case in book.cases]
+    files, no_st = {f"c/{name}": content for name, content in c_form(tables).items()}, ""
+    try:
+        files |= {f"st/{name}": content for name, content in plc_form("st", tables).items()}
+    except InvalidTable as fault:
+        no_st = str(fault)
+    if book.config.output.csv:
+        files |= {f"tables/{name}": content for name, content in csv_form(tables).items()}
+    return tuple(File(name, content) for name, content in files.items()), no_st
 
 
-def limits(found: FoundPassages) -> Iterator[Limit]:
-    """Those of [acceptance]."""
-    from synth.retarder.acceptance import limits_of
-
-    book = found.book
-    return limits_of(found.verdicts, [case.statistics for case in book.cases], book.config.acceptance, book.failed)
-
-
-def show(found: FoundPassages) -> Iterator[Chapter]:
+def show(found: FoundBook[SensorCase]) -> Iterator[Chapter]:
     """What is shown of it."""
     from synth.retarder.sensors.tune_pictures import chapters
     from synth.retarder.sensors.tune_shown import designs, heard, results
 
+    cases, sensors = found.book.cases, found.book.config.sensors
+    assert sensors is not None  # `resolve` has refused a configuration without
     yield Chapter("Results", tuple(results(found)))
-    yield Chapter("Sensors and passages", tuple(heard(found.book)))
-    yield Chapter("How the tables were found", tuple(designs(found.book)))
-    yield from chapters(found.book.cases)
+    yield Chapter("Sensors and passages", tuple(heard(sensors, cases)))
+    yield Chapter("How the tables were found", tuple(designs(cases)))
+    yield from chapters(cases)
     where = Sentence("A controller loads tables/*.json, or is compiled with c/ or st/.")
     yield Chapter("Tables", (where, *found.files))
 

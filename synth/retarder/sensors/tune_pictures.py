@@ -7,10 +7,9 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from synth.frame.exhibits import Chapter, Chart
-from synth.retarder.case_names import file_stem
-from synth.retarder.exit_bins import EXACT, NARROW_M_S, WIDE_M_S
+from synth.retarder.case_names import by_class, file_stem
 from synth.retarder.sensors.sensor_case import SensorCase
-from synth.simulation.exit_statistics import OVERSPEED_M_S
+from synth.retarder.shown.case_charts import exits_chart, passes_chart
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,11 +17,12 @@ if TYPE_CHECKING:
 
 def chapters(cases: Sequence[SensorCase]) -> Iterator[Chapter]:
     """The pictures of each class over its targets; sample passes for the middle target only."""
-    labels = dict.fromkeys(case.label for case in cases)
-    classes = [tuple(case for case in cases if case.label == label) for label in labels]
+    classes = by_class(cases)
+    middles = [group[len(group) // 2] for group in classes]
+    seen = ", and what the regulator read"
     yield Chapter("Switching speeds", tuple(speeds_chart(group) for group in classes))
     yield Chapter("Predicted and simulated exit speed", tuple(exits_chart(group) for group in classes))
-    yield Chapter("Sample passes", tuple(passes_chart(group[len(group) // 2]) for group in classes))
+    yield Chapter("Sample passes", tuple(passes_chart(case, seen, sample_passes) for case in middles))
 
 
 def speeds_chart(cases: Sequence[SensorCase]) -> Chart:
@@ -37,51 +37,11 @@ def speeds_chart(cases: Sequence[SensorCase]) -> Chart:
     )
 
 
-def exits_chart(cases: Sequence[SensorCase]) -> Chart:
-    """The exits of one class."""
-    label = cases[0].label
-    return Chart(
-        file_stem("exit-density", label),
-        f"Exit speed of {label}",
-        f"{label}: density of the exported table ({EXACT}), over the simulated passes in bins of {NARROW_M_S:g} m/s, "
-        f"beyond ±{OVERSPEED_M_S:g} m/s of {WIDE_M_S:g} m/s; above near the target, below on a logarithmic scale.",
-        partial(exit_density, tuple(cases)),
-    )
-
-
-def passes_chart(case: SensorCase) -> Chart:
-    """A few passes of one case."""
-    return Chart(
-        file_stem("sample-passes", case.name),
-        f"Sample passes, {case.name}",
-        f"{case.name}: passes with low, nominal and high friction, and what the regulator read.",
-        partial(sample_passes, case),
-    )
-
-
 def switching_speeds(cases: Sequence[SensorCase]) -> Figure:
     """Drawn by modules that need matplotlib, as all of these."""
     from synth.retarder.sensors.pictures.switching_speeds import switching_speeds
 
     return switching_speeds(cases[0].cut_name, [case.table for case in cases], [case.traces for case in cases])
-
-
-def exit_density(cases: Sequence[SensorCase]) -> Figure:
-    """See `switching_speeds`."""
-    from synth.retarder.pictures.exit_density import DrawnExits, density_figure
-
-    exits = [
-        DrawnExits(
-            case.target_speed_m_s,
-            case.exit_speeds_m_s,
-            case.exit_weight,
-            case.predicted,
-            case.table.predicted.rms_m_s,
-            case.statistics,
-        )
-        for case in cases
-    ]
-    return density_figure(cases[0].cut_name, exits, EXACT)
 
 
 def sample_passes(case: SensorCase) -> Figure:

@@ -2,36 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any, Final
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
 
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.printed_numbers import per_cent
-from synth.retarder.acceptance import CaseVerdict, advice_of
-from synth.retarder.exit_figures import (
-    CASE,
-    DETAILS,
-    EFFORT,
-    LEGEND,
-    TOLD,
-    table_row,
-    told,
-)
-from synth.retarder.sensors.found_passages import FoundPassages
+from synth.retarder.acceptance import advice_of
+from synth.retarder.configuration.point_sensors.resolved_sensors import ResolvedSensors
+from synth.retarder.exit_figures import CASE, DETAILS, EFFORT, TOLD, told
+from synth.retarder.found_book import FoundBook
 from synth.retarder.sensors.sensor_case import SensorCase
-from synth.retarder.sensors.sensor_tune import SensorBook
 from synth.retarder.shown.cases import (
+    ESCAPED,
     KEYS,
     POLISH,
     PROMISE,
     UNAVOIDABLE,
     VERDICT,
-    failed_cases,
-    failed_rows,
-    is_outside,
-    key_row,
-    polish_row,
-    unavoidable,
+    case_row,
+    cases_table,
+    design_row,
+    doubts,
+    identity_row,
+    passes_told,
 )
 
 CASES: Final = (*CASE, VERDICT, *TOLD, UNAVOIDABLE, *EFFORT, *DETAILS, *KEYS, *PROMISE)
@@ -57,47 +50,31 @@ DECIDES: Final[Mapping[str, str]] = {"first_axle": "its first axle passes", "eve
 DESIGNS: Final = (
     *CASE,
     *POLISH,
-    Column("escaped_probability", "left the grid", form="{:.1e}".format),
+    ESCAPED,
 )
 
 
-def results(found: FoundPassages) -> Iterator[Exhibit]:
+def results(found: FoundBook[SensorCase]) -> Iterator[Exhibit]:
     """The table of cases, and what is to be known of it."""
-    book = found.book
-    rows = [case_row(case, verdict) for case, verdict in zip(book.cases, found.verdicts, strict=True)]
-    rows += failed_rows(book.failed)
-    yield Table("cases", book.config.title, CASES, rows, True, is_outside)
-    yield from failed_cases(book.failed)
-    passes = book.cases[0].statistics.passes
-    criterion = {"criterion": book.config.criterion.sentence}
-    yield Sentence(f"{passes} stratified passes a case. {LEGEND} {HOW_TO_READ}", criterion, brief=True)
-    advice = advice_of(found.verdicts)
-    if advice:
+    yield from cases_table(found, CASES, case_row)
+    criterion = {"criterion": found.book.config.criterion.sentence}
+    yield Sentence(f"{passes_told(found.book.cases)} {HOW_TO_READ}", criterion, brief=True)
+    if advice := advice_of(found.verdicts):
         yield Sentence(advice, brief=True)
     if found.no_st:
         yield Sentence(f"No Structured Text is written: {found.no_st}.", brief=True)
 
 
-def case_row(case: SensorCase, verdict: CaseVerdict) -> Row:
-    """Everything about one case in figures."""
-    found = case.statistics
-    return {
-        **key_row(case.label, case.plant, case.table, verdict),
-        **table_row(found, case.brake_power, case.table.predicted),
-        "unavoidable_rms_m_s": unavoidable(case.unavoidable, found.passes),
-    }
-
-
-def heard(book: SensorBook) -> Iterator[Exhibit]:
+def heard(sensors: ResolvedSensors, cases: Sequence[SensorCase]) -> Iterator[Exhibit]:
     """Where the sensors stand, whose passages decide, and what came of each."""
-    places = ", ".join(f"{place:g}" for place in book.sensors.sensors.path_m)
+    places_m = sensors.sensors.path_m
     yield Sentence(
-        f"{len(book.sensors.sensors.path_m)} sensors {book.sensors.type} stand at {places} m from the entrance. The "
-        f"regulator decides on a cut when {DECIDES[book.sensors.decides_on]} one, if the change of stage before has "
-        "ended."
+        f"{len(places_m)} sensors {sensors.type} stand at {', '.join(f'{place:g}' for place in places_m)} m from the "
+        f"entrance. The regulator decides on a cut when {DECIDES[sensors.decides_on]} one, if the change of stage "
+        "before has ended."
     )
     yield Sentence(HEARD)
-    yield Table("passages", "Passages", PASSAGES, [row for case in book.cases for row in passage_rows(case)])
+    yield Table("passages", "Passages", PASSAGES, [row for case in cases for row in passage_rows(case)])
 
 
 def passage_rows(case: SensorCase) -> Iterator[Row]:
@@ -106,7 +83,7 @@ def passage_rows(case: SensorCase) -> Iterator[Row]:
     shares = zip(heard.unfinished, heard.taken, heard.mistaken, heard.heard, strict=True)
     for row, (unfinished, taken, mistaken, came) in zip(case.table.passages, shares, strict=True):
         yield {
-            **of(case),
+            **identity_row(case),
             "sensor": row.sensor,
             "axle": row.axle,
             "path_m": row.path_m,
@@ -115,22 +92,7 @@ def passage_rows(case: SensorCase) -> Iterator[Row]:
         }
 
 
-def designs(book: SensorBook) -> Iterator[Exhibit]:
+def designs(cases: Sequence[SensorCase]) -> Iterator[Exhibit]:
     """How the searches for the switching speeds ended, and all doubts."""
-    yield Table("designs", "How the tables were found", DESIGNS, [design_row(case) for case in book.cases])
-    for case in book.cases:
-        yield from (Sentence(f"Warning for {case.name}: {warning}.") for warning in case.warnings)
-
-
-def design_row(case: SensorCase) -> Row:
-    """One case."""
-    return {
-        **of(case),
-        **polish_row(case.polish),
-        "escaped_probability": case.predicted.escaped,
-    }
-
-
-def of(case: SensorCase) -> dict[str, Any]:
-    """Which case it is."""
-    return {"label": case.label, "target_speed_m_s": case.target_speed_m_s}
+    yield Table("designs", "How the tables were found", DESIGNS, [design_row(case) for case in cases])
+    yield from doubts(cases)

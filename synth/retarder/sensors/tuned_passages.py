@@ -14,8 +14,9 @@ from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from synth.solver.chain.sensor_passages import SensorPassages
+from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
-from synth.solver.passage_polish import PassagePolish, polish_passages
+from synth.solver.passage_polish import polish_passages
 from synth.solver.passage_speeds import PassageSpeeds, ordered
 from synth.solver.resolved_density import resolved_density
 
@@ -32,15 +33,19 @@ RESISTANCES = 1
 class TunedPassages:
     """Switching speeds as a table holds them, and the exit density predicted of them.
 
-    `speeds`: float32 numbers of the stages that the cut may use; `polish`: how they were found.
+    `polish`: how they were found; they are float32 numbers of the stages that the cut may use.
     """
 
     plant: Plant
     sensors: PointSensors
     aim: Aim
-    speeds: PassageSpeeds
-    polish: PassagePolish
+    polish: Descent[PassageSpeeds]
     predicted: ExitDensity
+
+    @property
+    def speeds(self) -> PassageSpeeds:
+        """The switching speeds."""
+        return self.polish.best
 
     @property
     def rms_m_s(self) -> float:
@@ -74,9 +79,9 @@ def tuned_passages(chains: PassageChains, aim: Aim) -> TunedPassages:
     """Switching speeds for one aim: those of the solution, polished, rounded to float32, and predicted."""
     solution = solve(chains.design, aim)
     found = polish_passages(solution)
-    speeds = rounded(found.speeds)
+    speeds = rounded(found.best)
     predicted = resolved_density(chains.check, speeds, aim.target_speed_m_s)
-    return TunedPassages(chains.design.plant, chains.sensors, aim, speeds, replace(found, speeds=speeds), predicted)
+    return TunedPassages(chains.design.plant, chains.sensors, aim, found.ending(speeds, found.cost_after), predicted)
 
 
 def rounded(speeds: PassageSpeeds) -> PassageSpeeds:

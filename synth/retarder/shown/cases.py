@@ -1,21 +1,18 @@
-"""What every table of cases holds besides simulated figures: which case it is, and what its table promises."""
+"""What is shown of the cases of every tune: a row for each, how its table was found, and all doubts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
-from typing import Final, Protocol
+from typing import Final
 
-from plant_models import Plant
-from synth.frame.exhibits import Column, Exhibit, Row, Table
-from synth.frame.interval import Interval
+from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.printed_numbers import decimals
 from synth.retarder.acceptance import CaseVerdict
-from synth.retarder.exit_figures import told
-from synth.retarder.failed_case import FailedCase
-from synth.simulation.unavoidable_error import UnavoidableError
-from tuning_tables import ControllerTable
-from tuning_tables.passages.passage_table import PassageTable
+from synth.retarder.exit_figures import LEGEND, table_row, told
+from synth.retarder.found_book import FoundBook
+from synth.retarder.tuned_case import Case, TunedCase
+from tuning_tables.table_kinds import StageTable
 
 UNAVOIDABLE: Final = Column("unavoidable_rms_m_s", "unavoidable", "m/s", decimals(4), spare=2)
 VERDICT: Final = Column("verdict", "verdict", words=True)
@@ -47,6 +44,8 @@ POLISH: Final = (
 )
 """How the search for the lines, surfaces or speeds of least cost ended."""
 
+ESCAPED: Final = Column("escaped_probability", "left the grid", form="{:.1e}".format)
+
 FAILED: Final = (
     Column("label", "case", words=True),
     Column("target_m_s", "target", "m/s"),
@@ -55,73 +54,14 @@ FAILED: Final = (
 NO_TABLE: Final = "no table"
 
 
-class Polished(Protocol):
-    """What every polish tells."""
-
-    @property
-    def cost_before(self) -> float:
-        """Of the lines that it began with, m²/s²."""
-        ...
-
-    @property
-    def cost_after(self) -> float:
-        """Of those that it found."""
-        ...
-
-    @property
-    def evaluations(self) -> int:
-        """How often the cost was asked for."""
-        ...
-
-    @property
-    def converged(self) -> bool:
-        """Whether it ended well."""
-        ...
-
-    @property
-    def status(self) -> str:
-        """How it ended, in words."""
-        ...
-
-
-def polish_row(polish: Polished) -> Row:
-    """The figures of `POLISH`."""
-    return {
-        "converged": polish.converged,
-        "status": polish.status,
-        "evaluations": polish.evaluations,
-        "cost_before_m2_s2": polish.cost_before,
-        "cost_after_m2_s2": polish.cost_after,
-    }
-
-
-def key_row(label: str, plant: Plant, table: ControllerTable | PassageTable, verdict: CaseVerdict) -> Row:
-    """Which case it is, what its table says of itself, and what the case comes to."""
-    return {
-        "label": label,
-        "target_speed_m_s": table.target_speed_m_s,
-        "id": table.id,
-        "category": plant.cut.category,
-        "mass_t": plant.cut.mass_t,
-        "top_stage": plant.top_stage,
-        "verdict": verdict.word,
-        "why_infeasible": verdict.obstacle or None,
-        **promise_row(table),
-    }
-
-
-def promise_row(table: ControllerTable | PassageTable) -> Row:
-    """What a table says of itself."""
-    return {f"predicted_{key}": value for key, value in asdict(table.predicted).items()}
-
-
-def failed_rows(failed: Sequence[FailedCase]) -> list[Row]:
-    """Rows without figures for cases without a table."""
-    return [{"label": each.label, "target_speed_m_s": each.target_m_s, "verdict": NO_TABLE} for each in failed]
-
-
-def failed_cases(failed: Sequence[FailedCase]) -> Iterator[Exhibit]:
-    """Why they have none; nothing where all have one."""
+def cases_table(
+    found: FoundBook[Case], columns: Sequence[Column], row: Callable[[Case, CaseVerdict], Row]
+) -> Iterator[Exhibit]:
+    """A `row` for each case, one without figures for each that has no table, and why these have none."""
+    failed = found.book.failed
+    rows = [row(case, verdict) for case, verdict in found.judged]
+    rows += [{"label": each.label, "target_speed_m_s": each.target_m_s, "verdict": NO_TABLE} for each in failed]
+    yield Table("cases", found.book.config.title, columns, rows, True, is_outside)
     if failed:
         yield Table("failed", "Cases without a table", FAILED, [asdict(case) for case in failed])
 
@@ -131,6 +71,53 @@ def is_outside(row: Row) -> bool:
     return row["verdict"] in ("infeasible", NO_TABLE)
 
 
-def unavoidable(found: UnavoidableError, passes: int) -> Interval | None:
-    """The rms that no regulator avoids."""
-    return told(found.rms_m_s, found.rms_ci95_m_s, passes)
+def passes_told(cases: Sequence[TunedCase]) -> str:
+    """How many passes, and what the columns are."""
+    return f"{cases[0].statistics.passes} stratified passes a case. {LEGEND}"
+
+
+def identity_row(case: TunedCase) -> Row:
+    """Which case it is: the figures of `CASE`."""
+    return {"label": case.label, "target_speed_m_s": case.target_speed_m_s}
+
+
+def case_row(case: TunedCase, verdict: CaseVerdict) -> Row:
+    """What is told of every case: which it is, its closed loop, what its table says, and what it comes to."""
+    found, least = case.statistics, case.unavoidable
+    return {
+        **identity_row(case),
+        "id": case.table.id,
+        "category": case.plant.cut.category,
+        "mass_t": case.plant.cut.mass_t,
+        "top_stage": case.plant.top_stage,
+        "verdict": verdict.word,
+        "why_infeasible": verdict.obstacle or None,
+        **promise_row(case.table),
+        **table_row(found, case.brake_power, case.table.predicted),
+        "unavoidable_rms_m_s": told(least.rms_m_s, least.rms_ci95_m_s, found.passes),
+    }
+
+
+def promise_row(table: StageTable) -> Row:
+    """What a table says of itself."""
+    return {f"predicted_{key}": value for key, value in asdict(table.predicted).items()}
+
+
+def design_row(case: TunedCase) -> Row:
+    """How the table of a case was found: the figures of `CASE`, `POLISH` and `ESCAPED`."""
+    polish = case.polish
+    return {
+        **identity_row(case),
+        "converged": polish.converged,
+        "status": polish.status,
+        "evaluations": polish.evaluations,
+        "cost_before_m2_s2": polish.cost_before,
+        "cost_after_m2_s2": polish.cost_after,
+        "escaped_probability": case.predicted.escaped,
+    }
+
+
+def doubts(cases: Sequence[TunedCase]) -> Iterator[Exhibit]:
+    """All warnings."""
+    for case in cases:
+        yield from (Sentence(f"Warning for {case.name}: {warning}.") for warning in case.warnings)

@@ -7,12 +7,11 @@ from typing import Final
 
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.printed_numbers import decimals, per_cent
-from synth.retarder.case_names import case_name
 from synth.retarder.case_result import CaseResult
 from synth.retarder.comparison.limit_cycle import Hunting, hunting_report
 from synth.retarder.comparison.pressure_cycle import pressure_hunting
 from synth.retarder.exit_figures import CASE
-from synth.retarder.shown.cases import POLISH, polish_row
+from synth.retarder.shown.cases import ESCAPED, POLISH, design_row, doubts, identity_row
 from synth.retarder.tuned_table import AnyEstimate
 
 LEAD: Final = (
@@ -55,7 +54,7 @@ DESIGNS: Final = (
     Column("again", "designed again on finer speeds"),
     Column("most_off", "believed up to a factor of"),
     Column("ties", "hold wins ties", form=per_cent),
-    Column("escaped_probability", "left the grid", form="{:.1e}".format),
+    ESCAPED,
     Column("error_m_s", "error of the estimate", "m/s", decimals(4)),
     Column("trim_m_s", "trim of the lines", "m/s", decimals(4)),
     Column("tuning_rms_before_trim_m_s", "rms before the trim", "m/s", decimals(4)),
@@ -70,27 +69,21 @@ def checks(cases: Sequence[CaseResult]) -> Iterator[Exhibit]:
     if rows:
         yield Table("hunting", "Predicted limit cycles", HUNTING, rows)
     yield from pressure(cases)
-    designs = [design_row(case) for case in cases]
+    designs = [lines_row(case) for case in cases]
     yield Table("designs", "How the lines were found", DESIGNS, designs)
-    for case in cases:
-        yield from (Sentence(f"Warning for {case_name(case)}: {warning}.") for warning in case.warnings)
-
-
-def case_row(case: CaseResult) -> Row:
-    """Which case it is."""
-    return {"label": case.label, "target_speed_m_s": case.target_speed_m_s}
+    yield from doubts(cases)
 
 
 def hunting_row(case: CaseResult, found: Hunting) -> Row:
     """One stretch of path."""
     stretch = {"from_m": found.from_m, "to_m": found.to_m, "periods": found.periods}
-    return {**case_row(case), **stretch, **vars(found.cycle)}
+    return {**identity_row(case), **stretch, **vars(found.cycle)}
 
 
 def pressure(cases: Sequence[CaseResult]) -> Iterator[Exhibit]:
     """Whether the regulator of the stage pressure hunts."""
     rows: list[Row] = [
-        {**case_row(case), "stage": stage, **vars(cycle)}
+        {**identity_row(case), "stage": stage, **vars(cycle)}
         for case in cases
         for stage, cycle in pressure_hunting(case.plant)
     ]
@@ -100,14 +93,12 @@ def pressure(cases: Sequence[CaseResult]) -> Iterator[Exhibit]:
         yield Sentence("The regulator of the stage pressure does not hunt: no overshoot crosses its dead band.")
 
 
-def design_row(case: CaseResult) -> Row:
+def lines_row(case: CaseResult) -> Row:
     """How the lines of one case were found."""
     return {
-        **case_row(case),
-        **polish_row(case.polish),
+        **design_row(case),
         **vars(case.grid),
         "ties": case.study.policy_map.ties,
-        "escaped_probability": case.predicted.escaped,
         **({} if case.estimate is None else estimate_row(case.estimate)),
     }
 

@@ -11,6 +11,7 @@ from synth.retarder.case_result import CaseResult
 from synth.retarder.comparison.measured import Measured
 from synth.retarder.exit_figures import CASE, LOOP, PREDICTED, loop_row
 from synth.retarder.found_book import FoundBook
+from synth.retarder.shown.cases import identity_row
 from synth.retarder.shown.results import table_ratio
 
 CONTROLLERS: Final = (
@@ -22,17 +23,16 @@ CONTROLLERS: Final = (
 )
 
 
-def controllers(found: FoundBook) -> Iterator[Exhibit]:
+def controllers(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
     """A row for each controller of each case: the table, the reference, and the classical laws."""
-    rows = [row_of(case, each) for case in found.book.cases for each in case.comparison.entries]
+    rows = [row_of(case, each) for case in found.book.cases for each in case.controllers]
     yield Table("controllers", "Every controller, on the same passes; ratios are paired", CONTROLLERS, rows)
 
 
 def row_of(case: CaseResult, found: Measured) -> Row:
     """One controller of one case."""
     return {
-        "label": case.label,
-        "target_speed_m_s": case.target_speed_m_s,
+        **identity_row(case),
         "controller": found.name,
         **loop_row(found.statistics),
         "predicted_rms_m_s": found.predicted_rms_m_s,

@@ -7,9 +7,10 @@ from typing import Final
 
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.printed_numbers import decimals, per_cent
-from synth.retarder.case_names import case_name
+from synth.retarder.case_result import CaseResult
 from synth.retarder.exit_figures import CASE
 from synth.retarder.found_book import FoundBook
+from synth.retarder.shown.cases import identity_row
 
 REQUIREMENT: Final = (
     *CASE,
@@ -30,7 +31,7 @@ REQUIREMENT: Final = (
 """Of `OverspeedLimitFound` and `WorstCaseFound`; a table has the columns of one."""
 
 
-def criterion(found: FoundBook) -> Iterator[Exhibit]:
+def criterion(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
     """The criterion in a sentence; where it requires something, a sentence for each case."""
     of = found.book.config.criterion
     yield Sentence(
@@ -39,11 +40,9 @@ def criterion(found: FoundBook) -> Iterator[Exhibit]:
     )
     for case in found.book.cases:
         if case.finding is not None:
-            yield Sentence(f"{case_name(case)}: {case.finding.sentence}.")
+            yield Sentence(f"{case.name}: {case.finding.sentence}.")
     rows: list[Row] = [
-        {"label": case.label, "target_speed_m_s": case.target_speed_m_s, **vars(case.finding)}
-        for case in found.book.cases
-        if case.finding is not None
+        {**identity_row(case), **vars(case.finding)} for case in found.book.cases if case.finding is not None
     ]
     if rows:
         yield Table("requirement", "What the requirement took", REQUIREMENT, rows)

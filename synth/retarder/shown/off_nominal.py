@@ -31,7 +31,7 @@ LEAD: Final = (
 )
 
 
-def off_nominal(found: FoundBook) -> Iterator[Exhibit]:
+def off_nominal(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
     """A row for each condition of each case."""
     yield Sentence(LEAD)
     rows = [row_of(case, each) for case in found.book.cases for each in case.off_nominal]

@@ -1,4 +1,4 @@
-"""All charts of a book: what is drawn, and what is said under it.
+"""All charts of a book of tables with lines: what is drawn, and what is said under it.
 
 What draws one is imported where it is called, in a process of its own where there are several: it needs matplotlib.
 """
@@ -10,11 +10,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from synth.frame.exhibits import Chapter, Chart
-from synth.retarder.case_names import by_class, case_name, file_stem
+from synth.retarder.case_names import by_class, file_stem
 from synth.retarder.case_result import CaseResult
-from synth.retarder.exit_bins import NARROW_M_S, WIDE_M_S, prediction_origin
 from synth.retarder.pareto.pareto_front import ParetoFront
-from synth.simulation.exit_statistics import OVERSPEED_M_S
+from synth.retarder.shown.case_charts import exits_chart, passes_chart
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,9 +23,10 @@ def chapters(cases: Sequence[CaseResult]) -> Iterator[Chapter]:
     """The pictures of classes and cases; surfaces and sample passes for the middle target of a class only."""
     classes = by_class(cases)
     middles = [group[len(group) // 2] for group in classes]
+    seen = " under the exported table"
     yield Chapter("Predicted and simulated exit speed", tuple(exits_chart(group) for group in classes))
     yield Chapter("Switching surfaces", tuple(surfaces_chart(case) for case in middles))
-    yield Chapter("Sample passes", tuple(passes_chart(case) for case in middles))
+    yield Chapter("Sample passes", tuple(passes_chart(case, seen, sample_passes) for case in middles))
     yield Chapter("Switching lines", tuple(lines_chart(case) for case in cases))
 
 
@@ -58,23 +58,9 @@ def fronts_chart(fronts: Sequence[ParetoFront]) -> Chart:
     )
 
 
-def exits_chart(cases: Sequence[CaseResult]) -> Chart:
-    """The exits of one class over its targets."""
-    label = cases[0].label
-    return Chart(
-        file_stem("exit-density", label),
-        f"Exit speed of {label}",
-        f"{label}: density of the exported table ({prediction_origin(cases)}), over the simulated passes in bins of "
-        f"{NARROW_M_S:g} m/s, beyond ±{OVERSPEED_M_S:g} m/s of {WIDE_M_S:g} m/s; above near the target, below on a "
-        "logarithmic scale with the tails. The step of the grid widens the predicted peak, most at low targets. "
-        "Hatched: the prediction is smaller than the error of its grid there, and is not drawn.",
-        partial(exit_density, tuple(cases)),
-    )
-
-
 def surfaces_chart(case: CaseResult) -> Chart:
     """The lines of one case over path and pressure."""
-    name = case_name(case)
+    name = case.name
     return Chart(
         file_stem("surfaces", name),
         f"Switching surfaces of {name}",
@@ -83,20 +69,9 @@ def surfaces_chart(case: CaseResult) -> Chart:
     )
 
 
-def passes_chart(case: CaseResult) -> Chart:
-    """A few passes of one case."""
-    name = case_name(case)
-    return Chart(
-        file_stem("sample-passes", name),
-        f"Sample passes, {name}",
-        f"{name}: passes with low, nominal and high friction under the exported table.",
-        partial(sample_passes, case),
-    )
-
-
 def lines_chart(case: CaseResult) -> Chart:
     """The command by stage of one case."""
-    name = case_name(case)
+    name = case.name
     return Chart(
         file_stem("policy-map", name),
         f"Best command by stage, {name}",
@@ -125,13 +100,6 @@ def pareto_fronts(fronts: Sequence[ParetoFront]) -> Figure:
     from synth.retarder.pictures.pareto_fronts import pareto_fronts
 
     return pareto_fronts(fronts)
-
-
-def exit_density(cases: Sequence[CaseResult]) -> Figure:
-    """See `rms_by_controller`."""
-    from synth.retarder.pictures.exit_density import exit_density
-
-    return exit_density(cases)
 
 
 def surfaces(case: CaseResult) -> Figure:

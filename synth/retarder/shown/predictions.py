@@ -24,7 +24,7 @@ ESTIMATED: Final = (
 )
 
 
-def predictions(found: FoundBook) -> Iterator[Exhibit]:
+def predictions(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
     """Over the feasible cases (over all, where none is feasible)."""
     cases = found.feasible or found.book.cases
     exact = [case for case in cases if case.table.estimator is None]
@@ -44,7 +44,7 @@ def predictions(found: FoundBook) -> Iterator[Exhibit]:
 
 def ratios_of(cases: Sequence[CaseResult]) -> str:
     """Predicted over simulated rms, in a sentence."""
-    ratios = [case.comparison.table.honesty for case in cases]
+    ratios = [case.measured.honesty for case in cases]
     inside = sum(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios)
     return (
         f"Predicted / simulated rms is {span(ratios)} over {counted(len(cases), 'case')}; {inside} of them within "

@@ -6,35 +6,18 @@ from collections.abc import Iterator
 from statistics import median
 from typing import Final
 
-from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
+from synth.frame.exhibits import Column, Exhibit, Row, Sentence
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, speed
 from synth.retarder.acceptance import CaseVerdict, advice_of
-from synth.retarder.case_result import CaseResult
+from synth.retarder.case_result import CaseResult, fronts_of
 from synth.retarder.comparison.measured import Measured
-from synth.retarder.exit_figures import (
-    CASE,
-    DETAILS,
-    EFFORT,
-    LEGEND,
-    TOLD,
-    table_row,
-    told,
-)
+from synth.retarder.exit_figures import CASE, DETAILS, EFFORT, TOLD, told
 from synth.retarder.found_book import FoundBook
 from synth.retarder.off_nominal.worst import worst_of
+from synth.retarder.pareto.pareto_front import told as nearly_free
 from synth.retarder.permissions.refusal import tellable
-from synth.retarder.shown.cases import (
-    KEYS,
-    PROMISE,
-    UNAVOIDABLE,
-    VERDICT,
-    failed_cases,
-    failed_rows,
-    is_outside,
-    key_row,
-    unavoidable,
-)
+from synth.retarder.shown.cases import KEYS, PROMISE, UNAVOIDABLE, VERDICT, case_row, cases_table, passes_told
 from synth.retarder.shown.pictures import accuracy_charts
 
 ENTRY: Final = (
@@ -68,28 +51,22 @@ NO_REGRET: Final = (
 )
 
 
-def results(found: FoundBook) -> Iterator[Exhibit]:
+def results(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
     """The table of cases, what is to be known of it, and the pictures of all cases."""
-    rows = [case_row(case, verdict) for case, verdict in found.judged]
-    rows += failed_rows(found.book.failed)
-    yield Table("cases", found.book.config.title, CASES, rows, True, is_outside)
-    yield from failed_cases(found.book.failed)
-    yield Sentence(passes_told(found), overall(found), brief=True)
+    yield from cases_table(found, CASES, result_row)
+    yield Sentence(passes_told(found.book.cases), overall(found), brief=True)
     yield Sentence(HOW_TO_READ)
     for sentence in (*remarks(found), *(infeasible(case, each) for case, each in found.judged if not each.feasible)):
         yield Sentence(sentence, brief=True)
     yield from accuracy_charts(found.book.cases, found.book.config.acceptance.rms_m_s)
 
 
-def case_row(case: CaseResult, verdict: CaseVerdict) -> Row:
+def result_row(case: CaseResult, verdict: CaseVerdict) -> Row:
     """Everything about one case in figures."""
     found, entry, best = case.comparison, case.plant.entry, case.comparison.best_baseline
-    n = found.table.statistics.passes
-    at_rest = found.at_rest
+    n, at_rest = case.statistics.passes, found.at_rest
     return {
-        **key_row(case.label, case.plant, case.table, verdict),
-        **table_row(found.table.statistics, case.brake_power, case.table.predicted),
-        "unavoidable_rms_m_s": unavoidable(case.feasibility.unavoidable, n),
+        **case_row(case, verdict),
         "regret": told(found.regret, found.regret_ci95, n),
         "at_rest_ratio": None if at_rest is None else table_ratio(at_rest),
         "best_baseline": best and best.name,
@@ -104,28 +81,22 @@ def table_ratio(found: Measured) -> Interval | None:
     return told(found.table_ratio, found.table_ratio_ci95, found.statistics.passes)
 
 
-def passes_told(found: FoundBook) -> str:
-    """How many passes, and what the columns are."""
-    return f"{found.book.cases[0].comparison.table.statistics.passes} stratified passes a case. {LEGEND}"
-
-
-def overall(found: FoundBook) -> Row:
+def overall(found: FoundBook[CaseResult]) -> Row:
     """Figures over the feasible cases; infeasible ones are only counted."""
-    feasible = [case.comparison for case in found.feasible]
-    regrets = [each.regret for each in feasible if each.has_reference]
-    honest = [each.table.honesty for each in feasible]
+    regrets = [case.comparison.regret for case in found.feasible if case.comparison.has_reference]
+    honest = [case.measured.honesty for case in found.feasible]
     return {
         "criterion": found.book.config.criterion.sentence,
         "cases": len(found.book.cases),
-        "feasible": len(feasible),
-        "highest_rms_m_s": max((each.table.statistics.rms_m_s for each in feasible), default=None),
+        "feasible": len(found.feasible),
+        "highest_rms_m_s": max((case.statistics.rms_m_s for case in found.feasible), default=None),
         "median_regret": median(regrets) if regrets else None,
         "lowest_honesty": min(honest, default=None),
         "highest_honesty": max(honest, default=None),
     }
 
 
-def remarks(found: FoundBook) -> Iterator[str]:
+def remarks(found: FoundBook[CaseResult]) -> Iterator[str]:
     """What is to be done or known besides the verdict."""
     if not all(case.comparison.has_reference for case in found.book.cases):
         yield NO_REGRET
@@ -134,15 +105,15 @@ def remarks(found: FoundBook) -> Iterator[str]:
         yield worst.told
     if advice := advice_of(found.verdicts):
         yield advice
-    if found.book.pareto_line:
-        yield found.book.pareto_line
+    if fronts := fronts_of(found.book.cases):
+        yield nearly_free(fronts)
     if tellable(found.book.config):
         yield PERMISSIONS
 
 
 def infeasible(case: CaseResult, verdict: CaseVerdict) -> str:
     """What of an infeasible case can be served."""
-    served, entry, least = case.feasibility.served_m_s, case.plant.entry, case.feasibility.unavoidable
+    served, entry, least = case.feasibility.served_m_s, case.plant.entry, case.unavoidable
     part = f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s" if served else "no entry speed"
     low, high = map(speed, least.rms_ci95_m_s)
     return (

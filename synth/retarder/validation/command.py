@@ -23,34 +23,29 @@ from synth.retarder.validation.options import ValidateOptions
 if TYPE_CHECKING:
     from synth.retarder.validation.revalidation import Rehearsal, Revalidation
     from tuning_tables import ControllerTable
-    from tuning_tables.passages.passage_table import PassageTable
+    from tuning_tables.table_kinds import StageTable
 
 LIMITS_OF_USE = (MODEL_ONLY, CHANCE_ONLY)
 
 
 @dataclass(frozen=True)
 class AskedPasses:
-    """The tables of one file, with lines or for point sensors; the other part is empty.
+    """The tables at one place.
 
-    `infeasible`: whether the summary beside the file calls the case of each so; `log`: None where none is asked for.
+    `infeasible`: whether the summary beside them calls the case of each so; `log`: None where none is asked for.
     """
 
-    tables: tuple[ControllerTable, ...]
-    passages: tuple[PassageTable, ...]
+    tables: tuple[StageTable, ...]
     infeasible: tuple[bool, ...]
     rehearsal: Rehearsal
     log: AskedLog | None
 
-    @property
-    def all_tables(self) -> tuple[ControllerTable | PassageTable, ...]:
-        """Of either kind."""
-        return (*self.tables, *self.passages)
-
 
 @dataclass(frozen=True)
 class AskedLog:
-    """`passes` passes of each table are to be logged in a file called `name`; `gauge_std_kpa` None: without a gauge."""
+    """`passes` passes of each of `tables` are to be logged in a file called `name`; `gauge_std_kpa` None: no gauge."""
 
+    tables: tuple[ControllerTable, ...]
     name: str
     passes: int
     gauge_std_kpa: float | None
@@ -79,45 +74,39 @@ def resolve(asked: Asked[ResolvedConfig | None, ValidateOptions]) -> AskedPasses
 
     path, options = asked.options.source, asked.options
     passages = read_passages(path)
-    tables = () if passages and not holds_tables(path) else tables_at(path)
+    lines = () if passages and not holds_tables(path) else tables_at(path)
     config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, passages)
     if passages and options.log is not None:
         raise InputError(f"{path}: its tables are for point sensors, whose passes are not logged; leave out --log")
     if options.log is None and options.model_fields_set & {"log_passes", "gauge_std_kpa"}:
         raise InputError("--log-passes and --gauge-std are about a log; name its file in DIR by --log NAME.csv")
-    from synth.retarder.passage_class import passage_class
-    from synth.retarder.validation.revalidation import Rehearsal, plant_for
+    from synth.retarder.served_class import served_class
+    from synth.retarder.validation.revalidation import Rehearsal
 
+    tables: tuple[StageTable, ...] = (*lines, *passages)
     for table in tables:
-        plant_for(table, config, source)
-    for each in passages:
-        passage_class(each, config, source)
+        served_class(table, config, source)
     summary = summary_beside(path)
-    infeasible = (
-        *(is_infeasible(each, summary) for each in tables),
-        *(is_infeasible(each, summary) for each in passages),
-    )
     seed = config.validation.seed if options.seed is None else options.seed
     return AskedPasses(
         tables,
-        passages,
-        infeasible,
+        tuple(is_infeasible(each, summary) for each in tables),
         Rehearsal(config, source, options.passes or config.validation.passes, seed, available()),
-        None if options.log is None else AskedLog(options.log, options.log_passes, options.gauge_std_kpa),
+        None if options.log is None else AskedLog(lines, options.log, options.log_passes, options.gauge_std_kpa),
     )
 
 
 def head(asked: AskedPasses) -> Head:
     """What is said of the configuration, with a word about tables that another one made."""
     config, source = asked.rehearsal.config, asked.rehearsal.source
-    made = {table.generator.config_sha256 for table in asked.all_tables}
+    made = {table.generator.config_sha256 for table in asked.tables}
     other = f"tables were made from another configuration than {source}; the plant may differ"
     return head_of(config, () if made == {config.sha256} else (other,))
 
 
 def steps(asked: AskedPasses) -> Steps:
     """A step for each table."""
-    return Steps(len(asked.all_tables), "simulating", "tables")
+    return Steps(len(asked.tables), "simulating", "tables")
 
 
 def compute(asked: AskedPasses, work: Work) -> FoundPasses:
@@ -129,20 +118,16 @@ def compute(asked: AskedPasses, work: Work) -> FoundPasses:
 
 def rehearsed(asked: AskedPasses, work: Work) -> FoundPasses:
     """The same, where kernels are loaded."""
-    from synth.retarder.validation.revalidated_passages import revalidated_passages
     from synth.retarder.validation.revalidation import revalidated
 
-    rehearsal, tell = asked.rehearsal, work.progress.done
-    if asked.passages:
-        found = revalidated_passages(asked.passages, rehearsal, asked.infeasible, tell)
-    else:
-        found = revalidated(asked.tables, rehearsal, asked.infeasible, tell)
-    log = None if asked.log is None else log_file(asked, asked.log)
+    rehearsal = asked.rehearsal
+    found = revalidated(asked.tables, rehearsal, asked.infeasible, work.progress.done)
+    log = None if asked.log is None else log_file(rehearsal, asked.log)
     logged = 0 if asked.log is None else asked.log.passes
     return FoundPasses(rehearsal.config.title, rehearsal.seed, tuple(found), log, logged)
 
 
-def log_file(asked: AskedPasses, log: AskedLog) -> File:
+def log_file(rehearsal: Rehearsal, log: AskedLog) -> File:
     """Passes of the tables, simulated once more, as cuts come, as a controller logs them."""
     from plant_models.pressure_gauge import PressureGauge
     from synth.retarder.validation.rehearsed_log import rehearsed_log
@@ -151,7 +136,7 @@ def log_file(asked: AskedPasses, log: AskedLog) -> File:
     gauge = None if log.gauge_std_kpa is None else PressureGauge(log.gauge_std_kpa)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / log.name
-        write_log(rehearsed_log(asked.tables, asked.rehearsal, log.passes, gauge), path)
+        write_log(rehearsed_log(log.tables, rehearsal, log.passes, gauge), path)
         return File(log.name, path.read_bytes())
 
 

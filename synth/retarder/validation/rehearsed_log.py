@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from plant_models.pressure_gauge import PressureGauge
-from synth.retarder.validation.revalidation import Rehearsal, plant_for
+from synth.retarder.served_class import plant_for
+from synth.retarder.validation.revalidation import Rehearsal
 from synth.simulation.closed_loop import TableController
 from synth.simulation.logged_passes import LoggedClass, mixed_log
 from tuning_tables import ControllerTable

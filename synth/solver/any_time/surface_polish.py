@@ -13,7 +13,7 @@ from synth.problem.aim import Aim
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces, moved_apart
 from synth.solver.any_time.surface_evaluation import SurfaceCost, SurfaceEvaluation
 from synth.solver.coarse_grid import OWN_GRID, require_positive
-from synth.solver.descent import CostAndSlopes, descend
+from synth.solver.descent import CostAndSlopes, Descent, descend
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.polish import LOOSE_M_S
 from synth.solver.polynomial_lines import MINIMUM_GAP_M_S
@@ -24,18 +24,6 @@ the time; in five cases of the default book a polish took as many steps, and end
 
 GAP_NODES = 13
 """Places of the path at which the gap is held open while coefficients move."""
-
-
-@dataclass(frozen=True)
-class SurfacePolish:
-    """Result of `polish_surfaces`: the surfaces, cost before and after, evaluations used, how the search ended."""
-
-    surfaces: PolynomialSurfaces
-    cost_before: float
-    cost_after: float
-    evaluations: int
-    converged: bool
-    status: str
 
 
 @frozen_arrays
@@ -85,7 +73,7 @@ def polish_surfaces(
     aim: Aim,
     max_iterations: int = 60,
     tolerance: float = 1e-3,
-) -> SurfacePolish:
+) -> Descent[PolynomialSurfaces]:
     """Minimise the cost over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` at all pressures.
 
     It ends when a step changes the cost by less than `tolerance` of the first cost without the price of time. The
@@ -114,13 +102,13 @@ def polish_surfaces(
         max_iterations, tolerance,
         allowed=lambda y: least_gap(coordinates.surfaces(y)).min() >= 0.5 * MINIMUM_GAP_M_S,
     )  # fmt: skip
-    best = coordinates.surfaces(found.point)
+    best = coordinates.surfaces(found.best)
     surfaces, cost = opened(best), found.cost_after
     if surfaces is not best:
         cost = at(surfaces).cost_m2_s2
     if not 0.0 < cost <= first.cost_m2_s2:
         surfaces, cost = start, first.cost_m2_s2
-    return SurfacePolish(surfaces, first.cost_m2_s2, cost, found.evaluations, found.converged, found.status)
+    return found.ending(surfaces, cost)
 
 
 def whitening(terms: Terms, first: SurfaceCost) -> NDArray[np.float64]:

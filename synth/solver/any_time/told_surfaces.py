@@ -70,6 +70,6 @@ def told_surfaces(design: SampledChain, target_m_s: float, common: PolynomialSur
 def improved(evaluation: SurfaceEvaluation, aim: Aim, start: PolynomialSurfaces, iterations: int) -> PolynomialSurfaces:
     """The polished surfaces; `start` where its cost comes out negative, because the grid is too coarse for it."""
     try:
-        return polish_surfaces(start, evaluation, aim, iterations).surfaces
+        return polish_surfaces(start, evaluation, aim, iterations).best
     except CoarseGridError:
         return start

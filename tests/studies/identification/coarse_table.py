@@ -16,6 +16,6 @@ DEGREE = 3
 
 def coarse_table(plant: Plant, target_m_s: float) -> ControllerTable:
     """Solved on a coarse grid, fitted, polished and rounded; not predicted."""
-    lines = tuned_lines(persistent_chain(plant, COARSE), Aim(target_m_s), DEGREE).lines
+    lines = tuned_lines(persistent_chain(plant, COARSE), Aim(target_m_s), DEGREE).best
     maker, name = Generator("a test", "0", "0" * 64), f"{plant.cut.mass_t:g}-t-to-{target_m_s:g}"
     return tabulate(plant, lines, target_m_s, UNPREDICTED, maker, name, "2000-01-01T00:00:00Z")

@@ -19,14 +19,16 @@ from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_ALONE, CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.any_time.sampled_chain import SampledChain, check_sampled_chain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
-from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
+from synth.solver.any_time.surface_polish import polish_surfaces
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, persistent_chain
+from synth.solver.descent import Descent
 from synth.solver.policy_density import exit_density
 from tests.synth.any_time.conftest import short_plant
 from tests.synth.any_time.locked_surfaces import at_rest_only
 from tests.synth.any_time.tabled import tabled
 
+Polished = Descent[PolynomialSurfaces]
 TARGET_M_S = 3.0
 AIM = Aim(TARGET_M_S, Criterion())
 PRICED = Aim(TARGET_M_S, Criterion(time_price_m2_s3=0.01))
@@ -56,7 +58,7 @@ def chain(plant: Plant) -> SampledChain:
 
 
 @pytest.fixture(scope="module")
-def polish(plant: Plant, chain: SampledChain) -> SurfacePolish:
+def polish(plant: Plant, chain: SampledChain) -> Polished:
     return polish_surfaces(falling(plant), SurfaceEvaluation(chain, 2), AIM)
 
 
@@ -142,11 +144,11 @@ def test_without_transients_locked_lines_cost_what_the_locked_solver_says(plant:
     assert same.rms_m_s(TARGET_M_S) == pytest.approx(theirs.rms_m_s(TARGET_M_S), rel=0.02)
 
 
-def test_a_polish_lowers_the_cost_that_passes_find(plant: Plant, polish: SurfacePolish) -> None:
+def test_a_polish_lowers_the_cost_that_passes_find(plant: Plant, polish: Polished) -> None:
     loop = close_loop(plant, plant.position.top_stage + 1)
     draws = loop.draws(stratified_passes(22, 0, 20_000))
     before, after = (
-        exit_statistics(loop.run(tabled(plant, each), draws), TARGET_M_S) for each in (falling(plant), polish.surfaces)
+        exit_statistics(loop.run(tabled(plant, each), draws), TARGET_M_S) for each in (falling(plant), polish.best)
     )
     assert polish.converged
     assert polish.evaluations <= 40
@@ -154,12 +156,12 @@ def test_a_polish_lowers_the_cost_that_passes_find(plant: Plant, polish: Surface
     assert after.rms_ci95_m_s[1] < before.rms_ci95_m_s[0]
 
 
-def test_polished_surfaces_keep_their_order_at_all_pressures(polish: SurfacePolish, chain: SampledChain) -> None:
-    lower, upper = at(polish.surfaces, chain)
+def test_polished_surfaces_keep_their_order_at_all_pressures(polish: Polished, chain: SampledChain) -> None:
+    lower, upper = at(polish.best, chain)
     assert (upper - lower).min() >= 0.0399
 
 
-def test_a_regulator_without_gauge_gains_less(plant: Plant, chain: SampledChain, polish: SurfacePolish) -> None:
+def test_a_regulator_without_gauge_gains_less(plant: Plant, chain: SampledChain, polish: Polished) -> None:
     """Cubics alone are among cubics with a slope."""
     start = falling(plant, 0.0)
     bare = replace(start, degrees=CUBIC_ALONE, coefficients=start.coefficients[:, :, :4].copy())
@@ -181,7 +183,7 @@ def test_a_retarder_of_one_stage_has_no_pairs_and_is_polished_too() -> None:
         exit_statistics(
             close_loop(plant, plant.position.top_stage + 1).run(tabled(plant, each), draws), TARGET_M_S
         ).rms_m_s
-        for each in (start, found.surfaces)
+        for each in (start, found.best)
     )
     assert after < before
 
@@ -196,12 +198,12 @@ def test_threads_change_no_bit(plant: Plant, chain: SampledChain, threads: int) 
     assert one.slopes.any()
 
 
-def test_halving_all_steps_changes_the_prediction_little(plant: Plant, polish: SurfacePolish) -> None:
+def test_halving_all_steps_changes_the_prediction_little(plant: Plant, polish: Polished) -> None:
     design = design_resolution(plant, TARGET_M_S)
     finer = replace(design, path_step_m=0.5 * design.path_step_m, speed_step_m_s=0.5 * design.speed_step_m_s)
     rms = []
     for resolution, kpa in ((design, 30.0), (finer, 30.0), (finer, 15.0)):
         each = sampled_chain(plant, resolution, pressure_step_kpa=kpa)
-        rms.append(SurfaceEvaluation(each, 2).density(at(polish.surfaces, each)).rms_m_s(TARGET_M_S))
+        rms.append(SurfaceEvaluation(each, 2).density(at(polish.best, each)).rms_m_s(TARGET_M_S))
     assert rms[0] == pytest.approx(rms[1], rel=0.02)
     assert rms[1] == pytest.approx(rms[2], rel=0.01)

@@ -28,7 +28,7 @@ def design(plant: Plant) -> SampledChain:
 @pytest.fixture(scope="module")
 def told(plant: Plant, design: SampledChain) -> ToldSurfaces:
     """From surfaces that are polished for all frictions."""
-    common = polish_surfaces(falling(plant), SurfaceEvaluation(design, 2), AIM).surfaces
+    common = polish_surfaces(falling(plant), SurfaceEvaluation(design, 2), AIM).best
     found = told_surfaces(design, TARGET_M_S, common)
     return ToldSurfaces(found.factor, found.surfaces)
 

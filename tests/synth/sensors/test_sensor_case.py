@@ -10,19 +10,17 @@ import pytest
 
 from plant_models import every_axle
 from plant_models.point_sensors import Axles
-from synth.retarder.acceptance import CaseVerdict
+from synth.retarder.acceptance import CaseVerdict, judge_case
 from synth.retarder.configuration.settings import AcceptanceSettings
-from synth.retarder.sensors.sensor_acceptance import judge_sensor_case
-from synth.retarder.sensors.sensor_case import HeardShares, SensorCase
+from synth.retarder.sensors.sensor_case import HeardShares, SensorCase, heard_shares, unavoidable
 from synth.retarder.sensors.sensor_class import SensorPasses, full_brake, sensor_passes
-from synth.retarder.sensors.sensor_tune import heard_shares, unavoidable
 from synth.simulation.exit_statistics import BrakePower, exit_statistics
 from synth.simulation.passage_sample import DECIDED, NO_DECISION, NOT_BELIEVED, NOT_HEARD, UNFINISHED, PassageSample
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import random_passes
 from synth.simulation.unavoidable_error import UnavoidableError
+from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
-from synth.solver.passage_polish import PassagePolish
 from synth.solver.passage_speeds import PassageSpeeds
 from tests.controller_code.passage_tables import passage_table
 from tests.synth.conftest import pilot_plant
@@ -103,10 +101,9 @@ def case(spread_m_s: float, least: float, ci95: tuple[float, float]) -> SensorCa
     return SensorCase(
         label="made",
         plant=with_approach(pilot_plant(22.0), 5.0),
-        sensors=SENSORS,
         table=replace(table, predicted=replace(table.predicted, rms_m_s=found.rms_m_s)),
         predicted=ExitDensity(np.array([0.0, 2.5]), np.array([0.0, 1.0]), 0.0, 0.0, 4.0),
-        polish=PassagePolish(PassageSpeeds(np.zeros((1, 2, 1))), 1.0, 0.5, 9, True, "done"),
+        polish=Descent(PassageSpeeds(np.zeros((1, 2, 1))), 1.0, 0.5, 9, True, "done"),
         exit_speeds_m_s=(2.5 + error).astype(np.float32),
         exit_weight=np.ones(4000),
         statistics=found,
@@ -114,7 +111,6 @@ def case(spread_m_s: float, least: float, ci95: tuple[float, float]) -> SensorCa
         unavoidable=UnavoidableError(least, ci95, too_fast=True),
         heard=HeardShares((), (), (), ()),
         traces=(),
-        trace_factors=(),
     )
 
 
@@ -123,7 +119,7 @@ LIMITS = AcceptanceSettings(rms_m_s=0.1)
 
 def verdict(spread_m_s: float, least: float = 0.0, ci95: tuple[float, float] = (0.0, 0.0)) -> CaseVerdict:
     """That on a case."""
-    return judge_sensor_case(case(spread_m_s, least, ci95), LIMITS)
+    return judge_case(case(spread_m_s, least, ci95), LIMITS)
 
 
 def test_a_case_is_judged_by_the_limits_unless_the_brake_alone_misses_them() -> None:

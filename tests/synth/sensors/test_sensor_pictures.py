@@ -91,8 +91,8 @@ FIGURES = {
     "switching speeds": lambda: switching_speeds("лёгкая-23t", [FIRST, FIRST], [(trace(),), ()]),
     "of every axle": lambda: switching_speeds("лёгкая-23t", [EVERY], []),
     "of two stages": lambda: switching_speeds("two", [passage_table(stages=2)], [()]),
-    "passes": lambda: passes_figure("лёгкая-23t", FIRST, (trace(), trace()), (0.8, 1.2)),
-    "no passes": lambda: passes_figure("лёгкая-23t", FIRST, (), ()),
+    "passes": lambda: passes_figure("лёгкая-23t", FIRST, (trace(), trace())),
+    "no passes": lambda: passes_figure("лёгкая-23t", FIRST, ()),
 }
 
 
@@ -111,7 +111,7 @@ def test_a_figure_is_drawn_twice_alike_and_holds_its_text(name: str) -> None:
 
 
 def test_only_readings_at_which_could_be_decided_are_marked() -> None:
-    speed_panel = passes_figure("x", FIRST, (trace(),), (1.0,)).axes[0]
+    speed_panel = passes_figure("x", FIRST, (trace(),)).axes[0]
     marks = [line for line in speed_panel.lines if line.get_linestyle() == "None" and line.get_marker() == "o"]
     shown = {str(line.get_fillstyle()): np.asarray(line.get_xydata()).tolist() for line in marks}
     assert shown == {"full": [[FIRST.heard_path_m[0], 5.0]], "none": [[FIRST.heard_path_m[1], 4.6]]}

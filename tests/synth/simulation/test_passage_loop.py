@@ -26,7 +26,7 @@ from synth.simulation.closed_loop import close_loop
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passage_controller import of_speeds
 from synth.simulation.passage_loop import close_passage_loop, simulate_passages
-from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample, unfinished_shares
+from synth.simulation.passage_sample import DECIDED, NOT_HEARD, TAKEN, UNFINISHED, PassageSample, shares_of_outcomes
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from tests.effort import sized
@@ -195,7 +195,7 @@ def test_a_passage_counts_only_where_the_transient_has_ended(plant: Plant, passe
                 mode, stage = int(actuator.chain_mode[chain]), int(heard.stage[at])
     assert min(found.values()) > 100
     sample = loop.run(rule, loop.draws(passes))
-    shares = unfinished_shares(sample)
+    shares = shares_of_outcomes(sample, (UNFINISHED,), TAKEN)
     counted = [np.mean(each[each > 0] == UNFINISHED) for each in sample.outcome.T]
     assert [share for share, _ in shares] == pytest.approx(counted)
     assert all(low <= share <= high for share, (low, high) in shares)

@@ -21,26 +21,24 @@ from synth.retarder.pictures.sample_passes import outcome
 from synth.retarder.sensors.pictures.switching_speeds import mark_sensors
 from synth.retarder.sensors.sensor_case import SensorCase
 from synth.simulation.passage_sample import DECIDED, UNFINISHED, PassageTrace
+from synth.simulation.passes import TRACE_FACTORS
 from tuning_tables.passages.passage_table import PassageTable
 
 
 def passes_with_readings(case: SensorCase) -> Figure:
     """Speed in m/s over path in m on the left; pressure above the touch in kPa and stage over time on the right."""
-    subject = f"{case.cut_name}, target {case.target_speed_m_s:g} m/s"
-    return passes_figure(subject, case.table, case.traces, case.trace_factors)
+    return passes_figure(f"{case.cut_name}, {case.target_name}", case.table, case.traces)
 
 
-def passes_figure(
-    subject: str, table: PassageTable, traces: tuple[PassageTrace, ...], factors: tuple[float, ...]
-) -> Figure:
-    """The passes `traces` of `table`, whose friction factors are `factors`; the legend tells how each of them ended."""
+def passes_figure(subject: str, table: PassageTable, traces: tuple[PassageTrace, ...]) -> Figure:
+    """The passes `traces` of `table`, whose friction factors are `TRACE_FACTORS`; the legend tells how each ended."""
     figure = new_figure(11.0, 5.4, "Sample passes and readings", subject)
     place(figure, left=0.65, right=0.2, bottom=1.15, top=0.85, w=0.17, h=0.24)
     grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1.0))
     speed, pressure, stage = (figure.add_subplot(grid[part]) for part in ((slice(None), 0), (0, 1), (1, 1)))
     handles: list[Line2D] = []
     for trace, factor, colour, style, mark in zip(
-        traces, factors, LINE_COLOURS, LINE_STYLES, LINE_MARKERS, strict=False
+        traces, TRACE_FACTORS, LINE_COLOURS, LINE_STYLES, LINE_MARKERS, strict=False
     ):
         speed.plot(trace.path_m, trace.speed_m_s, color=colour, linestyle=style, linewidth=1.6)
         draw_readings(speed, table, trace, colour, mark)

@@ -1,0 +1,83 @@
+"""What every command that tunes is asked and does; the commands differ in epochs, in files and in what they show."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Generic
+
+from synth.frame.command import Limit, Steps, Work
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configured import require_room
+from synth.retarder.epochs import Epochs, Table
+from synth.retarder.tuned_case import Case
+
+if TYPE_CHECKING:
+    from synth.frame.results_directory import ResultsDirectory
+    from synth.retarder.found_book import FoundBook
+    from synth.retarder.solving_options import SolvingOptions
+    from synth.retarder.tune import Book, CaseDone
+
+
+@dataclass(frozen=True)
+class AskedTune(Generic[Case, Table]):
+    """A configuration, what messages call its file, the epochs of its regulators, and classes solved at once."""
+
+    config: ResolvedConfig
+    place: str
+    epochs: Epochs[Case, Table]
+    workers: int
+
+
+def asked_tune(
+    config: ResolvedConfig, place: str, epochs: Epochs[Case, Table], options: SolvingOptions
+) -> AskedTune[Case, Table]:
+    """A tune of `config`, the file `place`, refused where it does not fit into memory."""
+    workers = options.workers_for(len(config.cuts))
+    require_room(config, epochs, place, workers)
+    return AskedTune(config, place, epochs, workers)
+
+
+def steps(asked: AskedTune[Case, Table]) -> Steps:
+    """A step for each case."""
+    return Steps(len(asked.config.problems()), "tuning", "cases")
+
+
+def drawing(asked: AskedTune[Case, Table]) -> int:
+    """As many processes as classes are solved at once."""
+    return asked.workers
+
+
+def tuned(
+    asked: AskedTune[Case, Table], work: Work, case_done: CaseDone[Case], found: Callable[[Book[Case]], FoundBook[Case]]
+) -> FoundBook[Case]:
+    """What is `found` of the book, whose tables are written as they are made; `case_done` is given each case.
+
+    `InputError` where no case has a table, or where `found` raises `InvalidTable`: the tables make no book.
+    """
+    from synth.kernels.cache import guarded
+    from synth.retarder.first_run import compiled_beside
+    from synth.retarder.tables_refused import require_a_table, tables_refused
+    from synth.retarder.tune import tune
+
+    with compiled_beside(work.progress.note), tables_refused(asked.place, asked.config):
+        store = partial(stored, directory=work.directory)
+        book = guarded(tune, asked.config, asked.epochs, store, work.progress, asked.workers, case_done)
+        require_a_table(book.cases, book.failed)
+        return found(book)
+
+
+def stored(table: Table, directory: ResultsDirectory) -> Table:
+    """Write `table` as JSON; the table as a controller will load it."""
+    from tuning_tables import read_json, to_json
+
+    return read_json(directory.write(f"tables/{table.id}.json", to_json(table)), type(table))
+
+
+def limits(found: FoundBook[Case]) -> Iterator[Limit]:
+    """Those of [acceptance]."""
+    from synth.retarder.acceptance import limits_of
+
+    book = found.book
+    return limits_of(found.verdicts, book.cases, book.config.acceptance, book.failed)
