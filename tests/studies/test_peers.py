@@ -117,7 +117,7 @@ def as_known(passes: CommonPasses, factor: float = 1.0) -> Draws:
 
 @njit
 def foresee(path, drive, period, horizon, old, new, pressure, factor, cell, s, v, parts):  # type: ignore[no-untyped-def]
-    return held(path, drive, period, horizon, old, new, pressure, 0.0, factor, cell, s, v, np.empty(parts))
+    return held(path, drive, period, horizon, old, new, pressure, 0.0, factor, (cell, s, v), np.empty(parts))
 
 
 @njit
