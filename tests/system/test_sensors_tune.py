@@ -81,7 +81,7 @@ def test_it_leaves_tables_code_pictures_report_and_a_summary_of_them_all(tuned_p
         "tables", "c", "st", "plots", "sheets", "configuration.toml", "report.html", "summary.json",
     }  # fmt: skip
     assert {Path(name).suffix for name in here if name.startswith("tables/")} == {".json", ".csv"}
-    assert sum(name.startswith("plots/") for name in here) == 6  # three pictures of the class, PNG and SVG
+    assert sum(name.startswith("plots/") for name in here) == 3  # three pictures of the class
     assert "<h2>Sensors and passages</h2>" in (tuned_points / "report.html").read_text(encoding="utf-8")
     assert summary["accepted"] is True
     assert [case["target_speed_m_s"] for case in summary["tables"]["cases"]] == [2.0, 2.5]
