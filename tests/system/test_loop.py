@@ -51,7 +51,7 @@ def test_a_directory_gives_pictures_figures_and_a_table(
         assert row["largest difference, mm/s"].split()[0] == f"{1e3 * abs(each['difference']['largest_m_s']):.3f}"
         assert row["commands in a pass"] == str(len(each["python_control"]["commands"]))
         cycles = sum(name.startswith(f"{each['id']}-cycle") for name in names)
-        assert cycles == 2 * len(each["limit_cycles"])  # PNG and SVG
+        assert cycles == len(each["limit_cycles"])
     assert "Python-control and the simulator agree where" in ran.out
 
 
