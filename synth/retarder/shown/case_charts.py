@@ -25,7 +25,7 @@ def exits_chart(cases: Sequence[TunedCase]) -> Chart:
         f"{label}: density of the exported table ({prediction_origin(cases)}), over the simulated passes in bins of "
         f"{NARROW_M_S:g} m/s, beyond ±{OVERSPEED_M_S:g} m/s of {WIDE_M_S:g} m/s; above near the target, below on a "
         "logarithmic scale with the tails. The step of the grid widens the predicted peak, most at low targets. "
-        "Hatched: the prediction is smaller than the error of its grid there, and is not drawn.",
+        "No prediction below 0.0001 s/m is drawn.",
         partial(exit_density, tuple(cases)),
     )
 
