@@ -200,6 +200,7 @@ def test_the_stage_of_least_cost_is_taken(loop: PeerLoop) -> None:
     assert changed > 20
 
 
+@pytest.mark.long
 def test_where_all_is_known_the_predictive_controller_meets_the_target(plant_52t: Plant) -> None:
     """At any time, as the plant is the known one and the sensor exact: what is left is for the sampling period."""
     quiet = replace(plant_52t, sensor=replace(plant_52t.sensor, resolution_m_s=0.0))

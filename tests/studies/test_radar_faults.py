@@ -25,6 +25,7 @@ from scripts.studies.radar_faults.watched_passes import passes_by_weight, watche
 from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop, simulate
 from synth.simulation.random_passes import RandomPasses, random_passes
+from tests.effort import every
 from tests.synth.case_factory import make_plant, make_table
 from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM
 
@@ -61,7 +62,7 @@ def happening(fault: RadarFault, passes: RandomPasses, plant: Plant) -> RandomPa
 # ------------------------------------------------------------------------------------- the watched loop
 
 
-@pytest.mark.parametrize("estimator", [False, True])
+@pytest.mark.parametrize("estimator", every(2, [True, False]))
 def test_without_fault_it_is_the_simulator_to_the_last_bit(
     plant: Plant, loop: ClosedLoop, passes: RandomPasses, estimator: bool
 ) -> None:

@@ -23,6 +23,7 @@ from synth.logs.residual_tests import (
 )
 from synth.logs.unknowns import unknowns_of
 from synth.simulation import logged_passes
+from tests.effort import every
 from tests.synth.logs.other_laws import OtherLaws
 
 PASSES, SEED = 300, 11
@@ -64,11 +65,14 @@ def test_logs_of_the_simulator_are_of_the_model(yard: Yard, lawful: FittingPasse
 
 @pytest.mark.parametrize(
     ("laws", "effect", "size"),
-    [
-        (OtherLaws(friction_by_speed=-0.05), BY_SPEED, -5.0),
-        (OtherLaws(force_by_pressure=0.15), BENT, 15.0),
-        (OtherLaws(resistance_by_speed=0.3), RESISTANCE, 30.0),
-    ],
+    every(
+        3,
+        [
+            (OtherLaws(friction_by_speed=-0.05), BY_SPEED, -5.0),
+            (OtherLaws(force_by_pressure=0.15), BENT, 15.0),
+            (OtherLaws(resistance_by_speed=0.3), RESISTANCE, 30.0),
+        ],
+    ),
 )
 def test_a_law_that_matters_is_found_with_its_size(
     laws: OtherLaws, effect: Effect, size: float, yard: Yard, monkeypatch: pytest.MonkeyPatch

@@ -55,6 +55,7 @@ def test_a_free_roll_is_the_closed_form_of_quadratic_resistance() -> None:
     assert moving.y[motion.SPEED] == pytest.approx(math.sqrt(square), abs=1e-9)
 
 
+@pytest.mark.long
 def test_a_cut_stops_where_a_constant_force_stops_it() -> None:
     brake = replace(PLANT.brake, friction_rise_m_s=0.0, path_std=0.0)
     plant = replace(level(PLANT), brake=brake, cut=replace(PLANT.cut, resistance_n_per_kn_per_m2_s2=0.0))

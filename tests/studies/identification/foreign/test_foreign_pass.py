@@ -56,6 +56,7 @@ def test_the_table_decides_and_only_at_rest(label: str, foreign_plants: Plants, 
     assert held_back > 20
 
 
+@pytest.mark.long
 def test_a_command_reaches_the_brake_after_computing_and_valve_delay(
     foreign_plants: Plants, assumed_tables: Tables
 ) -> None:
