@@ -12,6 +12,7 @@ import pytest
 
 import synth.retarder.sensitivity.command as command
 from synth.cli import main
+from synth.frame.results_directory import results_directory
 from tests.frame.results import results_in
 
 SMALL = """\
@@ -135,7 +136,9 @@ def test_a_table_of_a_tune_gives_the_shares_of_the_table_made_here(
 
 
 def test_what_cannot_be_is_refused_in_a_sentence(ran: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert asked(ran, "tuned") == 2
+    with results_directory(ran / "of a tune", "tune", ()) as of_a_tune:
+        of_a_tune.write("tables/a.json", b"{}")
+    assert asked(ran, "of a tune") == 2
     assert "it holds the results of 'tune'" in capsys.readouterr().err
     assert main(["sensitivity", "--points", "100"]) == 2
     assert "a whole number from 200" in capsys.readouterr().err
