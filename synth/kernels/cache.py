@@ -222,8 +222,6 @@ def _processor() -> str:
 
 
 def _raised_in_numba_cache(traceback: TracebackType | None) -> bool:
-    if IS_PLAIN:
-        return False
     from synth.kernels.vector.numba_internals import (
         CACHE_READER,  # start-up: numba, which is there when a kernel failed
     )

@@ -19,7 +19,6 @@ from synth.kernels.cache import first_time
 COARSE_STEP_M, COARSE_STEP_M_S = 2.0, 0.2
 """A grid on which all that is valued takes no time beside the compiling."""
 
-
 COMMAND = (sys.executable, "-P", "-m", "synth.retarder.first_run")
 
 

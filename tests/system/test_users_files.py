@@ -20,7 +20,6 @@ from synth.cli import main
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import results_directory
 from synth.hump.hump_file import hump_text
-from tests.effort import IS_LONG
 from tests.system.conftest import CLASS, SECOND_CLASS, Command, changed
 
 SENSORS = """\
@@ -76,7 +75,7 @@ class Writing:
 
 
 DIRECTORIES = (
-    Writing(("tune", "yard.toml"), "report.html", quick=IS_LONG),
+    Writing(("tune", "yard.toml"), "report.html", quick=True),
     Writing(("sensors", "tune", "points.toml"), "report.html"),
     Writing(("sensors", "plan", "yard.toml"), "sensors.toml"),
     Writing(("permissions", "yard.toml"), "summary.json"),
@@ -206,7 +205,14 @@ def test_a_single_file_is_written_over_nothing(
         assert contents(tmp_path) == users | {link: users[tmp_path / name]}
 
 
-@pytest.mark.parametrize("each", [each for each in (*DIRECTORIES, *FILES) if each.quick], ids=lambda each: each.name)
+@pytest.mark.parametrize(
+    "each",
+    [
+        pytest.param(each, marks=pytest.mark.long if each.name == "tune" else (), id=each.name)
+        for each in (*DIRECTORIES, *FILES)
+        if each.quick
+    ],
+)
 def test_inputs_above_the_results_keep_their_bytes(
     command: Command, inputs: Mapping[str, bytes], tmp_path: Path, each: Writing
 ) -> None:
