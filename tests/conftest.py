@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -33,8 +34,22 @@ def corpus(tmp_path_factory: pytest.TempPathFactory) -> Corpus:
     return Corpus(shared_base(tmp_path_factory))
 
 
+COMPILES = "checker/test_any_time_simulation.py"
+"""Its first tune compiles most kernels."""
+
+WITHOUT_KERNELS = ("architecture", "attack", "controller_code", "frame", "tuning_tables")
+"""Folders whose tests need hardly any: one process runs them while the other compiles what both need afterwards."""
+
+
+def turn_of(item: pytest.Item) -> int:
+    """When the file of a test comes: what compiles first, then what needs no kernel, then the rest."""
+    place = item.path.relative_to(Path(__file__).parent)
+    return 0 if place.as_posix() == COMPILES else 1 if place.parts[0] in WITHOUT_KERNELS else 2
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out what is marked as long, unless it is wanted."""
+    """Leave out what is marked as long, unless it is wanted; within a turn the order of names stays."""
+    items.sort(key=turn_of)
     if not IS_LONG:
         left_out = [item for item in items if item.get_closest_marker("long")]
         config.hook.pytest_deselected(items=left_out)

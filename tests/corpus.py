@@ -1,4 +1,4 @@
-"""What commands leave in a directory, made once for all tests of a run, whichever process asks first."""
+"""What takes long, made once for all tests of a run, whichever process asks first: directories and values."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ import fcntl
 import hashlib
 import json
 import os
-from collections.abc import Iterator
+import pickle
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
 from shutil import rmtree
+from typing import TypeVar
 
 import pytest
 
@@ -20,6 +22,8 @@ from synth.cli import main
 ROOT = Path(__file__).parents[1]
 PRODUCT = ("plant_models", "synth", "tuning_tables")
 PLACE, CODES = "made", "codes.json"
+
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
@@ -79,6 +83,17 @@ class Corpus:
             assert found == kept["sha256"], f"a test has changed {place / PLACE}, which it shares with others"
             self._handed_out[key] = Made(place / PLACE, tuple(kept["codes"]))
         return self._handed_out[key]
+
+    def value(self, name: str, make: Callable[[], Value]) -> Value:
+        """What `make` gives, worked out by the process that asks first; `name` tells it from all others of a run."""
+        place = self._base / f"{name}.pickle"
+        with locked(self._base / f"{name}.lock"):
+            if not place.exists():
+                aside = place.with_suffix(".making")
+                aside.write_bytes(pickle.dumps(make()))
+                aside.rename(place)
+        found: Value = pickle.loads(place.read_bytes())  # noqa: S301: written by this run of the tests
+        return found
 
     def _make(self, recipe: Recipe, place: Path) -> None:
         """Make it aside, so that a process that is killed leaves nothing that is taken for made."""

@@ -103,3 +103,22 @@ def test_a_lock_is_held_by_one_alone(tmp_path: Path) -> None:
 
     with ThreadPoolExecutor(8) as threads:
         assert set(threads.map(work, range(64))) == {1}
+
+
+def test_a_value_is_worked_out_once_and_not_kept_where_that_fails(tmp_path: Path) -> None:
+    made: list[int] = []
+
+    def fails() -> int:
+        raise ValueError("half made")
+
+    def seven() -> int:
+        made.append(7)
+        return 7
+
+    with pytest.raises(ValueError, match="half made"):
+        Corpus(tmp_path).value("number", fails)
+    with ThreadPoolExecutor(8) as threads:
+        asked = [Corpus(tmp_path) for _ in range(8)]
+        found = list(threads.map(lambda each: each.value("number", seven), asked))
+    assert found == [7] * 8
+    assert made == [7]

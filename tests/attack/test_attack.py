@@ -15,7 +15,7 @@ from tests.attack.planted import FILE, PLANTED, SOUND, only_if_changed, waits_fo
 from tests.attack.processes import Limits, attempts
 from tests.effort import sized
 
-FEW = sized(5, 30)
+FEW = sized(3, 30)
 IMPATIENT = Limits(clock_s=1.0)
 SHORT = Limits(processor_s=0.5, memory_bytes=2**28)
 

@@ -23,7 +23,7 @@ from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, rig
 from tests.controller_code.sample_book import sample_book
 from tests.controller_code.test_export import FLOAT_H, PEDANTIC
 from tests.controller_code.ways import WAYS
-from tests.effort import QUESTIONS
+from tests.effort import QUESTIONS, every
 from tuning_tables.c_correction import correction_c_files
 from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.code import crc32_of, words_of
@@ -144,7 +144,7 @@ def blocks(book: PassageBook) -> list[npt.NDArray[np.uint32]]:
     return [np.append(each, np.uint32(crc32_of(each))) for each in words]
 
 
-@pytest.mark.parametrize("build", WAYS, ids=str)
+@pytest.mark.parametrize("build", every(3, WAYS), ids=str)
 def test_c_does_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
     for name in build.missing():
         tool(name)

@@ -170,6 +170,7 @@ def test_switches_are_changed_alone_and_the_king_switch_keeps_its_fall(trial: Hu
     np.testing.assert_allclose(behind, 8.0)
 
 
+@pytest.mark.long
 def test_feedback_that_is_worse_is_told(trial: HumpTrial) -> None:
     pair = Pair("a pair", trial)
     outcomes = measured([pair.group], TRAINS, 1, lambda _: None)

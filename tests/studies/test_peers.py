@@ -244,6 +244,7 @@ def test_the_integral_finds_a_lasting_error(loop: PeerLoop) -> None:
     assert kpa[stages[-1]] == pytest.approx(80.0 + 100.0 * (0.2 + 0.2 * 4.0 / 2.0), abs=10.0)
 
 
+@pytest.mark.long
 def test_tuning_is_never_worse_than_its_grid_and_always_the_same(passes: CommonPasses, loop: PeerLoop) -> None:
     tuning, estimator = passes.first(100), estimator_of(passes.plant)
     aimed, search = Aimed(AIM_M_S, 3e-5, Decisions.AT_ANY_TIME, estimator), Search(100, 1, 12)

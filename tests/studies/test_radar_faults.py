@@ -62,6 +62,7 @@ def happening(fault: RadarFault, passes: RandomPasses, plant: Plant) -> RandomPa
 # ------------------------------------------------------------------------------------- the watched loop
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("estimator", every(2, [True, False]))
 def test_without_fault_it_is_the_simulator_to_the_last_bit(
     plant: Plant, loop: ClosedLoop, passes: RandomPasses, estimator: bool

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from tests.effort import every
 from tests.tuning_tables.every_kind import whole_lines
 from tests.tuning_tables.forged_book import Arrays, Edit, arrays_in, forge, put, reseal
 from tests.tuning_tables.passages.made_tables import table_of
@@ -77,7 +78,7 @@ class Forgery:
         return bool(again.dtype == forged.dtype and again.tobytes() == forged.tobytes())
 
 
-@pytest.fixture(scope="module", params=["lines", "points"])
+@pytest.fixture(scope="module", params=every(2, ["lines", "points"]))
 def book(request: pytest.FixtureRequest, table: ControllerTable, tmp_path_factory: pytest.TempPathFactory) -> Forgery:
     """Two tables that differ in every length; of those with lines one has all that a table may have, one nothing."""
     every = replace(table_of(DecidesOn.EVERY_AXLE), id="every", validated=None)

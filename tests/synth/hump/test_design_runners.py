@@ -13,6 +13,7 @@ from synth.frame.picture.figure_file import draw
 from synth.hump.control.pictures.hump_picture import hump_picture
 from synth.hump.control.pictures.plan_layout import plan_layout
 from synth.hump.design_runners import DESIGN_RUNNERS, DesignRunner, roll_runners
+from tests.effort import every
 
 
 def in_time(route: Route, runner: DesignRunner, until_m: float) -> float:
@@ -43,7 +44,7 @@ def in_time(route: Route, runner: DesignRunner, until_m: float) -> float:
     return float(found.y[1, -1])
 
 
-@pytest.mark.parametrize("runner", DESIGN_RUNNERS, ids=lambda runner: runner.name)
+@pytest.mark.parametrize("runner", every(3, DESIGN_RUNNERS), ids=lambda runner: runner.name)
 def test_a_runner_rolls_as_the_law_says(runner: DesignRunner) -> None:
     route = load_hump("large").graph.route(201, 22)
     (roll,) = roll_runners(route, (runner,))

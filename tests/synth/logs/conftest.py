@@ -8,6 +8,7 @@ from scripts.studies.identification.truths import TRUTHS, Yard, assumed_yard
 from synth.logs.estimate import Estimate, estimate
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.unknowns import unknowns_of
+from tests.corpus import Corpus
 
 PASSES, SEED = 80, 7
 
@@ -24,5 +25,5 @@ def passes(yard: Yard) -> FittingPasses:
 
 
 @pytest.fixture(scope="session")
-def found(yard: Yard, passes: FittingPasses) -> Estimate:
-    return estimate(passes, unknowns_of(passes, yard.config.parameters), 2)
+def found(yard: Yard, passes: FittingPasses, corpus: Corpus) -> Estimate:
+    return corpus.value("estimate", lambda: estimate(passes, unknowns_of(passes, yard.config.parameters), 2))

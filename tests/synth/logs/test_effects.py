@@ -83,6 +83,7 @@ def test_a_law_that_matters_is_found_with_its_size(
     assert abs(tests[effect].size - size) < high - low + 0.2 * abs(size)
 
 
+@pytest.mark.long
 def test_a_law_that_does_not_matter_is_not_said(yard: Yard, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its size is told all the same."""
     tests = told_by(under(OtherLaws(friction_by_speed=-0.01), yard, monkeypatch), yard)

@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from tests.effort import every
 from tests.tuning_tables.plc_forms.exports import KINDS, exported, failed, self_test_of
 from tests.tuning_tables.plc_forms.scl_reader import structured_text
 from tests.tuning_tables.st.syntax import faults, parse
@@ -18,7 +19,7 @@ def source_of(kind: str) -> str:
     return b"\n".join(scl_files(exported(kind)).values()).decode("ascii")
 
 
-@EACH
+@pytest.mark.parametrize("kind", every(3, KINDS))
 def test_the_self_test_in_the_sources_finds_nothing(kind: str) -> None:
     text = structured_text(source_of(kind)).encode("ascii")
     assert faults(parse(text)) == []

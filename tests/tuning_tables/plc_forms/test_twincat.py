@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.effort import every
 from tests.tuning_tables.plc_forms.exports import KINDS, PARK, exported, failed, self_test_of
 from tests.tuning_tables.plc_forms.twincat_reader import objects, structured_text
 from tests.tuning_tables.st.syntax import faults, parse
@@ -22,7 +23,7 @@ from tuning_tables.plc_forms.twincat import twincat_files
 EACH = pytest.mark.parametrize("kind", KINDS)
 
 
-@EACH
+@pytest.mark.parametrize("kind", every(3, KINDS))
 def test_the_self_test_in_the_objects_finds_nothing(kind: str) -> None:
     text = structured_text(twincat_files(exported(kind))).encode("ascii")
     assert faults(parse(text)) == []

@@ -60,7 +60,7 @@ COMPILERS: Final = (BINARY32, DOUBLE, LONG_LITERALS, FUSING, NO_TURN, ONE_TURN_T
 """All under which every exported text must answer alike. CODESYS and STruC++ take literals as `LONG_LITERALS` does."""
 
 
-ASKED_UNDER: Final = sized((BINARY32, DOUBLE, WORST), COMPILERS)
+ASKED_UNDER: Final = sized((BINARY32, WORST), COMPILERS)
 """Those under which hard questions are asked."""
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests.controller_code.sample_book import approaching_book, surface_book
+from tests.effort import every
 from tests.tuning_tables.st.compiler import BINARY32, DOUBLE, FUSING, Compiler
 from tests.tuning_tables.st.conftest import shaped_book, texts_of
 from tests.tuning_tables.st.evaluator import Program
@@ -104,7 +105,7 @@ def another(literal: str) -> str:
     return f"{step:.9E}" if float(literal) else "1.000000000E-01"
 
 
-@pytest.mark.parametrize("made", ["small", "surfaces"])
+@pytest.mark.parametrize("made", every(2, ["small", "surfaces"]))
 def test_a_small_self_test_finds_every_changed_constant(small_book: TableBook, made: str) -> None:
     """Of a book with approach, slopes and estimators one number of each array, of a small one all."""
     files = texts_of(small_book if made == "small" else surfaces(), SMALL)

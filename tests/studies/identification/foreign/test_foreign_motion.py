@@ -94,6 +94,7 @@ def brake_force_kn(s: Floats, v: Floats, p: Floats, plant: ForeignPlant, draw: F
     return np.asarray(draw.friction * clamp * mu * total)
 
 
+@pytest.mark.long
 def test_the_work_of_all_forces_is_the_change_of_kinetic_energy() -> None:
     draw, plant = DRAW, PLANT
     moving, now, rows = plant_at_rest(plant, draw, 1e-3), 0.0, []

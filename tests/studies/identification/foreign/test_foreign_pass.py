@@ -72,6 +72,7 @@ def test_a_command_reaches_the_brake_after_computing_and_valve_delay(
             assert ran.pressure_kpa[first + rows + 1] > 1.0
 
 
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_bits_and_another_other_cuts(
     foreign_plants: Plants, assumed_tables: Tables
 ) -> None:

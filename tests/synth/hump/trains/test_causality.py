@@ -16,6 +16,7 @@ from synth.hump.trains.rollability import Rollability
 from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.trial import Control, HumpTrial, Sensing, with_room
+from tests.effort import every
 from tests.synth.hump.trains.made_trials import Day
 
 Floats = NDArray[np.float64]
@@ -102,7 +103,7 @@ def answers(fate: Fate) -> dict[tuple[int, int, int], tuple[float, float]]:
 
 
 @pytest.mark.parametrize(("tracks", "after_s"), [(None, 60.0), (FEW_TRACKS, 140.0)], ids=["all tracks", "few tracks"])
-@pytest.mark.parametrize("sensing", [None, Sensing()], ids=["by category", "measured"])
+@pytest.mark.parametrize("sensing", every(2, [Sensing(), None]), ids=["measured", "by category"])
 def test_commands_do_not_depend_on_what_happens_later(
     tracks: dict[int, float] | None, after_s: float, sensing: Sensing | None
 ) -> None:

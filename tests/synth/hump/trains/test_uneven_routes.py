@@ -27,6 +27,7 @@ from synth.hump.trains.train_cuts import expected
 from synth.hump.trains.train_figures import ratio
 from synth.hump.trains.trial import ConstantSpeed, Control, HumpTrial, Sensing
 from synth.simulation.free_roll import rolling_cuts
+from tests.effort import every
 from tests.plant_models.hump.test_hump_file import SMALL
 from tests.synth.hump.trains.made_trials import Day, GivenHead
 from tests.synth.hump.trains.mixed_cuts import without_padding
@@ -216,7 +217,7 @@ def test_tracks_without_any_position_are_humped(tmp_path: Path) -> None:
     assert [len(row.exit_m_s) for row in speed_program(trial, 0).rows] == (1 - memory.route[0]).tolist()
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", every(2, NAMES))
 def test_the_command_humps_them_and_tells_all(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "uneven.toml").write_text(UNEVEN[name](), encoding="utf-8")
     config, out = tmp_path / "trial.toml", tmp_path / "out"

@@ -12,6 +12,7 @@ from synth.logs.identified_config import with_numbers
 from synth.logs.retune.tuned_books import Case, class_setups, tuned_tables
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.watcher import Teller
+from tests.corpus import Corpus
 from tuning_tables import ControllerTable
 
 CREATED = "2000-01-01T00:00:00Z"
@@ -58,27 +59,27 @@ def yard_of(source: ConfigSource) -> Yard:
 
 
 @pytest.fixture(scope="session")
-def assumed() -> Yard:
+def assumed(corpus: Corpus) -> Yard:
     """What the library says."""
-    return yard_of(source_of_text(TEXT, "test"))
+    return corpus.value("assumed yard", lambda: yard_of(source_of_text(TEXT, "test")))
 
 
 @pytest.fixture(scope="session")
-def worn(assumed: Yard) -> Yard:
+def worn(assumed: Yard, corpus: Corpus) -> Yard:
     """Friction -30 %, exhaust constant +50 %, and tables tuned with that."""
-    return worn_yard(assumed, 0.7)
+    return corpus.value("worn yard", lambda: worn_yard(assumed, 0.7))
 
 
 @pytest.fixture(scope="session")
-def known() -> Yard:
+def known(corpus: Corpus) -> Yard:
     """What the library says, with a mean friction that is taken as known."""
-    return yard_of(source_of_text(KNOWN_MEAN, "test"))
+    return corpus.value("known yard", lambda: yard_of(source_of_text(KNOWN_MEAN, "test")))
 
 
 @pytest.fixture(scope="session")
-def worse(known: Yard) -> Yard:
+def worse(known: Yard, corpus: Corpus) -> Yard:
     """Friction -40 %, exhaust constant +50 %, and tables tuned with that."""
-    return worn_yard(known, 0.6)
+    return corpus.value("worse yard", lambda: worn_yard(known, 0.6))
 
 
 def worn_yard(assumed: Yard, friction: float) -> Yard:
