@@ -7,15 +7,14 @@ another checkout, that one runs beside it in the same round.
 from __future__ import annotations
 
 import os
-import resource
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, TemporaryFile
 
 from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
 from scripts.studies.options import option
@@ -25,6 +24,9 @@ from scripts.studies.timing.turns import three_digits
 from synth.kernels.plain import VARIABLE
 
 PROGRAM = (sys.executable, "-c", "import sys; from synth.cli import main; sys.exit(main(sys.argv[1:]))")
+
+KIB = 1024
+"""Linux tells memory in these."""
 
 FILES: Mapping[str, str] = {
     "any-time.toml": '[regulator]\ncommands = "any_time"\n',
@@ -68,14 +70,22 @@ class Options:
 
 
 @dataclass(frozen=True)
+class Taken:
+    """What one run took: seconds of the clock, seconds of the processors with those of its children, and the most
+    memory that one of its processes held, bytes."""
+
+    wall_s: float
+    processor_s: float
+    memory_bytes: int
+
+
+@dataclass(frozen=True)
 class Row:
-    """Seconds of the clock and of the processors (children counted) of one command, by round; of `before` likewise."""
+    """All rounds of one command; `before`: those of the other checkout."""
 
     name: str
-    wall_s: tuple[float, ...]
-    processor_s: tuple[float, ...]
-    before_wall_s: tuple[float, ...]
-    before_processor_s: tuple[float, ...]
+    now: tuple[Taken, ...]
+    before: tuple[Taken, ...]
 
 
 @dataclass(frozen=True)
@@ -87,9 +97,16 @@ class CommandTimes(Findings):
 
     def tables(self) -> Mapping[str, MarkdownTable]:
         """`times`: medians with extremes; the ratio to before is taken round by round."""
-        heads = ("command", "clock, s", "processors, s", "before: clock, s", "clock / before")
+        heads = ("command", "clock, s", "processors, s", "memory, MB", "before: clock, s", "clock / before")
         rows = [
-            (each.name, spread(each.wall_s), spread(each.processor_s), spread(each.before_wall_s), ratio(each))
+            (
+                each.name,
+                spread([taken.wall_s for taken in each.now]),
+                spread([taken.processor_s for taken in each.now]),
+                f"{max(taken.memory_bytes for taken in each.now) / 1e6:.0f}",
+                spread([taken.wall_s for taken in each.before]),
+                spread([now.wall_s / before.wall_s for now, before in zip(each.now, each.before, strict=False)]),
+            )
             for each in self.rows
         ]
         return {"times": table("Whole commands, as processes", heads, rows)}
@@ -99,7 +116,7 @@ class CommandTimes(Findings):
         return (self.machine.sentence,)
 
 
-def spread(seconds: tuple[float, ...]) -> str:
+def spread(seconds: Sequence[float]) -> str:
     """'8.2 (8.1 to 8.3, n = 3)'."""
     if not seconds:
         return ABSENT
@@ -107,17 +124,12 @@ def spread(seconds: tuple[float, ...]) -> str:
     return f"{middle} ({low} to {high}, n = {len(seconds)})"
 
 
-def ratio(row: Row) -> str:
-    """This one's time over that of before, round by round."""
-    return spread(tuple(now / before for now, before in zip(row.wall_s, row.before_wall_s, strict=False)))
-
-
 def run(options: Options, tell: Tell) -> CommandTimes:
     """Fill the caches by one round that counts for nothing, then time the rounds."""
     machine = this_machine()
     chosen = [each for each in ORDERS if not options.commands or each.name in options.commands]
     programs = {"now": PROGRAM} | ({"before": (str(options.before), *PROGRAM[1:])} if options.before else {})
-    seconds: dict[tuple[str, str], list[tuple[float, float]]] = {
+    found: dict[tuple[str, str], list[Taken]] = {
         (which, each.name): [] for which in ("now", "before") for each in chosen
     }
     with TemporaryDirectory() as folder:
@@ -129,39 +141,32 @@ def run(options: Options, tell: Tell) -> CommandTimes:
                     if turn == 0 and order.cold:
                         continue
                     taken = timed(program, order, Path(folder), which)
-                    tell(f"round {turn}, {which}: {order.name}: {taken[0]:.1f} s")
-                    seconds[which, order.name] += [taken] * (turn > 0)
-    return CommandTimes(machine, tuple(row_of(each.name, seconds) for each in chosen))
+                    tell(f"round {turn}, {which}: {order.name}: {taken.wall_s:.1f} s")
+                    found[which, order.name] += [taken] * (turn > 0)
+    rows = (
+        Row(each.name, tuple(found["now", each.name]), tuple(found.get(("before", each.name), ()))) for each in chosen
+    )
+    return CommandTimes(machine, tuple(rows))
 
 
-def row_of(name: str, seconds: Mapping[tuple[str, str], list[tuple[float, float]]]) -> Row:
-    """All rounds of one command."""
-    now, before = (seconds[which, name] for which in ("now", "before"))
-    columns = [tuple(taken[place] for taken in rounds) for rounds in (now, before) for place in (0, 1)]
-    return Row(name, *columns)
-
-
-def timed(program: tuple[str, ...], order: Order, folder: Path, which: str) -> tuple[float, float]:
-    """Seconds of the clock and of the processors of one run; `RuntimeError` where it is refused."""
-    with TemporaryDirectory(dir=folder) as fresh:
+def timed(program: tuple[str, ...], order: Order, folder: Path, which: str) -> Taken:
+    """One run; `RuntimeError` where it is refused."""
+    with TemporaryDirectory(dir=folder) as fresh, TemporaryFile() as said:
         cache = Path(fresh if order.cold else folder, f"cache-{which}")
         environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
         environment |= {"RETARDER_SYNTH_CACHE": str(cache), VARIABLE: "1" if order.plain else "0"}
-        began, used = time.monotonic(), processors_s()
-        ran = subprocess.run(
+        began = time.monotonic()
+        ran = subprocess.Popen(
             [*program, *order.words, "-o", str(Path(fresh, "out"))],
-            cwd=folder, env=environment, capture_output=True, text=True, check=False,
+            cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=said,
         )  # fmt: skip
-        taken = time.monotonic() - began, processors_s() - used
-    if ran.returncode not in (0, 1):
-        raise RuntimeError(f"{order.name} ended with {ran.returncode}: {ran.stderr}")
+        _, status, used = os.wait4(ran.pid, 0)  # tells of this run alone what it and its children used
+        taken = Taken(time.monotonic() - began, used.ru_utime + used.ru_stime, used.ru_maxrss * KIB)
+        ran.returncode = os.waitstatus_to_exitcode(status)
+        if ran.returncode not in (0, 1):
+            said.seek(0)
+            raise RuntimeError(f"{order.name} ended with {ran.returncode}: {said.read().decode()}")
     return taken
-
-
-def processors_s() -> float:
-    """Seconds that ended children have taken of all processors."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
 
 
 METHOD = Method(Options, Options(rounds=1, commands=("tune, one coarse case",)), CommandTimes, run)

@@ -202,6 +202,13 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "scripts.studies.in_the_loop.loop_study",
     ),
     Study(
+        "solver-growth",
+        "How does the time of solving grow with classes, targets, nodes, speeds and scenarios?",
+        240.0,
+        "speed.md",
+        "scripts.studies.benchmark.growth",
+    ),
+    Study(
         "structure",
         "Do the named parts of the loop, run one by one as they are wired, give the simulator's pass?",
         20.0,
