@@ -1,7 +1,7 @@
 """Pneumatics against closed forms and quadrature; the delays of zhukovitsky-2012; the hunting regulator."""
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -113,6 +113,13 @@ def test_a_change_that_ends_at_a_sample_is_over_there_however_it_rounds(period_s
     position = RetarderPosition("x", ((0.0, 3.0),), (0.0, 300.0), PressingForce(0.03, 50.0), drive, 6.0)
     actuator = stage_locked_actuator(position, DopplerSensor(0.05, 0.0, period_s, 0.0), 1, 1)
     assert actuator.change(0, 1) == (1, samples)
+
+
+def test_a_slow_day_makes_every_time_longer_and_nothing_else() -> None:
+    drive = replace(DRIVE, closing_delay_s=0.01, day_spread=0.5)
+    slower = {name: value * math.exp(0.5 * 2.0) for name, value in asdict(drive).items() if name.endswith("_s")}
+    assert drive.on_day(2.0) == replace(drive, **slower, day_spread=0.0)
+    assert drive.on_day(0.0) == replace(drive, day_spread=0.0)
 
 
 def test_a_closing_delay_overshoots_by_delay_times_slope() -> None:
