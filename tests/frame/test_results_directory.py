@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import random
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -306,3 +307,25 @@ def test_a_disk_that_keeps_other_bytes_is_found_before_the_file_has_its_name(
     with pytest.raises(OSError, match="does not read back"):
         run(tmp_path, {"tables/a.json": b"abc"})
     assert not (tmp_path / "tables" / "a.json").exists()
+
+
+def test_the_marker_is_on_the_disk_before_a_file_has_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else a machine that stops would leave a file of the command that the marker does not know."""
+    synced: set[int] = set()
+    to_disk, naming = os.fsync, os.replace
+
+    def sync(descriptor: int) -> None:
+        to_disk(descriptor)
+        if os.fstat(descriptor).st_ino == (tmp_path / MARKER).stat().st_ino:
+            synced.add((tmp_path / MARKER).stat().st_size)
+
+    def name(source: Path, target: Path) -> None:
+        if target.name != MARKER:
+            assert (tmp_path / MARKER).stat().st_size in synced
+        naming(source, target)
+
+    with results_directory(tmp_path, "tune") as results:
+        monkeypatch.setattr(os, "fsync", sync)
+        monkeypatch.setattr(os, "replace", name)
+        results.write("tables/a.json", b"abc")
+        results.store("units/b", b"abc")
