@@ -173,7 +173,7 @@ def test_numbers_that_no_controller_can_hold_are_refused(table: ControllerTable,
 
 @pytest.mark.parametrize("steps", [(2, 2), (2, 9999), (9999, 2)])
 def test_lines_too_near_to_be_interpolated_are_refused(table: ControllerTable, steps: tuple[int, int]) -> None:
-    """One narrow gap is enough, of the slower table or of the faster; what is needed covers three roundings a number."""
+    """One narrow gap is enough, whichever table has it; and what is needed covers three roundings of a number."""
 
     def thin(target: float, steps: int) -> ControllerTable:
         low, high = target + 1.0, float(np.float32(target + 1.0 + steps * 2.0**-22))  # float32 steps from 2 to 4
