@@ -29,6 +29,7 @@ from synth.frame.summary import plain, rows_of
 from synth.frame.told import Told
 from tests.frame.results import results_in
 from tests.frame.small_command import COMMAND, CoinOptions
+from tuning_tables.canonical import canonical_json
 
 LISTED = Listed(
     "throw coins",
@@ -153,6 +154,12 @@ def test_no_medium_tells_of_what_is_not_a_number() -> None:
     assert {column.text(row) for row in table.rows} == {ABSENT}
     assert to_csv(table).splitlines()[1:] == to_csv(Table("cases", "Cases", (column,), [{}, {}])).splitlines()[1:]
     assert plain(rows_of(table)) == [{"rms": None}] * 2
+
+
+@pytest.mark.parametrize("number", [2**53, 2**53 + 1, -(2**53) - 1, 10**40])
+def test_a_whole_number_is_exact_in_json(number: int) -> None:
+    told = json.loads(canonical_json(plain({"seed": number})))["seed"]
+    assert (int(told), isinstance(told, int)) == (number, number == 2**53)
 
 
 @given(value=st.floats(0.1, 2.0), below=st.floats(0.0, 1.0), above=st.floats(0.0, 1.0))

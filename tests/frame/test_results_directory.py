@@ -221,6 +221,16 @@ def test_stored_results_are_replaced_where_they_are_damaged(tmp_path: Path) -> N
         results.store("units/b", b"ours")
 
 
+def test_what_is_below_a_folder_has_its_name_before_the_slash(tmp_path: Path) -> None:
+    names = ("tables/a.json", "tables/deep/b.json")
+    run(tmp_path, dict.fromkeys([*names, "tables-of-others/c.json", "tables.csv", "deep/tables/d.json"], b"x"))
+    with results_directory(tmp_path, "tune") as results:
+        assert results.names_below("tables") == names
+        results.write(names[1], b"y")
+        results.write("tables.csv", b"y")
+        assert [*results.written_below("tables")] == ["deep/b.json"]
+
+
 def test_a_directory_is_held_by_one_command(tmp_path: Path) -> None:
     with results_directory(tmp_path, "tune"), refused("another tune is writing there"):
         run(tmp_path, {}, "tune")
