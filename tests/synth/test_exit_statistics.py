@@ -34,6 +34,8 @@ def test_figures_of_a_sample() -> None:
 def test_quantiles_and_zero_error() -> None:
     figures = exit_statistics(sample_of(3.0 + np.arange(1001) / 10_000), 3.0)
     assert (figures.p95_m_s, figures.p99_m_s) == pytest.approx((0.095, 0.099))
+    least = exit_statistics(sample_of(3.0 + np.arange(200) / 1024), 3.0)  # that so many of them do not exceed
+    assert (least.p95_m_s, least.p99_m_s) == pytest.approx((189 / 1024, 197 / 1024))
     exact = exit_statistics(sample_of(np.full(200, 3.0)), 3.0)
     assert exact.rms_ci95_m_s == (0.0, 0.0)
 
