@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import random
@@ -58,7 +59,8 @@ def test_a_new_or_empty_directory_is_taken_and_taken_again(tmp_path: Path) -> No
 
 
 def test_a_directory_with_a_file_of_somebody_else_is_refused(tmp_path: Path) -> None:
-    for name in ("survey.csv", "inputs/deep/survey.csv", ".hidden"):
+    unfinished = f".a.json.{'0' * 16}.part"
+    for name in ("survey.csv", "inputs/deep/survey.csv", ".hidden", unfinished):
         path = tmp_path / name.replace("/", "-")
         (path / name).parent.mkdir(parents=True)
         (path / name).write_bytes(b"precious")
@@ -66,6 +68,11 @@ def test_a_directory_with_a_file_of_somebody_else_is_refused(tmp_path: Path) -> 
             run(path, {"tables/a.json": b"a"})
         assert files(path) == {name: b"precious"}
         assert not (path / MARKER).exists()
+    killed_at_once = tmp_path / "killed"
+    killed_at_once.mkdir()
+    (killed_at_once / unfinished.replace(".a.json", f".{MARKER}")).touch()
+    run(killed_at_once, {"a.json": b"a"})
+    assert files(killed_at_once) == {"a.json": b"a", "summary.json": SUMMARY}
 
 
 def test_results_of_another_command_are_refused_but_may_lie_below(tmp_path: Path) -> None:
@@ -104,14 +111,29 @@ def test_what_a_user_changes_is_refused_before_anything_is_written(tmp_path: Pat
     assert files(tmp_path) == {"config.toml": b"a = 3", "summary.json": SUMMARY}
 
 
+def test_what_a_user_changes_during_a_run_is_known_to_the_next(tmp_path: Path) -> None:
+    run(tmp_path, {"a.csv": b"a"})
+    with results_directory(tmp_path, "tune"):
+        (tmp_path / "a.csv").write_bytes(b"mine")
+    with refused(str(tmp_path / "a.csv"), "it was changed after retarder-synth wrote it"):
+        run(tmp_path, {"a.csv": b"b"})
+    (tmp_path / "a.csv").write_bytes(b"a")
+    run(tmp_path, {"a.csv": b"b"})
+    assert files(tmp_path) == {"a.csv": b"b", "summary.json": SUMMARY}
+
+
 def test_what_a_command_reads_it_does_not_write(tmp_path: Path) -> None:
     run(tmp_path, {"book.h5": b"book", "inputs/a.toml": b"a"})
     before = files(tmp_path)
     link = tmp_path.parent / f"{tmp_path.name}-link.h5"
     link.symlink_to(tmp_path / "book.h5")
-    for read in (tmp_path / "book.h5", tmp_path / "inputs" / ".." / "book.h5", link):
-        with refused(str(tmp_path / "book.h5"), "this run reads it and would write or remove it"):
-            run(tmp_path, {}, reads=(read,))
+    reads = (tmp_path / "book.h5", tmp_path / "inputs" / ".." / "book.h5", link)
+    for read, inputs in itertools.product(reads, ("", "inputs")):
+        with (
+            refused(str(tmp_path / "book.h5"), "this run reads it and would write or remove it"),
+            results_directory(tmp_path, "tune", [read], inputs),
+        ):
+            pytest.fail("it is held")
         assert files(tmp_path) == before
 
 

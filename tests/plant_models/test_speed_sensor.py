@@ -1,6 +1,8 @@
 """A speed sensor is one whose readings are numbers."""
 
 import math
+from collections.abc import Callable, Mapping
+from typing import Final
 
 import pytest
 
@@ -22,7 +24,7 @@ def test_no_other_resolution(resolution_m_s: float) -> None:
         DopplerSensor(0.05, resolution_m_s, 0.1, 0.02)
 
 
-NOTHING_OR_FROM = {
+NOTHING_OR_FROM: Final[Mapping[str, tuple[float, Callable[[float], object]]]] = {
     "sensor: resolution_m_s": (FINEST_RESOLUTION_M_S, lambda number: DopplerSensor(0.05, number, 0.1, 0.02)),
     "sensor: missed_burst_s": (0.1, lambda number: DopplerSensor(0.05, 0.0, 0.1, 0.02, 0.1 * (number > 0.0), number)),
     "regulator: approach_m": (SHORTEST_APPROACH_M, Approach),

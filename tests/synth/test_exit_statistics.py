@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,9 +50,8 @@ def test_every_interval_holds_its_figure_and_that_of_a_mean_is_students() -> Non
     assert len(intervals) == 8
     for name, (low, high) in intervals.items():
         assert low < figures[name] < high, name
-    errors = sample.exit_speed_m_s - 3.0
-    means = {"bias_m_s": errors, "switchings": sample.switchings, "time_s": sample.transit_time_s}
-    for name, values in means.items():
+    means: dict[str, NDArray[Any]] = {"switchings": sample.switchings, "time_s": sample.transit_time_s}
+    for name, values in {"bias_m_s": sample.exit_speed_m_s - 3.0, **means}.items():
         groups = values.reshape(5, 100).mean(axis=1)
         student = stats.t.interval(0.95, 4, groups.mean(), stats.sem(groups))
         assert intervals[name] == pytest.approx(student), name

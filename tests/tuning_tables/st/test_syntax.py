@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import pytest
 
@@ -141,12 +142,10 @@ def test_as_many_tables_as_are_allowed_are_exported_and_no_more(
     small_book: TableBook, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     passages = PassageBook((passage_table(stages=2),))
-    for module, tables, export in (
-        (st_source, small_book.tables, lambda: line_export(small_book, self_test=SMALL)),
-        (passage_st_source, passages.tables, lambda: passage_export(passages, self_test=SMALL)),
-    ):
-        monkeypatch.setattr(module, "MOST_TABLES", len(tables))
-        assert export()
-        monkeypatch.setattr(module, "MOST_TABLES", len(tables) - 1)
-        with pytest.raises(InvalidTable, match=f"{len(tables)} tables, .*at most {len(tables) - 1}"):
-            export()
+    of_lines, of_passages = (partial(line_export, small_book), partial(passage_export, passages))
+    for module, tables, export in ((st_source, 2, of_lines), (passage_st_source, 1, of_passages)):
+        monkeypatch.setattr(module, "MOST_TABLES", tables)
+        assert export(self_test=SMALL)
+        monkeypatch.setattr(module, "MOST_TABLES", tables - 1)
+        with pytest.raises(InvalidTable, match=f"{tables} tables, .*at most {tables - 1}"):
+            export(self_test=SMALL)
