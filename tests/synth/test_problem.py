@@ -1,17 +1,46 @@
-"""How fine the grids are, by what they are for."""
+"""Which problems are taken, and how fine the grids are, by what they are for."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from plant_models import Friction, PlantError
+from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import LARGE_SPREAD_M_S, design_resolution
+from synth.problem.criterion import Criterion
 from synth.problem.estimator_resolution import design_error_m_s, estimator_resolution
+from synth.problem.problem import Problem
+from synth.problem.requirement import FrictionRange
 from synth.problem.resolution import Resolution, finer_for_check
 from tests.synth.case_factory import make_plant
+
+
+def test_a_target_is_below_the_highest_entry_speed() -> None:
+    plant = make_plant(22.0, 3)
+    highest_m_s = plant.entry.high_m_s
+    assert Problem(plant, Aim(math.nextafter(highest_m_s, 0.0))).target_speed_m_s < highest_m_s
+    with pytest.raises(PlantError, match="there is nothing to brake"):
+        Problem(plant, Aim(highest_m_s))
+
+
+@pytest.mark.parametrize("cv", [0.1, 0.3])
+def test_a_worst_case_is_one_that_the_grid_covers(cv: float) -> None:
+    """Four standard deviations of the friction of a cut on both sides, as the plant draws it."""
+    plant = replace(make_plant(22.0, 3), friction=Friction(cv, 0.0, 0.1, 2.0))
+    low, high = (float(factor) for factor in plant.friction.cut_factor(np.array([-4.0, 4.0]), plant.friction_cv))
+
+    def problem(least: float, most: float) -> Problem:
+        return Problem(plant, Aim(3.0, Criterion(requirement=FrictionRange(least, most))))
+
+    assert problem(low, high).criterion.requirement == FrictionRange(low, high)
+    for least, most in ((math.nextafter(low, 0.0), high), (low, math.nextafter(high, 9.0))):
+        with pytest.raises(PlantError, match="the friction of this cut is modelled from"):
+            problem(least, most)
 
 
 def test_a_table_is_predicted_with_half_of_both_steps() -> None:
