@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import itertools
 import json
 import os
@@ -12,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from synth.frame.held_directory import held, is_held
 from synth.frame.input_error import InputError
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import ResultsDirectory, results_directory
@@ -259,6 +261,16 @@ def test_a_directory_is_held_by_one_command(tmp_path: Path) -> None:
     with results_directory(tmp_path, "tune"), refused("another tune is writing there"):
         run(tmp_path, {}, "aim")
     run(tmp_path, {})
+
+
+def test_who_only_asks_is_not_taken_for_a_run(tmp_path: Path) -> None:
+    asking = os.open(tmp_path, os.O_RDONLY)
+    fcntl.flock(asking, fcntl.LOCK_SH)
+    assert not is_held(tmp_path)
+    os.close(asking)
+    with held(tmp_path) as descriptor:
+        assert descriptor is not None
+        assert is_held(tmp_path)
 
 
 def test_what_is_no_directory_is_refused(tmp_path: Path) -> None:

@@ -17,6 +17,8 @@ from synth.problem.estimator_resolution import design_error_m_s, estimator_resol
 from synth.problem.problem import Problem
 from synth.problem.requirement import FrictionRange
 from synth.problem.resolution import Resolution, finer_for_check
+from synth.solver.chain import grid
+from synth.solver.chain.grid import memory_estimate_bytes, require_memory
 from tests.synth.case_factory import make_plant
 
 
@@ -74,3 +76,13 @@ def test_no_cell_is_wider_than_the_error_of_the_estimate(lowest_m_s: float, nois
     widest_m_s = found.speed_step_m_s * usual.reference_speed_m_s / slowest_m_s
     usual_m_s = usual.speed_step_m_s * usual.reference_speed_m_s / slowest_m_s
     assert widest_m_s == pytest.approx(min(usual_m_s, design_error_m_s(sensor)))
+
+
+def test_solves_may_take_four_fifths_of_the_free_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    plant, grids = make_plant(22.0, 3), (Resolution(), finer_for_check(Resolution()))
+    needed = 2 * memory_estimate_bytes(plant, grids)
+    monkeypatch.setattr(grid, "available_memory_bytes", lambda: int(needed / 0.79))
+    require_memory("gondola", plant, grids, 2)
+    monkeypatch.setattr(grid, "available_memory_bytes", lambda: int(needed / 0.81))
+    with pytest.raises(PlantError, match="solving gondola would take about"):
+        require_memory("gondola", plant, grids, 2)
