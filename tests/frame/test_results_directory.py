@@ -2,48 +2,16 @@
 
 from __future__ import annotations
 
-import fcntl
 import itertools
-import json
-import os
 import random
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
-from synth.frame.held_directory import held, is_held
 from synth.frame.input_error import InputError
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import ResultsDirectory, results_directory
-
-SUMMARY = b"{}"
-
-
-def run(
-    path: Path, contents: dict[str, bytes], command: str = "tune", reads: tuple[Path, ...] = (), inputs: str = ""
-) -> None:
-    """A whole run that writes `contents`."""
-    with results_directory(path, command, reads, inputs) as results:
-        results.write_all(contents)
-        results.finish(SUMMARY)
-
-
-def files(path: Path) -> dict[str, bytes]:
-    """All files but the marker."""
-    found = {file.relative_to(path).as_posix(): file for file in path.rglob("*") if file.is_file()}
-    return {name: file.read_bytes() for name, file in found.items() if name != MARKER}
-
-
-@contextmanager
-def refused(*words: str) -> Iterator[None]:
-    """Within, a refusal in one sentence that holds all of `words`."""
-    with pytest.raises(InputError) as caught:
-        yield
-    assert len(caught.value.sentences) == 1
-    for word in words:
-        assert word in str(caught.value)
+from tests.frame.results import SUMMARY, files, refused, run
 
 
 class Killed(BaseException):
@@ -174,57 +142,6 @@ def test_a_killed_run_leaves_no_summary_and_is_known_to_the_next(tmp_path: Path)
     assert files(tmp_path).keys() == {"b", "summary.json", f"c/.e.{'0' * 16}.part"}
 
 
-def test_a_line_that_was_torn_makes_a_file_a_strangers(tmp_path: Path) -> None:
-    run(tmp_path, {"a": b"a", "b": b"b"})
-    marker = tmp_path / MARKER
-    content = marker.read_bytes()
-    marker.write_bytes(content[: content.index(b'["summary.json"')] + b'["summary.json","12')
-    with refused(str(tmp_path / "summary.json"), "did not write it"):
-        run(tmp_path, {"c": b"c"})
-    assert files(tmp_path) == {"c": b"c", "summary.json": SUMMARY}
-    (tmp_path / "summary.json").unlink()
-    run(tmp_path, {"c": b"c"})
-    assert files(tmp_path) == {"c": b"c", "summary.json": SUMMARY}
-
-
-def test_a_marker_that_is_none_marks_nothing(tmp_path: Path) -> None:
-    for content in (b"", b"notes of mine", b'{"format": "retarder-synth-results"}\n', b"[" * 100_000, b"\xff\xfe"):
-        (tmp_path / MARKER).write_bytes(content)
-        with refused(MARKER, "did not write"):
-            run(tmp_path, {"a": b"a"})
-        assert (tmp_path / MARKER).read_bytes() == content
-
-
-def test_a_marker_of_somebody_else_reaches_nothing_outside(tmp_path: Path) -> None:
-    """It lists files elsewhere as results that may have any content."""
-    users = tmp_path / "users"
-    users.mkdir()
-    (users / "a").write_bytes(b"precious")
-    out = tmp_path / "out"
-    run(out, {"b": b"b"})
-    (out / "link").symlink_to(users)
-    (out / "file").symlink_to(users / "a")
-    (out / "loop").symlink_to(out / "loop")
-    names = ("../users/a", str(users / "a"), "link/a", "file", "loop", "loop/a", "a\0b", "c/../../users/a")
-    with (out / MARKER).open("ab") as marker:
-        marker.write(b"".join(json.dumps([name, "changes"]).encode() + b"\n" for name in names))
-    run(out, {"c": b"c"})
-    assert files(users) == {"a": b"precious"}
-    for name in ("link/a", "file"):
-        with refused("did not write it"):
-            run(out, {name: b"ours"})
-    assert files(users) == {"a": b"precious"}
-
-
-def test_the_same_run_leaves_the_same_marker(tmp_path: Path) -> None:
-    markers = []
-    for name, names in (("first", "abc"), ("second", "cab")):
-        run(tmp_path / name, {each: each.encode() for each in names})
-        run(tmp_path / name, {each: each.encode() for each in reversed(names)})
-        markers.append((tmp_path / name / MARKER).read_bytes())
-    assert markers[0] == markers[1]
-
-
 def test_stored_results_are_replaced_where_they_are_damaged(tmp_path: Path) -> None:
     with results_directory(tmp_path, "sweep") as results:
         results.store("units/a", b"sealed")
@@ -252,24 +169,6 @@ def test_what_is_below_a_folder_has_its_name_before_the_slash(tmp_path: Path) ->
         results.write(names[1], b"y")
         results.write("tables.csv", b"y")
         assert [*results.written_below("tables")] == ["deep/b.json"]
-
-
-def test_a_directory_is_held_by_one_command(tmp_path: Path) -> None:
-    with results_directory(tmp_path, "tune"), refused("another tune is writing there"):
-        run(tmp_path, {}, "tune")
-    with results_directory(tmp_path, "tune"), refused("another tune is writing there"):
-        run(tmp_path, {}, "aim")
-    run(tmp_path, {})
-
-
-def test_who_only_asks_is_not_taken_for_a_run(tmp_path: Path) -> None:
-    asking = os.open(tmp_path, os.O_RDONLY)
-    fcntl.flock(asking, fcntl.LOCK_SH)
-    assert not is_held(tmp_path)
-    os.close(asking)
-    with held(tmp_path) as descriptor:
-        assert descriptor is not None
-        assert is_held(tmp_path)
 
 
 def test_what_is_no_directory_is_refused(tmp_path: Path) -> None:
@@ -350,25 +249,3 @@ def test_a_disk_that_keeps_other_bytes_is_found_before_the_file_has_its_name(
     with pytest.raises(OSError, match="does not read back"):
         run(tmp_path, {"tables/a.json": b"abc"})
     assert not (tmp_path / "tables" / "a.json").exists()
-
-
-def test_the_marker_is_on_the_disk_before_a_file_has_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Else a machine that stops would leave a file of the command that the marker does not know."""
-    synced: set[int] = set()
-    to_disk, naming = os.fsync, os.replace
-
-    def sync(descriptor: int) -> None:
-        to_disk(descriptor)
-        if os.fstat(descriptor).st_ino == (tmp_path / MARKER).stat().st_ino:
-            synced.add((tmp_path / MARKER).stat().st_size)
-
-    def name(source: Path, target: Path) -> None:
-        if target.name != MARKER:
-            assert (tmp_path / MARKER).stat().st_size in synced
-        naming(source, target)
-
-    with results_directory(tmp_path, "tune") as results:
-        monkeypatch.setattr(os, "fsync", sync)
-        monkeypatch.setattr(os, "replace", name)
-        results.write("tables/a.json", b"abc")
-        results.store("units/b", b"abc")
