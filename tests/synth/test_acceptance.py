@@ -183,14 +183,12 @@ def test_a_book_that_the_passes_cannot_judge_says_so() -> None:
     assert advice_of(judged([honest_case()], of)) == ("Try a larger validation.passes where a limit is not decidable.")
 
 
-@pytest.mark.parametrize("rms_m_s", [0.095, 0.105])
-def test_a_miss_does_not_count_where_the_passes_cannot_tell_whether_the_case_is_feasible(rms_m_s: float) -> None:
+def test_a_miss_does_not_count_where_the_passes_cannot_tell_whether_the_case_is_feasible() -> None:
     bad = make_case("gondola-85t", 2.0, spread=0.15)
-    unsure = replace(bad, unavoidable=UnavoidableError(rms_m_s, (0.09, 0.11), True))
+    unsure = replace(bad, unavoidable=UnavoidableError(0.1, (0.09, 0.11), True))
     (limit,) = limits(honest_case(), unsure)
     assert limit.kept is None
-    end = "[0.0900, 0.1100] m/s, too near to the limit to tell whether the case is feasible"
-    assert f"{rms_m_s:.4f} {end}" in limit.sentence
+    assert "0.1000 [0.0900, 0.1100] m/s, too near to the limit to tell whether the case is feasible" in limit.sentence
 
 
 def test_overspeed_is_counted_beyond_the_configured_margin() -> None:
