@@ -45,6 +45,6 @@ def test_a_predicted_rms_may_be_off_as_far_as_the_configuration_allows(
         p_overspeed=0.0,
         p_stall=None,
     )
-    found = list(simulated_faults(claims, sure_figures(), Honesty(0.8, 1.3)))  # type: ignore[arg-type]  # the figures
+    found = list(simulated_faults(claims, sure_figures(), Honesty(0.8, 1.3)))
     assert len(found) == bool(told)
     assert all(sentence.startswith("the predicted rms is") and told in sentence for sentence in found)
