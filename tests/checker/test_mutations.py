@@ -149,3 +149,8 @@ def test_a_senseless_table_is_damaged(tuned: Path, change: Callable[[Document], 
     table = alone(tuned)
     rewrite(table, change)
     assert found(look(table), Kind.DAMAGED, words)
+
+
+def test_a_table_of_another_configuration_is_found(tuned: Path) -> None:
+    rewrite(alone(tuned), lambda document: document["generator"].update(config_sha256="0" * 64))
+    assert found(look(tuned), Kind.DISAGREES, "it was made from another configuration than summary.json tells")

@@ -11,14 +11,17 @@ from typing import Any
 
 import pytest
 import typer
+from hypothesis import assume, given
+from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from plant_models import PlantError
 from synth.frame.asked_file import asked_of
 from synth.frame.command import Verdict
 from synth.frame.command_line import Listed, add_listed, listed_group
-from synth.frame.exhibits import Chapter, Column, Table
+from synth.frame.exhibits import Chapter, Column, Table, brief_value
 from synth.frame.input_error import InputError
+from synth.frame.interval import Interval
 from synth.frame.page.told_page import shown
 from synth.frame.printed_numbers import ABSENT
 from synth.frame.sheet import to_csv
@@ -26,6 +29,7 @@ from synth.frame.summary import plain, rows_of
 from synth.frame.told import Told
 from tests.frame.results import results_in
 from tests.frame.small_command import COMMAND, CoinOptions
+from tuning_tables.canonical import canonical_json
 
 LISTED = Listed(
     "throw coins",
@@ -150,6 +154,19 @@ def test_no_medium_tells_of_what_is_not_a_number() -> None:
     assert {column.text(row) for row in table.rows} == {ABSENT}
     assert to_csv(table).splitlines()[1:] == to_csv(Table("cases", "Cases", (column,), [{}, {}])).splitlines()[1:]
     assert plain(rows_of(table)) == [{"rms": None}] * 2
+
+
+@pytest.mark.parametrize("number", [2**53, 2**53 + 1, -(2**53) - 1, 10**40])
+def test_a_whole_number_is_exact_in_json(number: int) -> None:
+    told = json.loads(canonical_json(plain({"seed": number})))["seed"]
+    assert (int(told), isinstance(told, int)) == (number, number == 2**53)
+
+
+@given(value=st.floats(0.1, 2.0), below=st.floats(0.0, 1.0), above=st.floats(0.0, 1.0))
+def test_a_brief_interval_reaches_as_far_as_the_whole_one(value: float, below: float, above: float) -> None:
+    assume(max(below, above) > 0.001)
+    told = brief_value(Interval(value, value - below, value + above, 9), "{:.3f}".format)
+    assert float(told.partition(" ±")[2]) == pytest.approx(max(below, above), abs=0.00051)
 
 
 def test_a_long_table_is_named_on_the_page_and_not_shown() -> None:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
+import itertools
 import random
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -13,31 +11,7 @@ import pytest
 from synth.frame.input_error import InputError
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import ResultsDirectory, results_directory
-
-SUMMARY = b"{}"
-
-
-def run(path: Path, contents: dict[str, bytes], command: str = "tune", reads: tuple[Path, ...] = ()) -> None:
-    """A whole run that writes `contents`."""
-    with results_directory(path, command, reads) as results:
-        results.write_all(contents)
-        results.finish(SUMMARY)
-
-
-def files(path: Path) -> dict[str, bytes]:
-    """All files but the marker."""
-    found = {file.relative_to(path).as_posix(): file for file in path.rglob("*") if file.is_file()}
-    return {name: file.read_bytes() for name, file in found.items() if name != MARKER}
-
-
-@contextmanager
-def refused(*words: str) -> Iterator[None]:
-    """Within, a refusal in one sentence that holds all of `words`."""
-    with pytest.raises(InputError) as caught:
-        yield
-    assert len(caught.value.sentences) == 1
-    for word in words:
-        assert word in str(caught.value)
+from tests.frame.results import SUMMARY, files, refused, run
 
 
 class Killed(BaseException):
@@ -57,7 +31,8 @@ def test_a_new_or_empty_directory_is_taken_and_taken_again(tmp_path: Path) -> No
 
 
 def test_a_directory_with_a_file_of_somebody_else_is_refused(tmp_path: Path) -> None:
-    for name in ("survey.csv", "inputs/deep/survey.csv", ".hidden"):
+    unfinished = f".a.json.{'0' * 16}.part"
+    for name in ("survey.csv", "inputs/deep/survey.csv", ".hidden", unfinished):
         path = tmp_path / name.replace("/", "-")
         (path / name).parent.mkdir(parents=True)
         (path / name).write_bytes(b"precious")
@@ -65,6 +40,11 @@ def test_a_directory_with_a_file_of_somebody_else_is_refused(tmp_path: Path) -> 
             run(path, {"tables/a.json": b"a"})
         assert files(path) == {name: b"precious"}
         assert not (path / MARKER).exists()
+    killed_at_once = tmp_path / "killed"
+    killed_at_once.mkdir()
+    (killed_at_once / unfinished.replace(".a.json", f".{MARKER}")).touch()
+    run(killed_at_once, {"a.json": b"a"})
+    assert files(killed_at_once) == {"a.json": b"a", "summary.json": SUMMARY}
 
 
 def test_results_of_another_command_are_refused_but_may_lie_below(tmp_path: Path) -> None:
@@ -103,14 +83,26 @@ def test_what_a_user_changes_is_refused_before_anything_is_written(tmp_path: Pat
     assert files(tmp_path) == {"config.toml": b"a = 3", "summary.json": SUMMARY}
 
 
+def test_what_a_user_changes_during_a_run_is_known_to_the_next(tmp_path: Path) -> None:
+    run(tmp_path, {"a.csv": b"a"})
+    with results_directory(tmp_path, "tune"):
+        (tmp_path / "a.csv").write_bytes(b"mine")
+    with refused(str(tmp_path / "a.csv"), "it was changed after retarder-synth wrote it"):
+        run(tmp_path, {"a.csv": b"b"})
+    (tmp_path / "a.csv").write_bytes(b"a")
+    run(tmp_path, {"a.csv": b"b"})
+    assert files(tmp_path) == {"a.csv": b"b", "summary.json": SUMMARY}
+
+
 def test_what_a_command_reads_it_does_not_write(tmp_path: Path) -> None:
     run(tmp_path, {"book.h5": b"book", "inputs/a.toml": b"a"})
     before = files(tmp_path)
     link = tmp_path.parent / f"{tmp_path.name}-link.h5"
     link.symlink_to(tmp_path / "book.h5")
-    for read in (tmp_path / "book.h5", tmp_path / "inputs" / ".." / "book.h5", link):
+    reads = (tmp_path / "book.h5", tmp_path / "inputs" / ".." / "book.h5", link)
+    for read, inputs in itertools.product(reads, ("", "inputs")):
         with refused(str(tmp_path / "book.h5"), "this run reads it and would write or remove it"):
-            run(tmp_path, {}, reads=(read,))
+            run(tmp_path, {}, reads=(read,), inputs=inputs)
         assert files(tmp_path) == before
 
 
@@ -150,57 +142,6 @@ def test_a_killed_run_leaves_no_summary_and_is_known_to_the_next(tmp_path: Path)
     assert files(tmp_path).keys() == {"b", "summary.json", f"c/.e.{'0' * 16}.part"}
 
 
-def test_a_line_that_was_torn_makes_a_file_a_strangers(tmp_path: Path) -> None:
-    run(tmp_path, {"a": b"a", "b": b"b"})
-    marker = tmp_path / MARKER
-    content = marker.read_bytes()
-    marker.write_bytes(content[: content.index(b'["summary.json"')] + b'["summary.json","12')
-    with refused(str(tmp_path / "summary.json"), "did not write it"):
-        run(tmp_path, {"c": b"c"})
-    assert files(tmp_path) == {"c": b"c", "summary.json": SUMMARY}
-    (tmp_path / "summary.json").unlink()
-    run(tmp_path, {"c": b"c"})
-    assert files(tmp_path) == {"c": b"c", "summary.json": SUMMARY}
-
-
-def test_a_marker_that_is_none_marks_nothing(tmp_path: Path) -> None:
-    for content in (b"", b"notes of mine", b'{"format": "retarder-synth-results"}\n', b"[" * 100_000, b"\xff\xfe"):
-        (tmp_path / MARKER).write_bytes(content)
-        with refused(MARKER, "did not write"):
-            run(tmp_path, {"a": b"a"})
-        assert (tmp_path / MARKER).read_bytes() == content
-
-
-def test_a_marker_of_somebody_else_reaches_nothing_outside(tmp_path: Path) -> None:
-    """It lists files elsewhere as results that may have any content."""
-    users = tmp_path / "users"
-    users.mkdir()
-    (users / "a").write_bytes(b"precious")
-    out = tmp_path / "out"
-    run(out, {"b": b"b"})
-    (out / "link").symlink_to(users)
-    (out / "file").symlink_to(users / "a")
-    (out / "loop").symlink_to(out / "loop")
-    names = ("../users/a", str(users / "a"), "link/a", "file", "loop", "loop/a", "a\0b", "c/../../users/a")
-    with (out / MARKER).open("ab") as marker:
-        marker.write(b"".join(json.dumps([name, "changes"]).encode() + b"\n" for name in names))
-    run(out, {"c": b"c"})
-    assert files(users) == {"a": b"precious"}
-    for name in ("link/a", "file"):
-        with refused("did not write it"):
-            run(out, {name: b"ours"})
-    assert files(users) == {"a": b"precious"}
-
-
-def test_the_same_run_leaves_the_same_marker(tmp_path: Path) -> None:
-    markers = []
-    for name, names in (("first", "abc"), ("second", "cab")):
-        run(tmp_path / name, {each: each.encode() for each in names})
-        run(tmp_path / name, {each: each.encode() for each in reversed(names)})
-        markers.append((tmp_path / name / MARKER).read_bytes())
-    assert markers[0] == markers[1]
-
-
 def test_stored_results_are_replaced_where_they_are_damaged(tmp_path: Path) -> None:
     with results_directory(tmp_path, "sweep") as results:
         results.store("units/a", b"sealed")
@@ -220,12 +161,14 @@ def test_stored_results_are_replaced_where_they_are_damaged(tmp_path: Path) -> N
         results.store("units/b", b"ours")
 
 
-def test_a_directory_is_held_by_one_command(tmp_path: Path) -> None:
-    with results_directory(tmp_path, "tune"), refused("another tune is writing there"):
-        run(tmp_path, {}, "tune")
-    with results_directory(tmp_path, "tune"), refused("another tune is writing there"):
-        run(tmp_path, {}, "aim")
-    run(tmp_path, {})
+def test_what_is_below_a_folder_has_its_name_before_the_slash(tmp_path: Path) -> None:
+    names = ("tables/a.json", "tables/deep/b.json")
+    run(tmp_path, dict.fromkeys([*names, "tables-of-others/c.json", "tables.csv", "deep/tables/d.json"], b"x"))
+    with results_directory(tmp_path, "tune") as results:
+        assert results.names_below("tables") == names
+        results.write(names[1], b"y")
+        results.write("tables.csv", b"y")
+        assert [*results.written_below("tables")] == ["deep/b.json"]
 
 
 def test_what_is_no_directory_is_refused(tmp_path: Path) -> None:

@@ -40,6 +40,8 @@ def test_braked_axles_table_of_the_facts() -> None:
     np.testing.assert_allclose(path_breaks_m(ONE, GONDOLA, FLAT), edges)
     middle = 0.5 * (np.array(edges[1:]) + np.array(edges[:-1]))
     assert braked_axles(ONE, GONDOLA, middle).tolist() == [1, 2, 3, 4, 3, 2, 1]
+    short, pair = position((0.0, 2.0)), Cut("Т", 40.0, (0.0, 1.0), 4)
+    assert braked_axles(short, pair, np.arange(4.0)).tolist() == [1, 2, 1, 0]  # out where the zone ends
     assert ONE.exit_m(GONDOLA) == pytest.approx(LENGTH_M + 10.5)
 
 
@@ -86,8 +88,10 @@ def test_gravity_and_resistance_coefficients() -> None:
 
 def test_grade_is_the_mean_under_the_axles() -> None:
     """First axle past the break, the other three before it: a quarter of the drop is felt."""
-    c = path_coefficients(ONE, GONDOLA, TrackProfile((0.0, 10.0), (8.0, 4.0)), np.array([10.0, 11.0]))
+    profile = TrackProfile((0.0, 10.0), (8.0, 4.0))
+    c = path_coefficients(ONE, GONDOLA, profile, np.array([10.0, 11.0]))
     assert float(c.gravity_m_s2[0]) == pytest.approx(7e-3 * GONDOLA.reduced_gravity_m_s2)
+    assert profile.grade_permille(np.array([-1.0, 0.0, 9.9, 10.0, 99.0])).tolist() == [8.0, 8.0, 8.0, 4.0, 4.0]
 
 
 def test_slope_factor_depends_on_the_number_of_braked_axles() -> None:

@@ -1,7 +1,7 @@
 """Pneumatics against closed forms and quadrature; the delays of zhukovitsky-2012; the hunting regulator."""
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from plant_models import PlantError, Pneumatics, PressureHistory
+from plant_models import DopplerSensor, PlantError, Pneumatics, PressingForce, PressureHistory, RetarderPosition
+from plant_models.stage_regulator import stage_locked_actuator
 from tests.effort import sized
 
 DRIVE = Pneumatics(
@@ -103,6 +104,22 @@ def test_mean_overpressure_is_between_the_extremes_and_additive(
     assert means.max() <= max(0.0, max(start, history.end_kpa) - touch) + 1e-9
     total = history.overpressure_integral(edges[-1:], touch)[0]
     assert (means * np.diff(edges)).sum() == pytest.approx(total, rel=1e-9, abs=1e-9)
+
+
+@given(period_s=st.floats(0.02, 0.1), samples=st.integers(2, 40))
+def test_a_change_that_ends_at_a_sample_is_over_there_however_it_rounds(period_s: float, samples: int) -> None:
+    fill_s = samples * period_s / math.log((700.0 - 15.0) / (700.0 - 285.0))
+    drive = replace(DRIVE, brake_delay_s=0.0, touch_delay_s=0.0, fill_time_constant_s=fill_s)
+    position = RetarderPosition("x", ((0.0, 3.0),), (0.0, 300.0), PressingForce(0.03, 50.0), drive, 6.0)
+    actuator = stage_locked_actuator(position, DopplerSensor(0.05, 0.0, period_s, 0.0), 1, 1)
+    assert actuator.change(0, 1) == (1, samples)
+
+
+def test_a_slow_day_makes_every_time_longer_and_nothing_else() -> None:
+    drive = replace(DRIVE, closing_delay_s=0.01, day_spread=0.5)
+    slower = {name: value * math.exp(0.5 * 2.0) for name, value in asdict(drive).items() if name.endswith("_s")}
+    assert drive.on_day(2.0) == replace(drive, **slower, day_spread=0.0)
+    assert drive.on_day(0.0) == replace(drive, day_spread=0.0)
 
 
 def test_a_closing_delay_overshoots_by_delay_times_slope() -> None:

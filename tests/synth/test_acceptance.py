@@ -71,8 +71,10 @@ def test_what_is_to_be_changed_follows_from_what_is_asked_for_and_what_is_missed
     assert judge_case(honest_case(), LIMITS).advice == ()
     assert judge_case(honest_case(feasible=False), LIMITS).advice == ()
     slow = replace(honest_case(), table=replace(honest_case().table, predicted=Predicted(0.5, 0.0, 0.0, 9.0)))
-    verdict = judge_case(slow, LIMITS)
-    assert (verdict.word, verdict.advice) == ("missed", ())  # another limit than that of the rms
+    unsure = replace(slow, statistics=replace(slow.statistics, rms_ci95_m_s=(0.04, 0.2)))
+    for case in (slow, unsure):
+        verdict = judge_case(case, LIMITS)
+        assert (verdict.word, verdict.advice) == ("missed", ())  # another limit than that of the rms
 
 
 def test_a_tuned_law_that_keeps_the_limit_shows_that_the_position_can() -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,8 +35,26 @@ def test_figures_of_a_sample() -> None:
 def test_quantiles_and_zero_error() -> None:
     figures = exit_statistics(sample_of(3.0 + np.arange(1001) / 10_000), 3.0)
     assert (figures.p95_m_s, figures.p99_m_s) == pytest.approx((0.095, 0.099))
+    least = exit_statistics(sample_of(3.0 + np.arange(200) / 1024), 3.0)  # that so many of them do not exceed
+    assert (least.p95_m_s, least.p99_m_s) == pytest.approx((189 / 1024, 197 / 1024))
     exact = exit_statistics(sample_of(np.full(200, 3.0)), 3.0)
     assert exact.rms_ci95_m_s == (0.0, 0.0)
+
+
+def test_every_interval_holds_its_figure_and_that_of_a_mean_is_students() -> None:
+    rng = np.random.default_rng(8)
+    sample = replace(sample_of(3.0 + 0.2 * rng.standard_normal(500)), switchings=rng.integers(1, 9, 500, np.int32))
+    sample = replace(sample, stalled=rng.random(500) < 0.1, transit_time_s=rng.normal(9.0, 1.0, 500))
+    figures = asdict(exit_statistics(sample, 3.0))
+    intervals = {name.replace("_ci95", ""): ends for name, ends in figures.items() if "_ci95" in name}
+    assert len(intervals) == 8
+    for name, (low, high) in intervals.items():
+        assert low < figures[name] < high, name
+    means: dict[str, NDArray[Any]] = {"switchings": sample.switchings, "time_s": sample.transit_time_s}
+    for name, values in {"bias_m_s": sample.exit_speed_m_s - 3.0, **means}.items():
+        groups = values.reshape(5, 100).mean(axis=1)
+        student = stats.t.interval(0.95, 4, groups.mean(), stats.sem(groups))
+        assert intervals[name] == pytest.approx(student), name
 
 
 def test_a_weight_counts_as_so_many_passes() -> None:

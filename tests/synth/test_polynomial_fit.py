@@ -17,13 +17,14 @@ from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import density_and_occupancy
 from synth.solver.polish import Evaluate, polish, whitening
-from synth.solver.polynomial_fit import Fit, fit_lines
+from synth.solver.polynomial_fit import Fit, carried_back, fit_lines
 from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of, opened
 from synth.solver.switching_lines import SwitchingLines
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3, resistance_nodes=1)
 TARGET_M_S = 3.0
 CRITERION = Criterion()
+INF = np.inf
 
 
 @pytest.fixture(scope="module")
@@ -66,6 +67,14 @@ def test_missing_lines_are_infinite(fit: Fit) -> None:
     at = fit.lines.at(np.array([0.0, 10.0]))
     assert np.all(at.lower_m_s[0] == -np.inf)
     assert np.all(at.upper_m_s[-1] == np.inf)
+
+
+@pytest.mark.parametrize(
+    ("nodes", "carried"), [(0, (INF, INF, INF, 3.0)), (2, (3.0, 3.0, INF, 3.0)), (9, (3.0, 3.0, 3.0, 3.0))]
+)
+def test_only_before_the_entrance_a_line_is_carried_back(nodes: int, carried: tuple[float, ...]) -> None:
+    assert carried_back(np.array([INF, INF, INF, 3.0, INF, 5.0]), nodes).tolist() == [*carried, INF, 5.0]
+    assert carried_back(np.full(3, INF), nodes).tolist() == [INF, INF, INF]
 
 
 def test_opening_moves_a_pair_apart_symmetrically_and_leaves_others_alone() -> None:

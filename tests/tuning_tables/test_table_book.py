@@ -171,16 +171,22 @@ def test_numbers_that_no_controller_can_hold_are_refused(table: ControllerTable,
         TableBook((replace(table, cut=replace(table.cut, mass_t=value)),))
 
 
-def test_lines_too_near_to_be_interpolated_are_refused(table: ControllerTable) -> None:
-    # Exact in float32, and 2e-6 m/s apart: enough for each table, too little for what lies between two of them.
-    def thin(target: float, level: float) -> ControllerTable:
-        up = np.nextafter(np.nextafter(np.float32(level), np.float32(9.0)), np.float32(9.0))
-        stages = (Stage(0, 0.0, None, (9.0,)), Stage(1, 1.0, (level,), (float(up),)), Stage(2, 2.0, (level,), None))
+@pytest.mark.parametrize("steps", [(2, 2), (2, 9999), (9999, 2)])
+def test_lines_too_near_to_be_interpolated_are_refused(table: ControllerTable, steps: tuple[int, int]) -> None:
+    """One narrow gap is enough, whichever table has it; and what is needed covers three roundings of a number."""
+
+    def thin(target: float, steps: int) -> ControllerTable:
+        low, high = target + 1.0, float(np.float32(target + 1.0 + steps * 2.0**-22))  # float32 steps from 2 to 4
+        stages = (Stage(0, 0.0, None, (9.0,)), Stage(1, 1.0, (low,), (high,)), Stage(2, 2.0, (low,), None))
         return replace(table, id=f"thin-{target:g}", target_speed_m_s=target, degree=0, stages=stages)
 
-    TableBook((thin(2.0, 3.0),))
-    with pytest.raises(InvalidTable, match="the lines between thin-2 and thin-3 come within"):
-        TableBook((thin(2.0, 3.0), thin(3.0, 4.0)))
+    tables = tuple(thin(target, each) for target, each in zip((1.0, 2.0), steps, strict=True))
+    assert [TableBook((each,)).tables for each in tables] == [(each,) for each in tables]
+    with pytest.raises(InvalidTable, match="the lines between thin-1 and thin-2 come within") as refused:
+        TableBook(tables)
+    sizes = sum(abs(line[0]) for each in tables for line in each.stages[1].lines if line)
+    needed = float(str(refused.value).split("must stay ")[1].split()[0])
+    assert 3.0 * 2.0**-24 * sizes <= needed <= 6.0 * 2.0**-24 * sizes
 
 
 @given(slower=st.floats(0.5, 8.0), step=st.floats(0.01, 3.0), part=st.floats(0.0, 1.0), work=st.floats(0.0, 200.0))

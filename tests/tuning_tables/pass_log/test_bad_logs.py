@@ -39,6 +39,13 @@ def shift(column: int, by: float, row: int = FIRST + 5, last: int = FIRST + ROWS
     return change
 
 
+def follow_at_once(table: Table) -> None:
+    """The second pass begins at the moment at which the first ends."""
+    ended = table[FIRST - 2][1]
+    shift(1, float(ended) - float(table[FIRST - 1][1]), FIRST)(table)
+    table[FIRST - 1][1] = ended
+
+
 def drop(first: int, last: int) -> Callable[[Table], None]:
     def change(table: Table) -> None:
         del table[first - 1 : last - 1]
@@ -79,6 +86,7 @@ def same_cut(table: Table) -> None:
         (put(10, "2"), FIRST + 5, "stopped_by_hand", "must be 0 or 1"),
         (drop(FIRST + 4, FIRST + ROWS), FIRST, "cut_id", "4 rows only"),
         (shift(1, -50.0, FIRST), FIRST, "time_s", "but the pass ahead ended"),
+        (follow_at_once, FIRST, "time_s", "but the pass ahead ended"),
         (same_cut, FIRST, "cut_id", "stands in an earlier pass"),
     ],
 )

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tuning_tables.errors import InvalidTable
+from tuning_tables.pass_log.join_logs import join_logs
 from tuning_tables.pass_log.pass_log import PassLog
 
 
@@ -39,3 +42,10 @@ def test_rows_and_passes_must_fit(ends: list[int]) -> None:
     values = {name: getattr(log, name) for name in log.__dataclass_fields__} | {"first_row": np.array(ends)}
     with pytest.raises(InvalidTable):
         PassLog(**values)
+
+
+@pytest.mark.parametrize("independent", [(True, True), (True, False), (False, True)])
+def test_a_joined_path_is_independent_where_each_one_is(independent: tuple[bool, ...]) -> None:
+    joined = join_logs([replace(small_log(), path_is_independent=each) for each in independent])
+    assert joined.cut_id == 2 * small_log().cut_id
+    assert joined.path_is_independent is all(independent)

@@ -5,14 +5,20 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import pytest
 
+from tests.controller_code.passage_tables import passage_table
 from tests.tuning_tables.st.conftest import oddly_named_book, shaped_book, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.syntax import faults, parse, walk
-from tuning_tables import InvalidTable
-from tuning_tables.st_source import MOST_TABLES, SELF_TEST_FILE, TABLE_FILE, st_files
+from tuning_tables import InvalidTable, st_source
+from tuning_tables.passages import st_source as passage_st_source
+from tuning_tables.passages.passage_book import PassageBook
+from tuning_tables.passages.st_source import passage_export
+from tuning_tables.self_test_size import SMALL
+from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, line_export, st_files
 from tuning_tables.table_book import TableBook
 
 # Keywords, operators of instruction lists, standard functions and blocks, and words that single systems reserve.
@@ -132,16 +138,14 @@ def test_equal_books_give_equal_bytes(book: TableBook, small_book: TableBook) ->
     assert st_files(book) != st_files(small_book)
 
 
-def test_too_many_tables_are_refused(small_book: TableBook) -> None:
-    table = small_book.tables[0]
-    tables = [
-        replace(
-            table,
-            id=f"{n}",
-            cut=replace(table.cut, category=f"{n % 7}", category_number=16 + n % 7),
-            target_speed_m_s=2.0 + n,
-        )
-        for n in range(MOST_TABLES + 1)
-    ]
-    with pytest.raises(InvalidTable, match=f"has {MOST_TABLES + 1} tables, but .* at most {MOST_TABLES}"):
-        st_files(TableBook(tuple(tables)))
+def test_as_many_tables_as_are_allowed_are_exported_and_no_more(
+    small_book: TableBook, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    passages = PassageBook((passage_table(stages=2),))
+    of_lines, of_passages = (partial(line_export, small_book), partial(passage_export, passages))
+    for module, tables, export in ((st_source, 2, of_lines), (passage_st_source, 1, of_passages)):
+        monkeypatch.setattr(module, "MOST_TABLES", tables)
+        assert export(self_test=SMALL)
+        monkeypatch.setattr(module, "MOST_TABLES", tables - 1)
+        with pytest.raises(InvalidTable, match=f"{tables} tables, .*at most {tables - 1}"):
+            export(self_test=SMALL)
