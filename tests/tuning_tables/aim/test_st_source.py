@@ -98,7 +98,7 @@ def run_all(
     return {name: int(instance[name].value) for name in SOUND}
 
 
-@pytest.mark.parametrize("compiler", ROUNDINGS, ids=name_of)
+@pytest.mark.parametrize("compiler", every(2, ROUNDINGS), ids=name_of)
 def test_nothing_is_wrong_with_the_export(compiler: Compiler) -> None:
     for aims in (small_set(), AimTables(sample_set().tables[:8])):
         for size in (FULL, SMALL):
