@@ -12,9 +12,7 @@ from plant_models.library import load_position
 from plant_models.library.position_entry import PositionEntry
 from synth.frame.input_error import InputError
 from synth.hump.control.sorting_list import SortingList
-from synth.hump.trains.asked_speeds import ExitRange
 from synth.hump.trains.class_choice import ClassChoice
-from synth.hump.trains.forecast import SpeedRange
 from synth.hump.trains.free_tracks import AsInFile, DrawnFree, FreeTracks
 from synth.hump.trains.hump_position import HumpPosition
 from synth.hump.trains.hump_speed import HumpSpeedLimits, PairByPair, SpeedMethod, WholeTrain
@@ -29,9 +27,6 @@ from synth.hump.trains.trial import ConstantSpeed, Control, HumpTrial, Program, 
 from synth.hump.trains.trial_aim import trial_aim
 from synth.retarder.book_classes import book_classes, unfitting
 from synth.retarder.table_class import TableClass
-
-UNBRAKED_M_S = 99.0
-"""An exit speed that no cut has: whoever asks for it leaves the brake open."""
 
 METHODS: dict[str, SpeedMethod] = {"whole-train": WholeTrain(), "pair-by-pair": PairByPair()}
 
@@ -130,24 +125,13 @@ def kinds_of_cuts(config: ResolvedTrial) -> set[tuple[int, int]]:
     }
 
 
-def speed_range(choice: PositionChoice, given: ExitRange, choices: int) -> SpeedRange:
-    """What a position for intervals may be commanded."""
-    low, high, entry = given
-    if choice.out_of_service:
-        return SpeedRange(UNBRAKED_M_S, UNBRAKED_M_S, 1)
-    return SpeedRange(low, high, choices, entry)
-
-
 def planner_of(config: ResolvedTrial) -> Planner:
     """How trains are planned."""
-    speed, choices = config.settings.hump_speed, config.settings.exit_speeds.choices
+    speed = config.settings.hump_speed
     return Planner(
         routes=config.routes,
         limits=HumpSpeedLimits(steps_m_s(config), speed.acceleration_m_s2),
-        ranges=tuple(
-            speed_range(choice, given, choices)
-            for choice, given in zip(config.positions[:-1], config.ranges_m_s, strict=True)
-        ),
+        roles=config.roles,
         least_s=speed.least_s,
         early_s=speed.early_s,
         worst_pair=speed.worst_pair,

@@ -124,10 +124,9 @@ class Control:
 class HumpTrial:
     """Trains from `source` over `routes`, whose `ways` are the routes as their cars feel them.
 
-    `positions`: models in order from the crest, of every route that has so many; the last of each route aims, all
-    others keep intervals; `planner` with the ranges of all but the last one; `free`: tracks before each train. `aim`:
-    exit speeds of the last position of each route; `usable_heads_m`: energy head (rows,) that
-    each position can be trusted to take from cuts, by mass, axles and category.
+    `positions`: models in order from the crest, of every route that has so many; `planner` has their roles; `free`:
+    tracks before each train. `aim`: exit speeds of the positions that aim, by route; `usable_heads_m`: energy head
+    (rows,) that each position can be trusted to take from cuts, by mass, axles and category.
     """
 
     source: TrainSource
@@ -144,9 +143,9 @@ class HumpTrial:
 
     def __post_init__(self) -> None:
         require(
-            len(self.positions) == self.routes.positions == len(self.planner.ranges) + 1,
-            f"hump trial: {len(self.positions)} position models and {len(self.planner.ranges)} ranges of exit speeds; "
-            f"the hump has {self.routes.positions} positions, and ranges belong to all but the last",
+            len(self.positions) == self.routes.positions == len(self.planner.roles.exits),
+            f"hump trial: {len(self.positions)} position models and {len(self.planner.roles.exits)} roles; the hump "
+            f"has {self.routes.positions} positions",
         )
 
     def batch(self, first: int, count: int) -> TrainOutcomes:
@@ -201,7 +200,7 @@ class HumpTrial:
         return np.asarray(1e-3 * stretch * (worse + drawn.air_n_per_kn * (against[1] - against[0])))
 
     def aim_of(self, trains: TrainCuts, known: KnownCuts, rolls: RouteRolling) -> AimControl:
-        """The control of the last position for these trains, which roll as in `rolls`."""
+        """The control of positions that aim for these trains, which roll as in `rolls`."""
         sensing, stretch_m = self.control.sensing, self.aim.stretch_m
         reading: AimReading | None = None
         if sensing is not None and sensing.for_aim:
@@ -214,7 +213,7 @@ class HumpTrial:
     def control_of(self, trains: TrainCuts, known: KnownCuts, plan: TrainPlan, aim: AimControl) -> ExitSpeeds:
         """The control of all positions for these trains."""
         if not self.control.feedback:
-            return OpenLoop(plan, aim)
+            return OpenLoop(plan, self.planner.roles, aim)
         sensing = self.control.sensing
         rollability: Rollability = CategoryMean(known)
         if sensing is not None and sensing.for_intervals:
