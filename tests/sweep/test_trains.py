@@ -39,7 +39,7 @@ def files_in(out: Path, trial: Path) -> Iterator[BatchFiles]:
     """The batches in `out`, which is held."""
     config = load_trial(trial)
     with results_directory(out, "hump simulate") as directory:
-        yield BatchFiles(directory, TrialTrains(config.routes, config.trains_sha256))
+        yield BatchFiles(directory, TrialTrains(config.routes, config.trains_sha256, len(config.categories.members)))
 
 
 @pytest.mark.long
@@ -54,7 +54,7 @@ def test_batches_of_any_size_are_the_same_trains(trial: Path, humped: Path) -> N
     """As one batch, one by one, and in uneven parts: the arrays of the file that the command wrote."""
     config = load_trial(trial)
     made = made_trial(config)
-    of_trial = TrialTrains(config.routes, config.trains_sha256)
+    of_trial = TrialTrains(config.routes, config.trains_sha256, len(config.categories.members))
     written = batch_file(humped, next(iter(orders_of(made, config.trains_sha256, BATCH))).key)
     first = from_npz(written.read_bytes(), str(written), of_trial, BATCH)
     some = joined([made.batch(0, 1), made.batch(1, 6), made.batch(7, BATCH - 7)])

@@ -26,6 +26,9 @@ from synth.hump.trains.position_roles import Bools, Exits, Fixed, Roles, Spacing
 UNBRAKED_M_S: Final = 99.0
 """An exit speed that no cut has: whoever asks for it leaves the brake open."""
 
+OF_EXITS: Final = ("lowest_m_s", "highest_m_s", "most_entry_m_s")
+"""Keys that say nothing of a position that aims."""
+
 Where = Callable[[Bools, Bools], Bools]
 """On which routes a position aims, of (those whose last position it is, those with a switch behind the last)."""
 
@@ -67,9 +70,21 @@ def asked_roles(
             "to aim; give that one the role",
         )
     exits = tuple(
-        exits_of(each, choice, asked.choices, categories) for each, choice in zip(asked.positions, choices, strict=True)
+        aiming(each) if (aims[place] == held[place]).all() else exits_of(each, choice, asked.choices, categories)
+        for place, (each, choice) in enumerate(zip(asked.positions, choices, strict=True))
     )
     return Roles(exits, aims, held)
+
+
+def aiming(asked: HumpPositionSettings) -> Exits:
+    """Stands for the exits of a position that aims all cuts; `PlantError` where the user gives some."""
+    given = next((key for key in OF_EXITS if getattr(asked, key) is not None), None)
+    require(
+        given is None,
+        f"position {asked.number}: {given} is {getattr(asked, given or 'number')}, but the position aims on every "
+        'route, by [aim]; take it out, or give the position role = "spacing"',
+    )
+    return Spacing(SpeedRange(*EXIT_RANGE_M_S, 1))
 
 
 def exits_of(asked: HumpPositionSettings, choice: PositionChoice, choices: int, categories: WeightCategories) -> Exits:

@@ -23,7 +23,7 @@ class HumpedTrial:
     @property
     def of_trial(self) -> TrialTrains:
         """Of which trial the trains are, for their file."""
-        return TrialTrains(self.config.routes, self.config.trains_sha256)
+        return TrialTrains(self.config.routes, self.config.trains_sha256, len(self.config.categories.members))
 
     @property
     def category_names(self) -> tuple[str, ...]:

@@ -49,6 +49,7 @@ def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
         control=control_of(config),
         aim=trial_aim(config, threads),
         usable_heads_m=tuple(replace(brake, share=usable * brake.share).head_m for brake in brakes),
+        full_heads_m=tuple(brake.head_m for brake in brakes),
         free=free_of(config),
         threads=threads,
     )

@@ -22,6 +22,11 @@ class Spacing:
 
     range: SpeedRange
 
+    @property
+    def lowest_m_s(self) -> float:
+        """The lowest command that is chosen."""
+        return self.range.low_m_s
+
     def choices(self, category: Ints) -> Choices:
         """For cuts of the places `category` (n,) among the weight categories."""
         return self.range
@@ -41,6 +46,11 @@ class Fixed:
 
     speed_m_s: Floats
     most_entry_m_s: float = np.inf
+
+    @property
+    def lowest_m_s(self) -> float:
+        """Nothing is chosen."""
+        return np.nan
 
     def choices(self, category: Ints) -> Choices:
         """For cuts of the places `category` (n,) among the weight categories."""

@@ -89,7 +89,7 @@ def humped(asked: AskedTrains, trial: HumpTrial, work: Work) -> TrainOutcomes:
 
     config, progress = asked.trial.config, work.progress
     orders = list(orders_of(trial, config.trains_sha256, asked.number))
-    files = BatchFiles(work.directory, TrialTrains(config.routes, config.trains_sha256))
+    files = BatchFiles(work.directory, TrialTrains(config.routes, config.trains_sha256, len(config.categories.members)))
     missing = missing_of(orders, files.file, progress)
     progress.begin(len(orders) - len(missing))
     return run_trains(orders, missing, files, engine_for(missing, asked.options), progress)

@@ -22,7 +22,7 @@ from synth.hump.trains.humping import Hump, humped
 from synth.hump.trains.interval import CentredRule, IntervalRule
 from synth.hump.trains.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
 from synth.hump.trains.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
-from synth.hump.trains.outcomes import TrainOutcomes, outcomes
+from synth.hump.trains.outcomes import PassLimits, TrainOutcomes, outcomes
 from synth.hump.trains.rollability import CategoryMean, Rollability, measured_rollability
 from synth.hump.trains.route_rolling import RouteRolling, rolling_on
 from synth.hump.trains.route_ways import RouteWays
@@ -126,7 +126,8 @@ class HumpTrial:
 
     `positions`: models in order from the crest, of every route that has so many; `planner` has their roles; `free`:
     tracks before each train. `aim`: exit speeds of the positions that aim, by route; `usable_heads_m`: energy head
-    (rows,) that each position can be trusted to take from cuts, by mass, axles and category.
+    (rows,) that each position can be trusted to take from cuts, by mass, axles and category; `full_heads_m`: what it
+    takes at mean friction.
     """
 
     source: TrainSource
@@ -138,6 +139,7 @@ class HumpTrial:
     control: Control
     aim: HumpAim
     usable_heads_m: tuple[BrakeHead, ...]
+    full_heads_m: tuple[BrakeHead, ...]
     free: FreeTracks
     threads: int = 0
 
@@ -151,7 +153,18 @@ class HumpTrial:
     def batch(self, first: int, count: int) -> TrainOutcomes:
         """What the trains `first` … `first + count − 1` come to."""
         trains, _, memory = self.humped(first, count)
-        return outcomes(self.routes, trains, memory)
+        return outcomes(self.routes, trains, memory, self.able(trains, memory.route.ravel()))
+
+    def able(self, trains: TrainCuts, route: Ints) -> PassLimits:
+        """What the positions can do with the cuts of `trains`, which went on `route` (rows,)."""
+        roles, category = self.planner.roles, trains.category
+        heads = [brake(trains.mass_t, trains.axles, category) for brake in self.full_heads_m]
+        aim = self.aim.lowest_by_table_m_s[self.aim.group[route], category]
+        lowest = [
+            np.where(aims[route], aim, exits.lowest_m_s) for exits, aims in zip(roles.exits, roles.aims, strict=True)
+        ]
+        braked = 2.0 * reduced_gravity_m_s2(trains)[:, None] * np.stack(heads, axis=1)
+        return PassLimits(np.stack(lowest, axis=1), braked)
 
     def humped(self, first: int, count: int) -> tuple[TrainCuts, TrainPlan, TrainMemory]:
         """The same trains with their plan and all that happened to them."""

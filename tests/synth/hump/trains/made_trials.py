@@ -135,6 +135,7 @@ class Day:
             control=self.control,
             aim=even_aim(routes, self.aim_m_s, self.aim_far_m_s or self.aim_m_s),
             usable_heads_m=tuple(UsableHead(0.8 * head) for head in heads),
+            full_heads_m=tuple(UsableHead(head) for head in heads),
             free=self.free,
             threads=self.threads,
         )

@@ -49,9 +49,10 @@ def test_each_position_is_commanded_by_its_role(hump: Path, feedback: str) -> No
     trial = made_trial(resolved(hump, f"[exit_speeds]\nchoices = 3\nfeedback = {feedback}\n{roles}"))
     trains, _, memory = trial.humped(0, 6)
     passed = np.isfinite(memory.command_m_s)
-    alone = passed & ~memory.unseparated.any(axis=2)[:, :, None]
-    heavy = trains.category.reshape(passed.shape[:2]) == len(trains.population.categories.members) - 1
-    np.testing.assert_array_equal(memory.command_m_s[..., 0][alone[..., 0]], np.where(heavy, 5.1, 5.3)[alone[..., 0]])
+    alone = np.asarray(passed & ~memory.unseparated.max(axis=2)[:, :, None])
+    places = trains.category.reshape(passed.shape[:2])
+    commanded = np.where(places == len(trains.population.categories.members) - 1, 5.1, 5.3)
+    np.testing.assert_array_equal(memory.command_m_s[..., 0][alone[..., 0]], commanded[alone[..., 0]])
     chosen, aimed = memory.command_m_s[..., BUNCH][alone[..., BUNCH]], memory.command_m_s[..., PARK][alone[..., PARK]]
     assert len(chosen) >= 40
     assert len(aimed) >= 5

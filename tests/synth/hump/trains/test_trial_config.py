@@ -258,6 +258,7 @@ def test_a_list_that_does_not_fit_is_refused_with_row_and_reason(row: str, said:
             '[[position]]\nnumber = 1\nexit_m_s = { L = 1, "Л" = 2 }',
             "position 1: exit_m_s: Л is there twice; leave one",
         ),
+        ("[[position]]\nnumber = 3\nlowest_m_s = 1.0", "position 3: lowest_m_s is 1.0, but the position aims on every"),
         ("[[position]]\nnumber = 1\nexit_m_s = 40", "position[0].exit_m_s.all is 40; it must be from 0.3 to 12"),
         ('[[position]]\nnumber = 1\nexit_m_s = "4"', "position[0].exit_m_s is '4'; it must be a speed, or a table of"),
         ("[[position]]\nnumber = 4", "position[0].number is 4; the hump has the positions 1 to 3"),
