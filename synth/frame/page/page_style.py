@@ -20,6 +20,7 @@ a { color: var(--blue); }
 .verdict p:first-child { font-size: 1.1rem; }
 .accepted { border-color: #009e73; }
 .refused { border-color: #d55e00; }
+.undecided { border-color: #e69f00; }
 .scroll { overflow-x: auto; margin: .8rem 0; border: 1px solid var(--line); }
 table { border-collapse: collapse; font-size: .82rem; font-variant-numeric: tabular-nums; width: 100%; }
 caption { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }

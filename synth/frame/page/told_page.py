@@ -13,6 +13,9 @@ from synth.frame.page.parameter_table import parameter_section
 from synth.frame.picture.picture import Picture
 from synth.frame.told import Told
 
+VERDICTS = {True: ("Accepted", "accepted"), False: ("Not accepted", "refused"), None: ("Not decidable", "undecided")}
+"""Heading of the verdict, and its style."""
+
 WORDS = {True: "kept", False: "missed", None: "not decidable"}
 
 
@@ -24,14 +27,13 @@ def page_of(told: Told, pictures: Mapping[str, Picture], hashes: Mapping[str, st
 
 
 def verdict_box(told: Told) -> Markup:
-    """Accepted or not, limit by limit; nothing where nothing is judged."""
+    """Accepted, not, or not decidable, limit by limit; nothing where nothing is judged."""
     if not told.verdict.limits:
         return Markup()
-    accepted = told.verdict.accepted
     items = (element("li", f"{WORDS[limit.kept]}: {limit.sentence}") for limit in told.verdict.limits)
-    head = element("p", element("strong", "Accepted" if accepted else "Not accepted"))
-    style = f"verdict {'accepted' if accepted else 'refused'}"
-    return element("section", head, element("ul", *items), class_=style, id="verdict")
+    word, style = VERDICTS[told.verdict.kept]
+    head = element("p", element("strong", word))
+    return element("section", head, element("ul", *items), class_=f"verdict {style}", id="verdict")
 
 
 def sections(

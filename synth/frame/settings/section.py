@@ -13,6 +13,8 @@ from annotated_types import Ge, Le, MaxLen, MinLen
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.fields import FieldInfo
 
+DIMENSIONLESS = "1"
+
 TOOL_DEFAULT = "default of the tool"
 OF_LIBRARY = "the type in the library"
 
@@ -27,10 +29,15 @@ def needed(unit: str, low: float, high: float, meaning: str, source: str = TOOL_
     return Field(ge=low, le=high, description=meaning, json_schema_extra={"unit": unit, "source": source})
 
 
-def optional(unit: str, low: float, high: float, meaning: str, example: float) -> Any:
-    """A number that may be left out; the template shows `example` as a comment."""
+def optional(unit: str, low: float, high: float, meaning: str, example: float, source: str = "") -> Any:
+    """A number that may be left out; the template shows `example` as a comment. `source`: of what the tool then has."""
     return Field(
-        None, ge=low, le=high, description=meaning, examples=[example], json_schema_extra={"unit": unit, "source": ""}
+        None,
+        ge=low,
+        le=high,
+        description=meaning,
+        examples=[example],
+        json_schema_extra={"unit": unit, "source": source},
     )
 
 

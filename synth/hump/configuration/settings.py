@@ -190,11 +190,22 @@ class SensorSettings(Section):
     )  # fmt: skip
 
 
-class TrialAcceptanceSettings(Section):
-    """Shares of cuts that must not be passed, interval included; exit code 1 if one is."""
+OVERSPEEDS_PER_ASKED = 1.5
+"""Over-speeds that a trial may have unless told, for each that its aim is asked to keep to."""
 
-    catch_ups: float | None = optional("1", 0.0, 1.0, "of all cuts: those that catch up", 0.001)
-    overspeed: float | None = optional("1", 0.0, 1.0, "of the cuts on their track: couplings above 1.39 m/s", 0.1)
+
+class TrialAcceptanceSettings(Section):
+    """Shares of cuts that must not be passed, interval included; exit code 1 if one is. A limit of 1 judges nothing."""
+
+    catch_ups: float = setting(
+        0.005, "1", 0.0, 1.0, "of all cuts: those that catch up",
+        f"{JUDGEMENT}: with more than one cut in 200 on a wrong track, or run into, a plan has failed",
+    )  # fmt: skip
+    overspeed: float | None = optional(
+        "1", 0.0, 1.0,
+        "of the cuts on their track: couplings above 1.39 m/s; left out: 1.5 times aim.p_overspeed", 0.1,
+        f"{JUDGEMENT}: half as many again as the aim is asked for, since a cut may meet cars that still roll",
+    )  # fmt: skip
     overspeed_above_2: float | None = optional("1", 0.0, 1.0, "of these: couplings above 2 m/s", 0.002)
 
 

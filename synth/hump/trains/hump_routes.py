@@ -91,6 +91,12 @@ class HumpRoutes:
         return read_only(((self.points >= 0) & (np.arange(self.elements) > last[:, None])).any(axis=1))
 
     @cached_property
+    def is_last(self) -> NDArray[np.bool_]:
+        """Whether each of the `numbers` is the last position of some route."""
+        rows, last = np.arange(len(self.routes)), self.retarder.max(axis=1, initial=-1)
+        return read_only(np.isin(np.arange(len(self.numbers)), self.vertex[rows, last][last >= 0]))
+
+    @cached_property
     def release_m(self) -> Floats:
         """Where the last position of each route ends, (routes,); 0 where it has none."""
         return read_only(self.exit_m.max(axis=1, initial=0.0, where=np.isfinite(self.exit_m)))
@@ -153,6 +159,12 @@ def hump_routes(graph: HumpGraph, lead: int) -> HumpRoutes:
             entrance[row, position], leave[row, position] = element.at_m, element.at_m + element.vertex.exit_m
     length = np.array([route.length_m for route in routes])
     return HumpRoutes(graph, lead, routes, numbers, vertex, place, points, throw, retarder, entrance, leave, length)
+
+
+def element_name(routes: HumpRoutes, number: int) -> str:
+    """What messages call an element: 'switch 4'."""
+    words = {Switch: "switch", Retarder: "retarder"}
+    return f"{words.get(type(routes.graph.vertex(number)), 'section')} {number}"
 
 
 def marks_m(route: Route, element: RouteElement) -> list[float]:

@@ -166,7 +166,8 @@ def limited(memory: TrainMemory, able: PassLimits | None) -> tuple[Bools, Bools]
         return np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     least2 = memory.unbraked_m_s**2 - able.braked_m2_s2.reshape(shape)
     short = (least2 > command**2) & (memory.exit_m_s > command)
-    return short, np.abs(command - able.lowest_m_s.reshape(shape)) < SAME_M_S
+    at_lowest = np.isfinite(memory.exit_m_s) & (np.abs(command - able.lowest_m_s.reshape(shape)) < SAME_M_S)
+    return short, at_lowest
 
 
 def by_category(trains: TrainCuts, values: NDArray[Any]) -> NDArray[Any]:

@@ -24,7 +24,7 @@ from plant_models.library.hump_entry import HumpEntry
 from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
 from synth.frame.settings.numbers import range_warnings
-from synth.hump.configuration.settings import HumpTrialSettings
+from synth.hump.configuration.settings import OVERSPEEDS_PER_ASKED, HumpTrialSettings
 from synth.hump.configuration.trial_file import TrialFile, read_trial_file
 from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.train_population import TrainPopulation
@@ -37,6 +37,7 @@ from synth.hump.trains.asked_trains import (
     population_of,
     trains_of,
 )
+from synth.hump.trains.car_warnings import car_warnings, weather_warnings
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from synth.hump.trains.position_choice import PositionChoice, position_choices
 from synth.hump.trains.position_roles import Fixed, Roles
@@ -174,7 +175,12 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         library=library,
         parameters=parameters,
         notes=(*file.hump.notes, *mix.notes),
-        warnings=(*range_warnings(parameters), *aim_warnings(aims, routes, settings)),
+        warnings=(
+            *range_warnings(parameters),
+            *aim_warnings(aims, routes, settings),
+            *car_warnings(file.hump.cars, cars_of_cuts(trains, categories)),
+            *weather_warnings(settings),
+        ),
         names=names_of(file, routes.lead, mix, categories, trains, positions)
         | {"roles": role_names(roles)}
         | aim_names(aims),
@@ -185,7 +191,12 @@ def filled(
     settings: HumpTrialSettings, mix: CarMixEntry, categories: WeightCategories, routes: HumpRoutes
 ) -> HumpTrialSettings:
     """`settings` with what follows from hump, mix and categories where the file leaves it out."""
-    return settings.model_copy(update={"trains": filled_trains(settings.trains, mix, categories, routes)})
+    acceptance = settings.acceptance
+    if acceptance.overspeed is None:
+        most = min(OVERSPEEDS_PER_ASKED * settings.aim.p_overspeed, 1.0)
+        acceptance = acceptance.model_copy(update={"overspeed": most})
+    trains = filled_trains(settings.trains, mix, categories, routes)
+    return settings.model_copy(update={"trains": trains, "acceptance": acceptance})
 
 
 def rows_without(aims: tuple[AimChoice, ...], roles: Roles) -> tuple[int, ...]:

@@ -116,7 +116,7 @@ def limits(result: HumpedTrial) -> Iterable[Limit]:
     """Those of the configuration."""
     from synth.hump.trains.trial_limits import trial_limits
 
-    return trial_limits(result.figures, result.config.settings.acceptance)
+    return trial_limits(result)
 
 
 def show(result: HumpedTrial) -> Iterator[Chapter]:

@@ -17,6 +17,7 @@ from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.position_choice import PositionChoice
 from synth.hump.trains.position_roles import Fixed
+from synth.hump.trains.position_strength import MOST_SHORT, strengths
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.shown.figures import in_hundred
 from synth.hump.trains.train_figures import Floats, interval_of, ratio, share
@@ -34,9 +35,6 @@ POSITIONS: Final = (
     Column("at_lowest", "commanded its lowest speed", "%", in_hundred, spare=2),
     Column("strokes_per_pass", "commands to valves a pass", spare=3),
 )
-MOST_SHORT: Final = 0.01
-"""A position with a larger share of cuts that left too fast for want of brake is too weak for these trains: assumed."""
-
 HOW_TO_READ: Final = (
     "For want of brake: the full brake, at mean friction, leaves these cuts faster than commanded. Told: the standard "
     f"deviation of the exit speed that the hump file, the configuration or the book has. Above {100 * MOST_SHORT:g} % "
@@ -62,8 +60,17 @@ AIMED: Final = (
 
 def positions(result: HumpedTrial) -> Iterator[Exhibit]:
     """A row for each position, and for each aim table."""
+    strong = {each.number: each for each in strengths(result.found)}
     rows = [position_row(result, choice, place) for place, choice in enumerate(result.config.positions)]
-    yield Table("positions", "Positions", POSITIONS, rows, brief=True, bad=too_weak)
+    rows = [{**row, "short": strong[row["number"]].told} for row in rows]
+    yield Table("positions", "Positions", POSITIONS, rows, brief=True, bad=lambda row: strong[row["number"]].weak)
+    for each in strong.values():
+        if each.weak:
+            yield Sentence(
+                f"Warning: the brake of position {each.number} is too weak for these cuts: {100.0 * each.share:.3g} % "
+                "left faster than commanded with all of it.",
+                brief=True,
+            )
     yield Sentence(HOW_TO_READ)
     if result.config.aims:
         yield Sentence(AIMED)
@@ -76,7 +83,7 @@ def position_row(result: HumpedTrial, choice: PositionChoice, place: int) -> Row
     and commands to its valves, none where none are modelled."""
     found = result.found
     passes, strokes = found.passes[:, place].astype(float), found.strokes[:, place].astype(float)
-    short, lowest = (each[:, place].astype(float) for each in (found.short, found.at_lowest))
+    lowest = found.at_lowest[:, place].astype(float)
     exits = result.config.roles.exits[place]
     rms, low, high = (root(each) for each in ratio(found.error2_m2_s2[:, place], passes))
     return {
@@ -85,7 +92,6 @@ def position_row(result: HumpedTrial, choice: PositionChoice, place: int) -> Row
         "role": role_words(result.config, place),
         "aims_on_tracks": aimed_tracks(result.config, place),
         "passes": int(passes.sum()),
-        "short": share_of(short, passes),
         "rms_of_exit_less_command_m_s": interval_of(rms, low, high, len(found)),
         "told_exit_std_m_s": told_exit_std_m_s(choice),
         "at_lowest": None if isinstance(exits, Fixed) else share_of(lowest, passes),
@@ -102,12 +108,6 @@ def share_of(hits: Floats, base: Floats) -> Interval | float:
     """A share of the passes."""
     value, low, high, _ = share(hits, base)
     return interval_of(value, low, high, int(base.sum()))
-
-
-def too_weak(row: Row) -> bool:
-    """Whether the share of cuts that left too fast for want of brake is above the limit for sure."""
-    short = row["short"]
-    return bool((short.low95 if isinstance(short, Interval) else short) > MOST_SHORT)
 
 
 def role_words(config: ResolvedTrial, place: int) -> str:
