@@ -40,7 +40,7 @@ class DayFigures:
 NEAR = 0.001
 """Shares of catch-ups are wanted so near."""
 
-CLASSES = ("overspeed_to_1_5", "overspeed_to_2", "overspeed_above_2")
+CLASSES = ("overspeed_slight", "overspeed_rough", "overspeed_harmful")
 
 
 def day_figures(found: TrainOutcomes) -> DayFigures:

@@ -112,6 +112,8 @@ def allowed_length(field: FieldInfo, value: object) -> str:
 def hint(location: Location, root: type[Section]) -> str:
     """Which key was meant: one of the section's, or the same name in another section, else all that the section has."""
     section, word = section_at(location[:-1], root), str(location[-1])
+    if issubclass(section, Section) and word in section.MEANT:
+        return f"did you mean {section.MEANT[word]}?"
     elsewhere = [key for key in dotted_keys(root, "") if key.split(".")[-1] == word]
     if elsewhere:
         return f"did you mean {elsewhere[0]}?"

@@ -6,8 +6,8 @@ of parameters, the options of the command line and the JSON Schema follow from t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any, get_args
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, get_args
 
 from annotated_types import Ge, Le, MaxLen, MinLen
 from pydantic import BaseModel, ConfigDict, Field
@@ -73,7 +73,12 @@ def many(
 
 
 class Section(BaseModel):
-    """A table of the file: unknown keys, wrong types, inf and nan are refused."""
+    """A table of the file: unknown keys, wrong types, inf and nan are refused.
+
+    `MEANT`: words that users write for keys that have another name.
+    """
+
+    MEANT: ClassVar[Mapping[str, str]] = {}
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 

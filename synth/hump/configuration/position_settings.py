@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -40,6 +40,8 @@ class HumpPositionSettings(Section):
     cars of the track; fixed, one exit speed for each weight category. Without a role, the last position of a route
     aims, but keeps cuts apart where a switch is behind it; all other positions keep cuts apart.
     """
+
+    MEANT: ClassVar = {"exit_speed_m_s": "exit_m_s", "exit_speed": "exit_m_s", "speed_m_s": "exit_m_s"}
 
     number: int = needed("1", 1, 10, "which position, 1 being the first behind the crest", "")
     role: RoleName | None = choice(

@@ -14,6 +14,7 @@ from synth.aim.configuration.settings import ResistanceSettings, WeatherSettings
 from synth.frame.settings.output import OutputSettings
 from synth.frame.settings.section import Section, choice, many, optional, setting
 from synth.hump.configuration.counted_trains import CountedTrains
+from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.configuration.position_settings import HumpPositionSettings
 from synth.retarder.configuration.top_keys import TopKeys
 
@@ -56,6 +57,9 @@ class TrainSettings(CountedTrains):
         None, 1, 31, "shares, {L = 0.3, T = 0.7}", "shares by weight category, which count by their ratio", "1",
         f"{JUDGEMENT}: most cars are empty or full", CATEGORY_SHARES,
     )  # fmt: skip
+    closed_tracks: tuple[int, ...] | None = many(
+        None, 1, 199, "numbers of tracks", "tracks to which no cut goes", example=[1, 2]
+    )
     track_shares: dict[str, Share] | None = many(
         None, 1, 199, "shares, {1 = 2.0, 2 = 1.0}", "shares by track; left out: all alike", "1",
         example={"1": 2.0, "2": 1.0},
@@ -163,7 +167,7 @@ class TrialAimSettings(Section):
         None, "or those behind single retarders, by number", {"421": "out/aim-1", "422": "out/aim-2"}
     )
     p_overspeed: float = setting(
-        0.1, "1", 0.005, 0.9, "required probability of a coupling above 1.39 m/s (5 km/h)",
+        0.1, "1", 0.005, 0.9, "required probability of a coupling above couplings.allowed_m_s",
         "[kozachenko-aimed]: the share that its figures are drawn for",
     )  # fmt: skip
     lowest_m_s: float = setting(
@@ -203,10 +207,10 @@ class TrialAcceptanceSettings(Section):
     )  # fmt: skip
     overspeed: float | None = optional(
         "1", 0.0, 1.0,
-        "of the cuts on their track: couplings above 1.39 m/s; left out: 1.5 times aim.p_overspeed", 0.1,
+        "of the cuts on their track: couplings faster than allowed; left out: 1.5 times aim.p_overspeed", 0.1,
         f"{JUDGEMENT}: half as many again as the aim is asked for, since a cut may meet cars that still roll",
     )  # fmt: skip
-    overspeed_above_2: float | None = optional("1", 0.0, 1.0, "of these: couplings above 2 m/s", 0.002)
+    overspeed_harmful: float | None = optional("1", 0.0, 1.0, "of these: harmful couplings", 0.002)
 
 
 class HumpTrialSettings(TopKeys):
@@ -226,6 +230,7 @@ class HumpTrialSettings(TopKeys):
     hump_speed: HumpSpeedSettings = HumpSpeedSettings()
     exit_speeds: ExitSpeedSettings = ExitSpeedSettings()
     aim: TrialAimSettings = TrialAimSettings()
+    couplings: CouplingLimits = CouplingLimits()
     sensors: SensorSettings = SensorSettings()
     position: tuple[HumpPositionSettings, ...] = many(
         (),

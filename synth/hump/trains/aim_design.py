@@ -16,7 +16,7 @@ from plant_models.rolling.random_cuts import CutPopulation
 from synth.aim.aim_table import AimOrder, chosen, rounded_down, thresholds_at
 from synth.aim.knowledge import ByCategory, ByReading, Requirement
 from synth.aim.position_models import PositionModel
-from synth.aim.scene import AimScene, MeasuredStretch, SceneCuts
+from synth.aim.scene import COUPLING_SPEED_M_S, AimScene, MeasuredStretch, SceneCuts
 from synth.hump.trains.free_stretch import SHORTEST_M, ResistanceOnStretch
 from synth.hump.trains.hump_aim import CategoryAim, HumpAim
 from synth.hump.trains.hump_routes import HumpRoutes
@@ -55,7 +55,8 @@ class MeasuredAhead:
 @dataclass(frozen=True)
 class AimDesign:
     """How exit speeds of the last position are chosen: for whom, for which position, and on how many drawn cuts of
-    each weight category and number of cars. `threads` work on them, 0: one a processor; they change no result."""
+    each weight category and number of cars; a coupling faster than `coupling_speed_m_s` is over-speed. `threads` work
+    on them, 0: one a processor; they change no result."""
 
     population: CutPopulation
     position: PositionModel
@@ -65,6 +66,7 @@ class AimDesign:
     design_cuts: int = 2000
     seed: int = 1
     threads: int = 0
+    coupling_speed_m_s: float = COUPLING_SPEED_M_S
 
     def __post_init__(self) -> None:
         require(
@@ -130,6 +132,7 @@ def scene_of(route: Route, design: AimDesign, threads: int) -> AimScene:
         entrance_m=entrance,
         exit_m=leave,
         stretch=MeasuredStretch(begin, entrance, *law),
+        coupling_speed_m_s=design.coupling_speed_m_s,
         threads=threads,
     )
 

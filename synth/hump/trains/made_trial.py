@@ -52,6 +52,7 @@ def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
         full_heads_m=tuple(brake.head_m for brake in brakes),
         free=free_of(config),
         threads=threads,
+        couplings=config.settings.couplings,
     )
 
 

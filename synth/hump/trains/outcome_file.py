@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.hump.trains.hump_routes import HumpRoutes
-from synth.hump.trains.outcomes import CLASSES_M_S, GAP_BINS_M, SPEED_BINS_M_S, TrainOutcomes
+from synth.hump.trains.outcomes import GAP_BINS_M, SPEED_BINS_M_S, USUAL_COUPLINGS, TrainOutcomes
 from tuning_tables import DamagedTable
 from tuning_tables.seal import seal_of, unsealed
 
@@ -55,7 +55,7 @@ class TrialTrains:
             **dict.fromkeys(("misrouted", "contact", "unseparated", "foul"), elements),
             **dict.fromkeys(("passes", "strokes", "error2_m2_s2", "short", "at_lowest"), positions),
             **dict.fromkeys(("commanded", "commands_m_s"), (*positions, self.categories)),
-            "overspeed": (count, len(CLASSES_M_S)),
+            "overspeed": (count, len(USUAL_COUPLINGS.classes_m_s)),
             "speed_bins": (count, len(SPEED_BINS_M_S) - 1),
             "gap_bins": (count, len(GAP_BINS_M) - 1),
         }

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.aim.scene import COUPLING_SPEED_M_S
+from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.tightest_pairs import tightest_pairs
 from synth.hump.trains.train_cuts import TrainCuts
@@ -21,8 +21,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-CLASSES_M_S = (COUPLING_SPEED_M_S, 1.5, 2.0)
-"""Over-speeds are told in the classes of [hump-computer-1970s]: up to 1.5, up to 2, faster."""
+USUAL_COUPLINGS = CouplingLimits()
+"""By the practice of most yards."""
 
 SAME_M_S = 1e-6
 """Speeds that differ by less are the same."""
@@ -101,8 +101,9 @@ class PassLimits:
 
 
 def outcomes(
-    routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory, able: PassLimits | None = None
-) -> TrainOutcomes:
+    routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory, able: PassLimits | None = None,
+    couplings: CouplingLimits = USUAL_COUPLINGS,
+) -> TrainOutcomes:  # fmt: skip
     """What is to be told of `trains` that were humped; without `able` no pass is counted as limited."""
     shape = trains.trains, trains.cuts
     none = routes.elements
@@ -117,7 +118,7 @@ def outcomes(
     gap = np.where(
         judged & (memory.end_speed_m_s <= 0.0) & ~memory.caught_on_track, np.maximum(memory.free_m - ends, 0.0), 0.0
     )
-    bounds = (*CLASSES_M_S, np.inf)
+    bounds = (*couplings.classes_m_s, np.inf)
     over = [((speed > low) & (speed <= high)).sum(axis=1) for low, high in pairwise(bounds)]
     length, cars = trains.length_m.reshape(shape), trains.cars.reshape(shape)
     passed = np.isfinite(memory.exit_m_s)

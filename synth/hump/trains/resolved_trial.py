@@ -242,6 +242,7 @@ def names_of(
         "list": [cut_line(cut) for cut in trains.cuts] if isinstance(trains, SortingList) else None,
         "one_wind_a_train": settings.trains.one_wind_a_train,
         "standing": settings.tracks.standing,
+        "closed_tracks": sorted(set(settings.trains.closed_tracks or ())),
         "method": settings.hump_speed.method,
         "worst_pair": settings.hump_speed.worst_pair,
         "feedback": settings.exit_speeds.feedback,

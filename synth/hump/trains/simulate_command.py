@@ -132,7 +132,7 @@ def show(result: HumpedTrial) -> Iterator[Chapter]:
 
     yield Chapter("Figures", tuple(figures(result)))
     yield Chapter("Catch-ups", tuple(catch_ups(result)))
-    yield Chapter("Couplings and gaps", tuple(couplings(result.found)))
+    yield Chapter("Couplings and gaps", tuple(couplings(result.found, result.trial.couplings)))
     yield Chapter("Positions", tuple(positions(result)))
     shown = guarded(one_train, result.trial, SHOWN_TRAIN)
     traced = traced_once(shown)

@@ -125,9 +125,9 @@ def train_figures(found: TrainOutcomes, wanted_share: float = 0.005) -> tuple[Tr
         part("stopped_on_the_way", found.stopped, cuts),
         mean("unseparated_elements_per_cut", "1", found.unseparated.sum(axis=1).astype(float), cuts),
         part("overspeed", found.overspeed.sum(axis=1), judged),
-        part("overspeed_to_1_5", found.overspeed[:, 0], judged),
-        part("overspeed_to_2", found.overspeed[:, 1], judged),
-        part("overspeed_above_2", found.overspeed[:, 2], judged),
+        part("overspeed_slight", found.overspeed[:, 0], judged),
+        part("overspeed_rough", found.overspeed[:, 1], judged),
+        part("overspeed_harmful", found.overspeed[:, 2], judged),
         mean("gap_per_cut", "m", found.gap_m, judged),
     ]
     if found.strokes.any():  # no position models its valves otherwise

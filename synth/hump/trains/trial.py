@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require, require_between
+from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.aim_control import AimControl, ReadAhead
 from synth.hump.trains.asked import ExitSpeeds, HumpSpeeds
 from synth.hump.trains.expected_way import ExpectedWay
@@ -22,7 +23,7 @@ from synth.hump.trains.humping import Hump, humped
 from synth.hump.trains.interval import CentredRule, IntervalRule
 from synth.hump.trains.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
 from synth.hump.trains.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
-from synth.hump.trains.outcomes import PassLimits, TrainOutcomes, outcomes
+from synth.hump.trains.outcomes import USUAL_COUPLINGS, PassLimits, TrainOutcomes, outcomes
 from synth.hump.trains.rollability import CategoryMean, Rollability, measured_rollability
 from synth.hump.trains.route_rolling import RouteRolling, rolling_on
 from synth.hump.trains.route_ways import RouteWays
@@ -127,7 +128,7 @@ class HumpTrial:
     `positions`: models in order from the crest, of every route that has so many; `planner` has their roles; `free`:
     tracks before each train. `aim`: exit speeds of the positions that aim, by route; `usable_heads_m`: energy head
     (rows,) that each position can be trusted to take from cuts, by mass, axles and category; `full_heads_m`: what it
-    takes at mean friction.
+    takes at mean friction. `couplings`: which couplings are too fast.
     """
 
     source: TrainSource
@@ -142,6 +143,7 @@ class HumpTrial:
     full_heads_m: tuple[BrakeHead, ...]
     free: FreeTracks
     threads: int = 0
+    couplings: CouplingLimits = USUAL_COUPLINGS
 
     def __post_init__(self) -> None:
         require(
@@ -153,7 +155,7 @@ class HumpTrial:
     def batch(self, first: int, count: int) -> TrainOutcomes:
         """What the trains `first` … `first + count − 1` come to."""
         trains, _, memory = self.humped(first, count)
-        return outcomes(self.routes, trains, memory, self.able(trains, memory.route.ravel()))
+        return outcomes(self.routes, trains, memory, self.able(trains, memory.route.ravel()), self.couplings)
 
     def able(self, trains: TrainCuts, route: Ints) -> PassLimits:
         """What the positions can do with the cuts of `trains`, which went on `route` (rows,)."""

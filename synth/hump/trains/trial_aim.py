@@ -42,6 +42,7 @@ def design_of(config: ResolvedTrial, threads: int, last: PositionChoice) -> AimD
         design_cuts=aim.design_cuts,
         seed=config.settings.trains.seed,
         threads=threads,
+        coupling_speed_m_s=config.settings.couplings.allowed_m_s,
     )
 
 

@@ -14,27 +14,25 @@ from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.position_strength import strengths
 from synth.hump.trains.train_figures import TrainFigure
 
-WORDS: Final = {
-    "catch_ups": "cuts that caught up",
-    "overspeed": "couplings above the allowed speed",
-    "overspeed_above_2": "couplings above 2 m/s",
-}
-"""What is judged, by the name of the figure."""
-
 
 def trial_limits(result: HumpedTrial) -> Iterator[Limit]:
     """Each limit with the figure that has its name; None where the interval of the figure holds the limit."""
-    told = {figure.name: figure for figure in result.figures}
+    told, speeds = {figure.name: figure for figure in result.figures}, result.trial.couplings
+    words = {
+        "catch_ups": "cuts that caught up",
+        "overspeed": f"couplings above {speeds.allowed_m_s:.3g} m/s",
+        "overspeed_harmful": f"couplings above {speeds.harmful_m_s:.3g} m/s",
+    }
     for name, limit in result.config.settings.acceptance.model_dump(exclude_none=True).items():
         if limit < 1.0:
-            yield limit_of(told[name], limit, result)
+            yield limit_of(words[name], told[name], limit, result)
 
 
-def limit_of(figure: TrainFigure, limit: float, result: HumpedTrial) -> Limit:
-    """One limit; where it is not kept, the sentence says what it comes from."""
+def limit_of(what: str, figure: TrainFigure, limit: float, result: HumpedTrial) -> Limit:
+    """One limit, on `what` the figure tells; where it is not kept, the sentence says what it comes from."""
     kept = False if figure.low95 > limit else True if figure.high95 <= limit else None
     shares = (f"{100.0 * each:.3g}" for each in (figure.value, figure.low95, figure.high95))
-    sentence = "{}: {} % [{}, {}]".format(WORDS[figure.name], *shares)
+    sentence = "{}: {} % [{}, {}]".format(what, *shares)
     sentence += f", at most {100.0 * limit:.3g} % allowed"
     if kept is None:
         return Limit(f"{sentence}; these trains are too few to tell", None)
@@ -77,6 +75,6 @@ def too_weak(result: HumpedTrial) -> str:
 REASONS: Final[Mapping[str, tuple[Callable[[HumpedTrial], str], ...]]] = {
     "catch_ups": (where_caught, too_weak),
     "overspeed": (not_aimed, too_weak),
-    "overspeed_above_2": (not_aimed, too_weak),
+    "overspeed_harmful": (not_aimed, too_weak),
 }
 """What a missed limit may come from."""

@@ -55,6 +55,7 @@ def sections_in_force(settings: HumpTrialSettings, designed: bool) -> Iterator[s
         "hump_speed": True,
         "exit_speeds": True,
         "aim": designed,
+        "couplings": True,
         "sensors": measured,
         "acceptance": True,
     }

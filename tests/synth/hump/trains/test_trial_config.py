@@ -63,7 +63,9 @@ def test_what_changes_no_train_changes_only_the_hash_of_the_figures() -> None:
         "[trains]\ncuts = 41",
         "[trains]\none_wind_a_train = true",
         "[trains]\ntrack_shares = { 1 = 1.0, 2 = 1.0 }",
+        "[trains]\nclosed_tracks = [1, 2]",
         "[trains]\ncategory_shares = { T = 1.0 }",
+        "[couplings]\nallowed_m_s = 1.2",
         "[cars]\nfollowing_share = 0.3",
         '[resistance]\nlaw = "tb-10062"',
         "[weather]\nhead_wind_mean_m_s = 1.0",
@@ -214,7 +216,17 @@ def test_a_list_that_does_not_fit_is_refused_with_row_and_reason(row: str, said:
         ("[trains]\ncuts = 40.0", "trains.cuts is 40.0; it must be a whole number"),
         ("[trains]\nmost_cars = 30", "trains.most_cars is 30: such a cut is 441.9 m long; let go with its middle over"),
         ("[trains]\ntrack_shares = { 99 = 1.0 }", "trains.track_shares names '99'; signal 201 leads to tracks 1 to 32"),
-        ("[trains]\ntrack_shares = { 1 = 0.0 }", "trains.track_shares has no share above 0"),
+        ("[trains]\ntrack_shares = { 1 = 0.0 }", "trains.track_shares leaves no track to which cuts go: tracks that"),
+        ("[trains]\nclosed_tracks = [99]", "trains.closed_tracks names 99; signal 201 leads to tracks 1 to 32"),
+        (
+            "[acceptance]\ncatch_ups = 10",
+            "acceptance.catch_ups is 10; it must be from 0 to 1: this is a share, 0.1 for 10",
+        ),
+        ("[couplings]\nrough_m_s = 2.5", "couplings.allowed_m_s is 1.38889; it must be less than rough_m_s, 2.5, and"),
+        (
+            "[[position]]\nnumber = 1\nexit_speed_m_s = 4.8",
+            "position[0].exit_speed_m_s = 4.8 is an unknown key; did you mean exit_m_s?",
+        ),
         ("[trains]\ntrack_shares = { 1 = -1.0 }", "trains.track_shares.1 is -1.0; it must be from 0 to 1e+06"),
         (
             "[trains]\ncategory_shares = { X = 1.0 }",
