@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 
-from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table
+from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.page.document import Stamp, document, figure, file_table
 from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
 from synth.frame.page.parameter_table import parameter_section
@@ -58,6 +58,8 @@ def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
     match exhibit:
         case Sentence():
             return element("p", exhibit.text)
+        case Tiles():
+            return element("div", *(tile(each) for each in exhibit.tiles), class_="tiles")
         case Table():
             return joined((element("h3", exhibit.title), table_or_words(exhibit)))
         case Chart() if exhibit.name in pictures:
@@ -65,6 +67,12 @@ def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
         case File() if exhibit.title:
             return element("p", element("a", exhibit.title, href=exhibit.name))
     return Markup()
+
+
+def tile(of: Tile) -> Markup:
+    """A figure at a glance."""
+    style = "tile" if of.kept is None else f"tile {VERDICTS[of.kept][1]}"
+    return element("div", element("strong", of.figure), element("p", of.of), class_=style)
 
 
 def table_or_words(of: Table) -> Markup:

@@ -28,6 +28,9 @@ from tuning_tables.excerpt import excerpt
 
 Location = Sequence[str | int]
 
+PER_CENT: Final = (2.5, 100.0)
+"""Numbers that may be meant as per cent where a share is asked for."""
+
 LONGEST_SENTENCE: Final = 400
 """Characters of what is said of a value, which the sentence may repeat."""
 
@@ -93,7 +96,11 @@ def share_words(fault: ErrorDetails, root: type[Section]) -> str:
     field, value = field_at(fault["loc"], root), fault["input"]
     limits = setting_limits(field)
     is_share = setting_unit(field) == DIMENSIONLESS and limits is not None and limits[0] >= 0.0 and limits[1] <= 1.0
-    return f": this is a share, {value / 100.0:g} for {value:g} %" if is_share and 1.0 < value <= 100.0 else ""
+    return (
+        f"; this is a share: {value / 100.0:g} for {value:g} %"
+        if is_share and PER_CENT[0] <= value <= PER_CENT[1]
+        else ""
+    )
 
 
 def holds_section(location: Location, root: type[Section]) -> bool:

@@ -45,7 +45,7 @@ class AimChoice:
         if found is None:
             held = ", ".join(f"{t.category.name} by {KNOWN[t.is_measured]}" for t in self.tables.tables)
             raise PlantError(
-                f"{self.named}, which has no table by {KNOWN[measured]} for the weight category {category.name}, "
+                f"{self.named}, which has no table by {KNOWN[measured]} for the weight category {category.label}, "
                 f"number {category.number}; there are {held}: make one for each category, as aim.knowledge asks"
             )
         return found

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from plant_models.library.hump_cars import ForCars
-from plant_models.library.weight_category import WeightCategory
+from plant_models.library.weight_category import WeightCategories, WeightCategory
 from synth.hump.configuration.settings import HumpTrialSettings
-
-USUAL_TEMPERATURE_C = 10.0
+from synth.hump.control.cut_record import CutRecord
 
 
 def car_warnings(asked: ForCars | None, kinds: Mapping[WeightCategory, Collection[int]]) -> Iterator[str]:
@@ -30,6 +29,21 @@ def car_warnings(asked: ForCars | None, kinds: Mapping[WeightCategory, Collectio
         yield (
             f"the hump is for cuts of at most {asked.most_cars} car{'s' * (asked.most_cars > 1)}, and trains can have "
             f"cuts of {longest}: set trains.most_cars, and trains.cars_mean with it"
+        )
+
+
+def list_warnings(cuts: Sequence[CutRecord], categories: WeightCategories) -> Iterator[str]:
+    """A sentence where cuts of a sorting list are of another weight category than their mass tells."""
+    numbers = {each.number: each for each in categories.members}
+    other = [(cut, categories.of(cut.mass_t, cut.axles)) for cut in cuts]
+    other = [(cut, by_mass) for cut, by_mass in other if by_mass.number != cut.category]
+    if other:
+        cut, by_mass = other[0]
+        more = f" (and {len(other) - 1} more)" if len(other) > 1 else ""
+        yield (
+            f"cut {cut.serial} of the sorting list{more} has {cut.mass_t:g} t on {cut.axles} axles, which is the "
+            f"weight category {by_mass.label}, and the list says {numbers[cut.category].label}: it rolls and brakes as "
+            "the list says; leave the column category out to have that of the mass"
         )
 
 

@@ -28,7 +28,7 @@ class HumpedTrial:
     @property
     def category_names(self) -> tuple[str, ...]:
         """Names of the weight categories in their places."""
-        return tuple(member.name for member in self.config.categories.members)
+        return tuple(member.label for member in self.config.categories.members)
 
 
 def humped_trial(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes) -> HumpedTrial:

@@ -102,13 +102,29 @@ def classes_of(choice: PositionChoice, config: ResolvedTrial) -> tuple[TableClas
 def table_model(choice: PositionChoice, config: ResolvedTrial) -> HumpPosition:
     """The closed loops of the tables in the book of a position; `InputError` unless there are some for all cuts."""
     found = ClassChoice(classes_of(choice, config), config.categories)
-    try:
-        for category, axles in sorted(kinds_of_cuts(config)):
-            found.able(category, axles)
-    except PlantError as fault:
+    missing = {kind for kind in kinds_of_cuts(config) if not found.serves(*kind)}
+    if missing:
         assert choice.book is not None
-        raise InputError(unfitting(f"{config.place}: position {choice.number}", choice.book, fault)) from None
+        named = f"{config.place}: position {choice.number}"
+        said = f"tables: {found.missing(missing)}, {or_fewer_kinds(missing, config)}"
+        raise InputError(unfitting(named, choice.book, PlantError(said)))
     return TableHumpPosition(found)
+
+
+def or_fewer_kinds(missing: set[tuple[int, int]], config: ResolvedTrial) -> str:
+    """What a user may set so that trains have none of the kinds of cuts that are `missing`."""
+    trains = config.trains
+    if isinstance(trains, SortingList):
+        return "or take a list without them"
+    members = config.categories.members
+    cars = {
+        place: {int(n) for n in config.people.mix.of(config.categories, members[place]).axles} for place, _ in missing
+    }
+    most = min((axles - 1) // max(cars[place]) for place, axles in missing)
+    if most >= 1:
+        return f"or set trains.most_cars = {most}"
+    names = sorted({members[place].latin for place, axles in missing if axles <= max(cars[place])})
+    return f"or leave {', '.join(names)} out of trains.category_shares"
 
 
 def kinds_of_cuts(config: ResolvedTrial) -> set[tuple[int, int]]:

@@ -122,6 +122,7 @@ def limits(result: HumpedTrial) -> Iterable[Limit]:
 def show(result: HumpedTrial) -> Iterator[Chapter]:
     """All trains first: whatever becomes of the one that is shown, their figures are written before it is humped."""
     from synth.hump.trains.shown.figures import figures
+    from synth.hump.trains.shown.first_screen import first_screen
     from synth.hump.trains.shown.one_train import SHOWN_TRAIN, one_train_exhibits, traced_once
     from synth.hump.trains.shown.places import catch_ups, couplings
     from synth.hump.trains.shown.positions import positions
@@ -130,6 +131,7 @@ def show(result: HumpedTrial) -> Iterator[Chapter]:
     from synth.hump.trains.traced_train import one_train
     from synth.kernels.cache import guarded
 
+    yield Chapter("At a glance", tuple(first_screen(result)))
     yield Chapter("Figures", tuple(figures(result)))
     yield Chapter("Catch-ups", tuple(catch_ups(result)))
     yield Chapter("Couplings and gaps", tuple(couplings(result.found, result.trial.couplings)))

@@ -30,7 +30,7 @@ def trial_limits(result: HumpedTrial) -> Iterator[Limit]:
 
 def limit_of(what: str, figure: TrainFigure, limit: float, result: HumpedTrial) -> Limit:
     """One limit, on `what` the figure tells; where it is not kept, the sentence says what it comes from."""
-    kept = False if figure.low95 > limit else True if figure.high95 <= limit else None
+    kept = kept_within(figure, limit)
     shares = (f"{100.0 * each:.3g}" for each in (figure.value, figure.low95, figure.high95))
     sentence = "{}: {} % [{}, {}]".format(what, *shares)
     sentence += f", at most {100.0 * limit:.3g} % allowed"
@@ -38,6 +38,11 @@ def limit_of(what: str, figure: TrainFigure, limit: float, result: HumpedTrial) 
         return Limit(f"{sentence}; these trains are too few to tell", None)
     reasons = [] if kept else [said for reason in REASONS[figure.name] if (said := reason(result))]
     return Limit("; ".join((sentence, *reasons)), kept)
+
+
+def kept_within(figure: TrainFigure, limit: float) -> bool | None:
+    """Whether a figure keeps the limit, interval included; None where the interval holds it, or there is none."""
+    return False if figure.low95 > limit else True if figure.high95 <= limit else None
 
 
 def where_caught(result: HumpedTrial) -> str:

@@ -220,7 +220,7 @@ def test_a_list_that_does_not_fit_is_refused_with_row_and_reason(row: str, said:
         ("[trains]\nclosed_tracks = [99]", "trains.closed_tracks names 99; signal 201 leads to tracks 1 to 32"),
         (
             "[acceptance]\ncatch_ups = 10",
-            "acceptance.catch_ups is 10; it must be from 0 to 1: this is a share, 0.1 for 10",
+            "acceptance.catch_ups is 10; it must be from 0 to 1; this is a share: 0.1 for 10 %",
         ),
         ("[couplings]\nrough_m_s = 2.5", "couplings.allowed_m_s is 1.38889; it must be less than rough_m_s, 2.5, and"),
         (
