@@ -161,12 +161,6 @@ def hump_routes(graph: HumpGraph, lead: int) -> HumpRoutes:
     return HumpRoutes(graph, lead, routes, numbers, vertex, place, points, throw, retarder, entrance, leave, length)
 
 
-def element_name(routes: HumpRoutes, number: int) -> str:
-    """What messages call an element: 'switch 4'."""
-    words = {Switch: "switch", Retarder: "retarder"}
-    return f"{words.get(type(routes.graph.vertex(number)), 'section')} {number}"
-
-
 def marks_m(route: Route, element: RouteElement) -> list[float]:
     """Places of the marks of an element, metres from the crest; what has no fouling point is clear at its end."""
     clear = route.fouling_m(element.number) if isinstance(element.vertex, Switch) else element.to_m

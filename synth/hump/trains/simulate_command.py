@@ -121,9 +121,10 @@ def limits(result: HumpedTrial) -> Iterable[Limit]:
 
 def show(result: HumpedTrial) -> Iterator[Chapter]:
     """All trains first: whatever becomes of the one that is shown, their figures are written before it is humped."""
+    from synth.hump.trains.chosen_trains import chosen_trains
     from synth.hump.trains.shown.figures import figures
     from synth.hump.trains.shown.first_screen import first_screen
-    from synth.hump.trains.shown.one_train import SHOWN_TRAIN, one_train_exhibits, traced_once
+    from synth.hump.trains.shown.one_train import one_train_exhibits, traced_once
     from synth.hump.trains.shown.places import catch_ups, couplings
     from synth.hump.trains.shown.positions import positions
     from synth.hump.trains.shown.program import program_exhibits, pushed_chart
@@ -136,11 +137,12 @@ def show(result: HumpedTrial) -> Iterator[Chapter]:
     yield Chapter("Catch-ups", tuple(catch_ups(result)))
     yield Chapter("Couplings and gaps", tuple(couplings(result.found, result.trial.couplings)))
     yield Chapter("Positions", tuple(positions(result)))
-    shown = guarded(one_train, result.trial, SHOWN_TRAIN)
+    number = chosen_trains(result.found)[0].number
+    shown = guarded(one_train, result.trial, number)
     traced = traced_once(shown)
-    yield Chapter(f"Train {SHOWN_TRAIN + 1}", tuple(one_train_exhibits(result, shown, traced)))
-    program = program_exhibits(guarded(speed_program, result.trial, SHOWN_TRAIN), brief=False)
-    yield Chapter("Hump speed", (*program, pushed_chart(SHOWN_TRAIN, traced)))
+    yield Chapter(f"Train {number + 1}", tuple(one_train_exhibits(result, shown, traced)))
+    program = program_exhibits(guarded(speed_program, result.trial, number), brief=False)
+    yield Chapter("Hump speed", (*program, pushed_chart(number, traced)))
 
 
 COMMAND = Command(

@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
+from plant_models.hump.element_number import element_name
 from synth.frame.command import Limit
 from synth.hump.control.number_ranges import ranges
-from synth.hump.trains.hump_routes import element_name
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.position_strength import strengths
 from synth.hump.trains.train_figures import TrainFigure
@@ -52,7 +52,7 @@ def where_caught(result: HumpedTrial) -> str:
     if not counts.any():
         return ""
     worst = int(counts.argmax())
-    return f"{100.0 * counts[worst] / counts.sum():.0f} % of them at {element_name(routes, routes.numbers[worst])}"
+    return f"{100.0 * counts[worst] / counts.sum():.0f} % of them at {element_name(routes.numbers[worst])}"
 
 
 def not_aimed(result: HumpedTrial) -> str:
