@@ -15,6 +15,10 @@ from synth.hump.trains.position_strength import strengths
 from synth.hump.trains.train_figures import TrainFigure
 
 
+JUDGES_NOTHING: Final = 1.0
+"""A limit that every share keeps."""
+
+
 def trial_limits(result: HumpedTrial) -> Iterator[Limit]:
     """Each limit with the figure that has its name; None where the interval of the figure holds the limit."""
     told, speeds = {figure.name: figure for figure in result.figures}, result.trial.couplings
@@ -24,7 +28,7 @@ def trial_limits(result: HumpedTrial) -> Iterator[Limit]:
         "overspeed_harmful": f"couplings above {speeds.harmful_m_s:.3g} m/s",
     }
     for name, limit in result.config.settings.acceptance.model_dump(exclude_none=True).items():
-        if limit < 1.0:
+        if limit < JUDGES_NOTHING:
             yield limit_of(words[name], told[name], limit, result)
 
 
@@ -41,7 +45,10 @@ def limit_of(what: str, figure: TrainFigure, limit: float, result: HumpedTrial) 
 
 
 def kept_within(figure: TrainFigure, limit: float) -> bool | None:
-    """Whether a figure keeps the limit, interval included; None where the interval holds it, or there is none."""
+    """Whether a figure keeps the limit, interval included; None where the interval holds it, where there is none, and
+    where the limit judges nothing."""
+    if limit >= JUDGES_NOTHING:
+        return None
     return False if figure.low95 > limit else True if figure.high95 <= limit else None
 
 

@@ -108,9 +108,10 @@ def where_closest(result: HumpedTrial) -> str:
     )
     kinds = told_most(pairs, [f"{behind} behind {ahead}" for ahead in names for behind in names])
     least = float(np.median(found.tightest_s[there]))
+    apart = f"were {least:.1f} s apart" if least >= 0.0 else f"were together for {-least:.1f} s on an element"
     return (
-        f"What limits the speed: the closest two cuts of a train were {least:.1f} s apart (median of {there.sum()} "
-        f"trains), at {places}; of them {kinds}."
+        f"What limits the speed: the closest two cuts of a train {apart} (median of {there.sum()} trains), at {places}; "
+        f"they were {kinds}."
     )
 
 

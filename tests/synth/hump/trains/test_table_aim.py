@@ -211,7 +211,7 @@ def test_an_exported_aim_agrees_with_the_one_that_is_designed_for_the_trial(tmp_
             'tables = "other"',
             "aim.tables names {0}/other, whose table aim-1-category is for the position ours, but ret",
         ),
-        ('tables_of = { 7 = "all" }', "aim.tables_of names '7'; retarders in the last position of a route: "),
+        ('tables_of = { 7 = "all" }', "aim.tables_of names '7'; retarders that aim at the standing cars: "),
     ],
 )
 def test_each_fault_is_one_sentence(text: str, said: str, tmp_path: Path) -> None:
