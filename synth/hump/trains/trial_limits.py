@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
-import numpy as np
-
 from plant_models.hump.element_number import element_name
 from synth.frame.command import Limit
 from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.humped_trial import HumpedTrial
+from synth.hump.trains.outcomes import caught_at
 from synth.hump.trains.position_strength import strengths
 from synth.hump.trains.train_figures import TrainFigure
-
 
 JUDGES_NOTHING: Final = 1.0
 """A limit that every share keeps."""
@@ -55,7 +53,7 @@ def kept_within(figure: TrainFigure, limit: float) -> bool | None:
 def where_caught(result: HumpedTrial) -> str:
     """The element at which most cuts caught up."""
     routes = result.config.routes
-    counts = result.found.misrouted.sum(axis=0) + np.where(routes.is_last, 0, result.found.contact.sum(axis=0))
+    counts = caught_at(routes, result.found)
     if not counts.any():
         return ""
     worst = int(counts.argmax())
