@@ -207,7 +207,7 @@ class TrialAcceptanceSettings(Section):
     )  # fmt: skip
     overspeed: float | None = optional(
         "1", 0.0, 1.0,
-        "of the cuts on their track: couplings faster than allowed; left out: 1.5 times aim.p_overspeed", 0.1,
+        "of the cuts on their track: couplings faster than allowed; left out: 1.5 times aim.p_overspeed", 0.15,
         f"{JUDGEMENT}: half as many again as the aim is asked for, since a cut may meet cars that still roll",
     )  # fmt: skip
     overspeed_harmful: float | None = optional("1", 0.0, 1.0, "of these: harmful couplings", 0.002)

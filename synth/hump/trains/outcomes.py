@@ -178,6 +178,11 @@ def by_category(trains: TrainCuts, values: NDArray[Any]) -> NDArray[Any]:
     return np.stack([(values * (place == k)[:, :, None]).sum(axis=1) for k in members], axis=2)
 
 
+def caught_at(routes: HumpRoutes, found: TrainOutcomes) -> Ints:
+    """Misroutes, and contacts ahead of a last position, of all trains at each element, (numbers,)."""
+    return np.asarray(found.misrouted.sum(axis=0) + np.where(routes.is_last, 0, found.contact.sum(axis=0)))
+
+
 def at_elements(routes: HumpRoutes, route: Ints, column: Ints) -> Ints:
     """How many cuts have their `column` (trains, cuts) at each element, (trains, numbers)."""
     found = column[:, :, None] == np.arange(routes.elements)

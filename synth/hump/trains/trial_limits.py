@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
-import numpy as np
-
 from plant_models.hump.element_number import element_name
 from synth.frame.command import Limit
 from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.humped_trial import HumpedTrial
+from synth.hump.trains.outcomes import caught_at
 from synth.hump.trains.position_strength import strengths
 from synth.hump.trains.train_figures import TrainFigure
+
+JUDGES_NOTHING: Final = 1.0
+"""A limit that every share keeps."""
 
 
 def trial_limits(result: HumpedTrial) -> Iterator[Limit]:
@@ -24,7 +26,7 @@ def trial_limits(result: HumpedTrial) -> Iterator[Limit]:
         "overspeed_harmful": f"couplings above {speeds.harmful_m_s:.3g} m/s",
     }
     for name, limit in result.config.settings.acceptance.model_dump(exclude_none=True).items():
-        if limit < 1.0:
+        if limit < JUDGES_NOTHING:
             yield limit_of(words[name], told[name], limit, result)
 
 
@@ -41,14 +43,17 @@ def limit_of(what: str, figure: TrainFigure, limit: float, result: HumpedTrial) 
 
 
 def kept_within(figure: TrainFigure, limit: float) -> bool | None:
-    """Whether a figure keeps the limit, interval included; None where the interval holds it, or there is none."""
+    """Whether a figure keeps the limit, interval included; None where the interval holds it, where there is none, and
+    where the limit judges nothing."""
+    if limit >= JUDGES_NOTHING:
+        return None
     return False if figure.low95 > limit else True if figure.high95 <= limit else None
 
 
 def where_caught(result: HumpedTrial) -> str:
     """The element at which most cuts caught up."""
     routes = result.config.routes
-    counts = result.found.misrouted.sum(axis=0) + np.where(routes.is_last, 0, result.found.contact.sum(axis=0))
+    counts = caught_at(routes, result.found)
     if not counts.any():
         return ""
     worst = int(counts.argmax())

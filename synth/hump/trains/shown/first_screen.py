@@ -12,6 +12,7 @@ from plant_models.hump.element_number import element_name
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import decimals, three_figures
 from synth.hump.trains.humped_trial import HumpedTrial
+from synth.hump.trains.outcomes import caught_at
 from synth.hump.trains.shown.positions import role_words
 from synth.hump.trains.train_figures import TrainFigure, interval_of, ratio
 from synth.hump.trains.trial_limits import kept_within
@@ -86,8 +87,8 @@ def one_in(share: float) -> str:
 
 def where_caught(result: HumpedTrial) -> str:
     """The places at which most cuts caught up."""
-    routes, found = result.config.routes, result.found
-    counts = found.misrouted.sum(axis=0) + np.where(routes.is_last, 0, found.contact.sum(axis=0))
+    routes = result.config.routes
+    counts = caught_at(routes, result.found)
     if not counts.any():
         return "No cut caught up."
     places = told_most(counts, [element_name(number) for number in routes.numbers])
@@ -108,9 +109,10 @@ def where_closest(result: HumpedTrial) -> str:
     )
     kinds = told_most(pairs, [f"{behind} behind {ahead}" for ahead in names for behind in names])
     least = float(np.median(found.tightest_s[there]))
+    apart = f"were {least:.1f} s apart" if least >= 0.0 else f"were together for {-least:.1f} s on an element"
     return (
-        f"What limits the speed: the closest two cuts of a train were {least:.1f} s apart (median of {there.sum()} "
-        f"trains), at {places}; of them {kinds}."
+        f"What limits the speed: the closest two cuts of a train {apart} (median of {there.sum()} trains), at "
+        f"{places}; they were {kinds}."
     )
 
 

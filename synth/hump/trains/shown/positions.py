@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 import numpy as np
@@ -74,7 +74,8 @@ def positions(result: HumpedTrial) -> Iterator[Exhibit]:
     yield Sentence(HOW_TO_READ)
     if result.config.aims:
         yield Sentence(AIMED)
-        aims = [row for choice in result.config.aims for row in aim_rows(result.config.routes, choice)]
+        labels = {member.number: member.label for member in result.config.categories.members}
+        aims = [row for choice in result.config.aims for row in aim_rows(result.config.routes, choice, labels)]
         yield Table("aim-tables", "Aim tables", AIMS, aims)
 
 
@@ -126,15 +127,15 @@ def aimed_tracks(config: ResolvedTrial, place: int) -> tuple[int, ...]:
     return tuple(int(track) for track in np.sort(config.routes.tracks[config.roles.aims[place]]))
 
 
-def aim_rows(routes: HumpRoutes, choice: AimChoice) -> Iterator[Row]:
-    """The tables that command the last position, and on which tracks."""
+def aim_rows(routes: HumpRoutes, choice: AimChoice, labels: Mapping[int, str]) -> Iterator[Row]:
+    """The tables that command the last position, and on which tracks; `labels`: of weight categories, by number."""
     for table in choice.tables.tables:
         yield {
             "tracks": tuple(sorted(int(routes.tracks[row]) for row in choice.rows)),
             "retarders": choice.retarders,
             "id": table.id,
             "position": table.position.name,
-            "category": table.category.name,
+            "category": labels.get(table.category.number, table.category.name),
             "knowledge": "measured" if table.is_measured else "category",
             "p_overspeed": table.required.p_overspeed,
             "coupling_speed_m_s": table.required.coupling_speed_m_s,

@@ -222,7 +222,10 @@ def test_tracks_without_any_position_are_humped(tmp_path: Path) -> None:
 def test_the_command_humps_them_and_tells_all(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "uneven.toml").write_text(UNEVEN[name](), encoding="utf-8")
     config, out = tmp_path / "trial.toml", tmp_path / "out"
-    config.write_text('hump = "uneven.toml"\n[trains]\nnumber = 3\ncuts = 8\nmost_cars = 3\n[aim]\ndesign_cuts = 200\n')
+    config.write_text(
+        'hump = "uneven.toml"\n[trains]\nnumber = 3\ncuts = 8\nmost_cars = 3\n[aim]\ndesign_cuts = 200\n'
+        '[acceptance]\ncatch_ups = 1\noverspeed = 1\n[[position]]\nnumber = 2\nrole = "aim"\n'
+    )
     assert main(["hump", "simulate", str(config), "-o", str(out)]) == 0
     summary = json.loads((out / "summary.json").read_text())
     short = list(SHORT_TRACKS) if name == "bunch" else [OWN_TRACK]
