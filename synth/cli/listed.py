@@ -153,6 +153,14 @@ HUMP: Final = (
         "the same trains. Resumable.",
     ),
     Listed(
+        "hump compare",
+        "synth.hump.comparison.command:COMMAND",
+        "synth.hump.comparison.options:CompareOptions",
+        "init --hump",
+        "Compare runs of 'hump simulate' on the same trains: every figure, and by how much it differs.\n\n"
+        "Differences from the first run are paired by train, so they are known better than the figures themselves.",
+    ),
+    Listed(
         "hump speed",
         "synth.hump.trains.speed_command:COMMAND",
         "synth.hump.trains.trial_options:SpeedOptions",

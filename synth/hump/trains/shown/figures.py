@@ -26,7 +26,7 @@ TITLES: Final = {
     "gap_per_cut": "gap a cut",
     "strokes_per_pass": "commands to valves a pass",
 }
-"""What a figure is called; others go by their names."""
+"""What figures are called, but for those of over-speeds."""
 
 HOW_TO_READ: Final = (
     "Misrouted: the cut came to a switch before it could be thrown behind the cut ahead, and followed that one. In "
@@ -67,7 +67,7 @@ def figures(result: HumpedTrial) -> Iterator[Exhibit]:
         {"trains": len(found), "cuts": cuts, "cars": cars, "trains_sha256": config.trains_sha256},
         brief=True,
     )
-    titles = TITLES | coupling_titles(result.trial.couplings)
+    titles = titles_of(result.trial.couplings)
     shares = [share_row(each, titles) for each in result.figures if each.is_share]
     means = [mean_row(each, titles) for each in result.figures if not each.is_share]
     yield Table("means", "Means over trains", MEANS, means, brief=True)
@@ -76,10 +76,10 @@ def figures(result: HumpedTrial) -> Iterator[Exhibit]:
     yield File(TRAINS, to_npz(found, result.of_trial))
 
 
-def coupling_titles(limits: CouplingLimits) -> dict[str, str]:
-    """What shares of over-speeds are called."""
+def titles_of(limits: CouplingLimits) -> dict[str, str]:
+    """What figures are called."""
     allowed, rough, harmful = (f"{each:.3g}" for each in limits.classes_m_s)
-    return {
+    return TITLES | {
         "overspeed": f"over-speed, above {allowed} m/s",
         "overspeed_slight": f"over-speed up to {rough} m/s",
         "overspeed_rough": f"over-speed above {rough}, up to {harmful} m/s",
@@ -101,4 +101,4 @@ def mean_row(figure: TrainFigure, titles: Mapping[str, str]) -> Row:
 
 def names_of(figure: TrainFigure, titles: Mapping[str, str]) -> Row:
     """For people and for programs."""
-    return {"title": titles.get(figure.name, figure.name.replace("_", " ")), "name": figure.name}
+    return {"title": titles[figure.name], "name": figure.name}
