@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import model_validator
 
 from plant_models.errors import require
-from synth.aim.scene import COUPLING_SPEED_M_S
+from synth.aim.coupling_speed import COUPLING_SPEED_M_S
 from synth.frame.settings.section import Section, setting
 
 IN_CLASSES = "[hump-computer-1970s]: over-speeds are told up to 1.5, up to 2 m/s, and faster"
@@ -15,7 +15,7 @@ class CouplingLimits(Section):
     """Coupling speeds: what is too fast, and in which classes that is told. Cuts are aimed at the allowed speed."""
 
     allowed_m_s: float = setting(
-        COUPLING_SPEED_M_S, "m/s", 0.3, 5.0, "highest allowed one; faster is over-speed", "[kozachenko-aimed]: 5 km/h"
+        COUPLING_SPEED_M_S, "m/s", 0.3, 5.0, "highest allowed one; faster is over-speed", "[braking-position]: 5 km/h"
     )
     rough_m_s: float = setting(1.5, "m/s", 0.3, 6.0, "over-speed above this is rough", IN_CLASSES)
     harmful_m_s: float = setting(2.0, "m/s", 0.3, 7.0, "over-speed above this is harmful", IN_CLASSES)

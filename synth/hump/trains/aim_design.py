@@ -14,9 +14,10 @@ from plant_models.hump import Retarder, Route
 from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
 from synth.aim.aim_table import AimOrder, chosen, rounded_down, thresholds_at
+from synth.aim.coupling_speed import COUPLING_SPEED_M_S
 from synth.aim.knowledge import ByCategory, ByReading, Requirement
 from synth.aim.position_models import PositionModel
-from synth.aim.scene import COUPLING_SPEED_M_S, AimScene, MeasuredStretch, SceneCuts
+from synth.aim.scene import AimScene, MeasuredStretch, SceneCuts
 from synth.hump.trains.free_stretch import SHORTEST_M, ResistanceOnStretch
 from synth.hump.trains.hump_aim import CategoryAim, HumpAim
 from synth.hump.trains.hump_routes import HumpRoutes

@@ -18,6 +18,7 @@ from synth.hump.configuration.position_settings import (
     HumpPositionSettings,
     RoleName,
 )
+from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.forecast import SpeedRange
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.position_choice import PositionChoice
@@ -146,6 +147,25 @@ def require_tables(choice: PositionChoice, key: str, highest_m_s: float) -> None
         f"position {choice.number}: {key} is {highest_m_s:g}; its book {choice.book} has tables for all its classes "
         f"up to {top or 0.0:g}: lower it, or tune a book for faster cuts",
     )
+
+
+def role_warnings(
+    asked: RoleSettings, roles: Roles, choices: Sequence[PositionChoice], routes: HumpRoutes
+) -> Iterator[str]:
+    """A sentence for each role that does what hardly anybody wants."""
+    for place, (each, exits, choice) in enumerate(zip(asked.positions, roles.exits, choices, strict=True)):
+        blocked = sorted(int(track) for track in routes.tracks[roles.aims[place] & routes.parts_behind])
+        if blocked:
+            yield (
+                f"position {each.number} aims at the standing cars of tracks {ranges(blocked)}, and switches are "
+                "behind it: cuts leave it slowly and block them, so that those behind catch up"
+            )
+        single = isinstance(exits, Spacing) and exits.range.low_m_s == exits.range.high_m_s
+        if single and place in roles.not_of_all and choice.book is not None and each.lowest_m_s is None:
+            yield (
+                f"position {each.number} can be commanded {choice.top_target_m_s:g} m/s alone: its book ends there, "
+                "and slower exits are not asked for; set its lowest_m_s lower"
+            )
 
 
 def role_values(asked: RoleSettings, roles: Roles, categories: WeightCategories) -> Iterator[SourcedValue]:

@@ -30,7 +30,7 @@ from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.railml.write import to_railml
 from synth.hump.trains.aim_choice import AimChoice, aim_choices
-from synth.hump.trains.asked_roles import asked_roles, role_values, settings_of
+from synth.hump.trains.asked_roles import asked_roles, role_values, role_warnings, settings_of
 from synth.hump.trains.asked_trains import (
     cars_of_cuts,
     filled_trains,
@@ -178,6 +178,7 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         warnings=(
             *range_warnings(parameters),
             *aim_warnings(aims, routes, settings),
+            *role_warnings(asked, roles, positions, routes),
             *car_warnings(file.hump.cars, cars_of_cuts(trains, categories)),
             *weather_warnings(settings),
             *list_warnings(trains.cuts if isinstance(trains, SortingList) else (), categories),

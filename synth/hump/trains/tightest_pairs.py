@@ -19,8 +19,8 @@ Ints = NDArray[np.int64]
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class TightestPairs:
-    """The tightest pair of each train, (trains,): `interval_s` more than its points needed, infinite where no two cuts
-    share an element; `at`, place of the element among the numbers of the routes, −1 for none; `ahead`, `behind`: places
+    """The tightest pair of each train, (trains,): `interval_s` more than its points needed, 0 where no two cuts share
+    an element; `at`, place of the element among the numbers of the routes, −1 for none; `ahead`, `behind`: places
     of the weight categories."""
 
     interval_s: Floats
@@ -46,11 +46,13 @@ def tightest_pairs(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory) -
     counts = (columns < np.minimum(last, contact)) & np.isfinite(comes) & np.isfinite(leaves)
     margin = np.full(counts.shape, np.inf)
     np.subtract(comes, leaves + needs, out=margin, where=counts)
-    flat = margin.reshape(len(margin), -1)
+    lanes, none = np.arange(len(margin)), np.full((len(margin), 1), np.inf)  # a train of one cut has no pair at all
+    flat = np.concatenate((margin.reshape(len(margin), -1), none), axis=1)
     place = flat.argmin(axis=1)
-    pair, column = np.divmod(place, routes.elements)
-    lanes = np.arange(len(flat))
     least = flat[lanes, place]
+    pair, column = np.divmod(np.where(np.isfinite(least), place, 0), routes.elements)
+    follower = np.minimum(pair + 1, memory.route.shape[1] - 1)
     category = trains.category.reshape(memory.route.shape)
-    at = np.where(np.isfinite(least), routes.vertex[behind[lanes, pair], column], -1)
-    return TightestPairs(least, at, category[lanes, pair], category[lanes, pair + 1])
+    at = np.where(np.isfinite(least), routes.vertex[memory.route[lanes, follower], column], -1)
+    least = np.where(at >= 0, least, 0.0)
+    return TightestPairs(least, at, category[lanes, pair], category[lanes, follower])

@@ -89,6 +89,7 @@ def test_the_closest_cuts_are_those_of_a_plain_search(full: tuple[HumpedTrial, T
     result, trains, memory = full
     routes = result.config.routes
     plain = [closest(routes, memory, train) for train in range(TRAINS)]
+    assert np.isfinite(plain).all()
     np.testing.assert_allclose(result.found.tightest_s, plain)
     assert (result.found.tightest_at >= 0).all()
     assert set(result.found.tightest_ahead) == set(trains.category)

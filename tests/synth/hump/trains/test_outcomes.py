@@ -94,7 +94,7 @@ def test_six_cuts_are_counted_by_hand() -> None:
         "at_lowest": [3],
         "commanded": [[3, 0, 0, 0, 1]],
         "commands_m_s": [[6.0, 0.0, 0.0, 0.0, 2.0]],
-        "tightest_s": np.inf,
+        "tightest_s": 0.0,
         "tightest_at": -1,
         "tightest_ahead": 0,
         "tightest_behind": 4,

@@ -37,6 +37,10 @@ def test_the_last_position_aims_unless_a_switch_is_behind_it(hump: Path) -> None
     np.testing.assert_array_equal(trial.roles.aims[PARK], ~short)
     told = resolved(hump, '[[position]]\nnumber = 2\nrole = "aim"\n')
     np.testing.assert_array_equal(told.roles.aims[BUNCH], short)
+    assert told.warnings[0].startswith(
+        "position 2 aims at the standing cars of tracks 1 to 8, and switches are behind it"
+    )
+    assert not trial.warnings
     none = resolved(hump, '[[position]]\nnumber = 3\nrole = "spacing"\n')
     assert not none.roles.aims.any()
     assert none.roles.not_of_all == (0, 1, 2)
