@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from synth.hump.configuration.trial_file import TrialFile, parse_trial_file, tri
 
 if TYPE_CHECKING:
     from synth.hump.capacity.asked_capacity import AskedCapacity
-    from synth.hump.capacity.curve import Curve
+    from synth.hump.capacity.found_capacity import FoundCapacity
     from synth.hump.trains.asked_trial import AskedTrial
     from synth.hump.trains.resolved_trial import ResolvedTrial
     from synth.hump.trains.trial import HumpTrial
@@ -27,15 +27,6 @@ LIMITS_OF_USE = (
     "Cars an hour are those over the crest while a train is humped. What the yard can bring and take away is not told.",
     "The tool claims no safety integrity: no figure here proves that a hump is safe.",
 )
-
-
-@dataclass(frozen=True)
-class FoundCapacity:
-    """The curves that were asked for; `cuts`: of each point."""
-
-    asked: AskedCapacity
-    curves: tuple[Curve, ...]
-    cuts: int
 
 
 def resolve(asked: Asked[TrialFile, CapacityOptions]) -> AskedCapacity:
@@ -67,6 +58,7 @@ def steps(asked: AskedCapacity) -> Steps:
 def compute(asked: AskedCapacity, work: Work) -> FoundCapacity:
     """Hump the trains of all points, those of earlier runs left out."""
     from synth.hump.capacity.curve import curves
+    from synth.hump.capacity.found_capacity import FoundCapacity
     from synth.hump.trains.train_engine import engine_for
     from synth.hump.trains.train_run import run_of, run_trials
     from synth.kernels.cache import guarded

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Final
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import decimals, per_cent, whole
 from synth.hump.capacity.curve import Curve
+from synth.hump.capacity.found_capacity import FoundCapacity
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from synth.hump.capacity.command import FoundCapacity
 
 HOW_TO_READ: Final = (
     "Between its points a curve is a straight line, which is bent in the picture, as its axis is logarithmic. Where it "
