@@ -9,6 +9,7 @@ from typing import Any, Final
 from plant_models.errors import PlantError
 from plant_models.hump import HumpError, HumpGraph, Vertex
 from plant_models.library.data_file import parse_toml, shown, shown_key
+from plant_models.library.hump_cars import ForCars, for_cars
 from plant_models.library.hump_cells import (
     ELEMENTS,
     Cell,
@@ -35,14 +36,15 @@ VERSION: Final = 1
 MOST_TOLD: Final = 20
 """Faults that are told at once; one mistake may stand in hundreds of rows."""
 
-TOP: Final = ("format", "version", "title", "notes", "source", "confidence", "type", "hump")
+TOP: Final = ("format", "version", "title", "notes", "source", "confidence", "for_cars", "type", "hump")
 
 
 @dataclass(frozen=True)
 class HumpEntry:
     """A hump by name and `title`; `provenance`: every number of its file, under its key there, with origin.
 
-    A value of several numbers is told as they stand in the file, one after the other.
+    A value of several numbers is told as they stand in the file, one after the other. `cars`: those that it is for,
+    None where the file does not say.
     """
 
     name: str
@@ -50,6 +52,7 @@ class HumpEntry:
     notes: tuple[str, ...]
     graph: HumpGraph
     provenance: tuple[SourcedValue, ...] = ()
+    cars: ForCars | None = None
 
 
 def load_hump(name: str, library: Library = BUILT_IN) -> HumpEntry:
@@ -102,6 +105,10 @@ def entry_from(tree: dict[str, Any], name: str) -> HumpEntry:
     notes = texts(tree.get("notes", []))
     if notes is None:
         raise HumpFileFault(("notes",), "notes must be a list of non-empty strings of printable characters")
+    try:
+        cars = for_cars(tree["for_cars"]) if "for_cars" in tree else None
+    except ValueError as error:
+        raise HumpFileFault(("for_cars",), str(error)) from None
     origin = origin_of(tree, (), Origin())
     types = TypeTables(table_of(tree, "type", {}), origin, set())
     hump = table_of(tree, "hump", None)
@@ -109,7 +116,7 @@ def entry_from(tree: dict[str, Any], name: str) -> HumpEntry:
     unused = next((key for key in types.tables if key not in types.used), None)
     if unused is not None:
         raise HumpFileFault(("type", unused), f"no element names the type {shown_key(unused)}; take it out")
-    return HumpEntry(name, title, notes, graph, tuple(provenance(cells)))
+    return HumpEntry(name, title, notes, graph, tuple(provenance(cells)), cars)
 
 
 def table_of(tree: Mapping[str, Any], key: str, absent: dict[str, Any] | None) -> dict[str, Any]:

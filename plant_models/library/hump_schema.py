@@ -66,6 +66,15 @@ def hump_schema() -> Json:
             "title": PRINTABLE,
             "notes": {"type": "array", "items": PRINTABLE},
             **ORIGIN,
+            "for_cars": {
+                "type": "object",
+                "additionalProperties": False,
+                "minProperties": 1,
+                "properties": {
+                    "categories": {"type": "array", "items": PRINTABLE, "minItems": 1},
+                    "most_cars": {"type": "integer", "minimum": 1},
+                },
+            },
             "type": {"type": "object", "additionalProperties": type_schema(properties)},
             "hump": {
                 "type": "object",

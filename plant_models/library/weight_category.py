@@ -74,6 +74,11 @@ class WeightCategory:
     of_stages: int | None
     provenance: tuple[SourcedValue, ...]
 
+    @property
+    def label(self) -> str:
+        """Both names, where there are two: Л (L)."""
+        return self.name if self.name == self.latin else f"{self.name} ({self.latin})"
+
     def at(self, top_stage: int) -> WeightCategory:
         """The same at a position whose highest stage is `top_stage`: its stages are counted in those of that position.
 

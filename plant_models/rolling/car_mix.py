@@ -58,7 +58,7 @@ class CarMix:
         able = tuple(
             c for c in self.cars if c.share > 0.0 and not np.isnan(mass_limits_t(categories, category, c.car)[0])
         )
-        require(len(able) > 0, f"car mix: no car of it can be in the weight category {category.name}")
+        require(len(able) > 0, f"car mix: no car of it can be in the weight category {category.label}")
         return CarMix(able, self.following_share, self.underload_mean_t)
 
     def types(self, u: Floats) -> NDArray[np.int64]:

@@ -15,12 +15,10 @@ from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
 from plant_models.rolling.roll_track import RollTrack
+from synth.aim.coupling_speed import COUPLING_SPEED_M_S
 from synth.simulation.free_roll import RollingCuts, rolling_cuts
 
 Floats = NDArray[np.float64]
-
-COUPLING_SPEED_M_S = 5.0 / 3.6
-"""5 km/h, the highest speed at which cars may couple ([braking-position])."""
 
 SLOWEST_M_S = 0.3
 """Speed at a bunch exit that no draw is below."""

@@ -144,6 +144,23 @@ HUMP: Final = (
         "The same command goes on after an end of any kind. Exit code 1 if a limit of the configuration is missed.",
     ),
     Listed(
+        "hump capacity",
+        "synth.hump.capacity.command:COMMAND",
+        "synth.hump.capacity.options:CapacityOptions",
+        "init --hump",
+        "Tell how many cars an hour a hump can hump at an allowed share of catch-ups.\n\n"
+        "A curve for the trial as it is, or one for each accuracy of the positions and each value of a key; all hump "
+        "the same trains. Resumable.",
+    ),
+    Listed(
+        "hump compare",
+        "synth.hump.comparison.command:COMMAND",
+        "synth.hump.comparison.options:CompareOptions",
+        "init --hump",
+        "Compare runs of 'hump simulate' on the same trains: every figure, and by how much it differs.\n\n"
+        "Differences from the first run are paired by train, so they are known better than the figures themselves.",
+    ),
+    Listed(
         "hump speed",
         "synth.hump.trains.speed_command:COMMAND",
         "synth.hump.trains.trial_options:SpeedOptions",

@@ -162,7 +162,14 @@ class Verdict:
     @property
     def accepted(self) -> bool:
         """Every limit is kept for sure."""
-        return all(limit.kept for limit in self.limits)
+        return self.kept is True
+
+    @property
+    def kept(self) -> bool | None:
+        """Whether all limits are kept; None where none is missed for sure, but the figures do not decide some."""
+        if any(limit.kept is False for limit in self.limits):
+            return False
+        return None if any(limit.kept is None for limit in self.limits) else True
 
     @property
     def sentence(self) -> str:

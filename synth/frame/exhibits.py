@@ -156,7 +156,26 @@ class File:
     title: str = ""
 
 
-Exhibit = Table | Sentence | Chart | File
+@dataclass(frozen=True)
+class Tile:
+    """A figure that is read at a glance: `figure` in words, large, and what it is of. `kept`: its colour by a limit.
+
+    A tile holds no figure of its own: tables have it, with all digits.
+    """
+
+    figure: str
+    of: str
+    kept: bool | None = None
+
+
+@dataclass(frozen=True)
+class Tiles:
+    """A few tiles side by side; a page alone shows them."""
+
+    tiles: Sequence[Tile]
+
+
+Exhibit = Table | Sentence | Chart | File | Tiles
 
 
 @dataclass(frozen=True)

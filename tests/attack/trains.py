@@ -48,7 +48,10 @@ def read_trains(folder: Path) -> str:
 def trains_kind() -> Kind:
     """Trains of a small trial; a changed file is refused with 3, or has the same trains."""
     config = resolve_trial(parse_trial_file(CONFIG, "trial.toml"))
-    content = to_npz(made_trial(config).batch(0, NUMBER), TrialTrains(config.routes, config.trains_sha256))
+    content = to_npz(
+        made_trial(config).batch(0, NUMBER),
+        TrialTrains(config.routes, config.trains_sha256, len(config.categories.members)),
+    )
     return Kind(
         name="trains",
         files={"inputs/config.toml": CONFIG.encode(), "trains.npz": content},

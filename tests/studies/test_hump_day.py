@@ -22,8 +22,7 @@ from scripts.studies.humping.base_trial import (
     with_planner,
     with_stds,
 )
-from scripts.studies.humping.crossings import REPLICATES, Sums, decided, drawn_weights
-from scripts.studies.humping.day_figures import Pair, difference, fewer_catch_ups
+from scripts.studies.humping.day_figures import Pair, fewer_catch_ups
 from scripts.studies.humping.findings import HumpDay
 from scripts.studies.humping.runs import Group, measured
 from scripts.studies.humping.sensitivity import on_graph, on_section, thrown_in, with_king_switch, with_switches
@@ -42,47 +41,6 @@ TRAINS = 4
 @pytest.fixture(scope="module")
 def trial() -> HumpTrial:
     return Day(seed=3, cuts=8, design_cuts=200).trial()
-
-
-def test_a_curve_crosses_a_limit_where_the_line_between_two_programs_does() -> None:
-    share = np.array([[0.0, 0.002, 0.006], [0.002, 0.003, 0.004], [0.0, 0.0, 0.0005]])
-    speed = np.array([[2.0, 2.2, 2.6]] * 3)
-    crossed, cars = Sums(share, speed, 300.0 * speed).crossing(0.001)
-    assert crossed.tolist() == pytest.approx([2.1, -np.inf, np.inf])
-    assert cars.tolist() == pytest.approx([630.0, -np.inf, np.inf])
-    assert Sums(share, speed, speed).crossing(0.004)[0][0] == pytest.approx(2.4)
-
-
-def test_a_curve_is_read_at_a_speed_between_its_programs_and_nowhere_else() -> None:
-    sums = Sums(np.array([[0.0, 0.1, 0.4]]), np.array([[2.0, 2.5, 3.0]]), np.zeros((1, 3)))
-    assert sums.at_speed(2.25).tolist() == pytest.approx([0.05])
-    assert sums.at_speed(3.0).tolist() == pytest.approx([0.4])
-    assert np.isnan(sums.at_speed(1.9)).all()
-    assert np.isnan(sums.at_speed(3.1)).all()
-
-
-def test_bootstrap_intervals_are_those_of_a_mean_of_independent_trains() -> None:
-    caught = np.random.default_rng(1).poisson(0.5, 400).astype(float)
-    found = decided(drawn_weights(400, 2) @ caught / 400)
-    assert found is not None
-    half = 1.96 * caught.std(ddof=1) / np.sqrt(400)
-    assert found.value == pytest.approx(caught.mean())
-    assert found.ci95 == pytest.approx((caught.mean() - half, caught.mean() + half), abs=0.15 * half)
-    assert decided(np.concatenate(([1.0], np.full(REPLICATES, np.inf)))) is None
-    assert decided(np.concatenate(([np.nan], np.ones(REPLICATES)))) is None
-
-
-def test_paired_differences_are_those_of_students_test_where_all_trains_are_alike_long() -> None:
-    from scipy.stats import ttest_rel
-
-    rng = np.random.default_rng(5)
-    base, one = np.full(60, 40.0), rng.poisson(3.0, 60).astype(float)
-    other = np.maximum(one - rng.poisson(0.4, 60), 0.0)
-    found = difference(one, base, other, base)
-    expected = ttest_rel(one / 40.0, other / 40.0).confidence_interval(0.95)
-    assert found.value == pytest.approx((one - other).mean() / 40.0)
-    assert found.ci95 == pytest.approx((expected.low, expected.high))
-    assert difference(one, base, one, base) == Value(0.0, (0.0, 0.0))
 
 
 @pytest.mark.long

@@ -55,6 +55,9 @@ step_m_s = 0.4
 choices = 3
 [aim]
 design_cuts = 200
+[acceptance]
+catch_ups = 1.0
+overspeed = 1.0
 [output]
 plots = false
 report = false

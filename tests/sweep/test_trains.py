@@ -23,7 +23,7 @@ from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
 from synth.hump.trains.outcomes import joined
 from synth.hump.trains.resolved_trial import load_trial
-from synth.hump.trains.train_run import BatchFiles, run_trains
+from synth.hump.trains.train_run import TrialRun, run_of, run_trials
 from synth.hump.trains.trial import BATCH
 from tests.sweep import poison
 from tests.sweep.conftest import Ran, begin, contents, kill_and_reap, wait_until
@@ -35,11 +35,11 @@ def batch_file(out: Path, key: str) -> Path:
 
 
 @contextmanager
-def files_in(out: Path, trial: Path) -> Iterator[BatchFiles]:
-    """The batches in `out`, which is held."""
+def run_in(out: Path, trial: Path) -> Iterator[TrialRun]:
+    """The batches of `trial` in `out`, which is held."""
     config = load_trial(trial)
     with results_directory(out, "hump simulate") as directory:
-        yield BatchFiles(directory, TrialTrains(config.routes, config.trains_sha256))
+        yield run_of(config, made_trial(config), config.settings.trains.number, directory)
 
 
 @pytest.mark.long
@@ -54,7 +54,7 @@ def test_batches_of_any_size_are_the_same_trains(trial: Path, humped: Path) -> N
     """As one batch, one by one, and in uneven parts: the arrays of the file that the command wrote."""
     config = load_trial(trial)
     made = made_trial(config)
-    of_trial = TrialTrains(config.routes, config.trains_sha256)
+    of_trial = TrialTrains(config.routes, config.trains_sha256, len(config.categories.members))
     written = batch_file(humped, next(iter(orders_of(made, config.trains_sha256, BATCH))).key)
     first = from_npz(written.read_bytes(), str(written), of_trial, BATCH)
     some = joined([made.batch(0, 1), made.batch(1, 6), made.batch(7, BATCH - 7)])
@@ -85,28 +85,23 @@ def test_a_worker_that_is_killed_loses_nothing(
     trial: Path, humped: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("DIED_ONCE", str(tmp_path / "mark"))
-    config = load_trial(trial)
-    orders = list(orders_of(made_trial(config), config.trains_sha256, config.settings.trains.number))
     watcher = Told()
-    with files_in(tmp_path / "out", trial) as files:
-        run_trains(orders, orders, files, LocalWorkers(2, poison.batch_dying_once), watcher)
+    with run_in(tmp_path / "out", trial) as run:
+        run_trials((run,), lambda batches: LocalWorkers(2, poison.batch_dying_once), watcher)
     assert (tmp_path / "mark").exists()
-    for order in orders:
+    for order in run.orders:
         assert batch_file(tmp_path / "out", order.key).read_bytes() == batch_file(humped, order.key).read_bytes()
     assert len(watcher.ended) == 3
 
 
 def test_a_batch_that_cannot_be_humped_is_told_and_the_others_stay(trial: Path, tmp_path: Path) -> None:
-    config = load_trial(trial)
-    orders = list(orders_of(made_trial(config), config.trains_sha256, config.settings.trains.number))
-
     def refusing(order: BatchOrder) -> Answer:
         return answer_batch(order) if order.first == 0 else Answer(order.key, None, "no cars")
 
-    with files_in(tmp_path, trial) as files:
+    with run_in(tmp_path, trial) as run:
         with pytest.raises(Unfinished, match=f"trains {BATCH + 1} to {2 * BATCH}: no cars"):
-            run_trains(orders, orders, files, InThisProcess(refusing), Told())
-        assert [order.first for order in missing_of(orders, files.file, Told())] == [BATCH, 2 * BATCH]
+            run_trials((run,), lambda batches: InThisProcess(refusing), Told())
+        assert [order.first for order in missing_of(run.orders, run.files.file, Told())] == [BATCH, 2 * BATCH]
 
 
 def test_a_worker_of_another_version_is_refused(trial: Path) -> None:
@@ -177,6 +172,9 @@ class Told:
     def __init__(self) -> None:
         self.notes: list[str] = []
         self.ended: list[str] = []
+
+    def begin(self, done: int) -> None:
+        self.notes.append(f"{done} there")
 
     def note(self, sentence: str) -> None:
         self.notes.append(sentence)

@@ -120,7 +120,8 @@ def test_figures_of_the_hump_come_from_its_trials(tmp_path: Path) -> None:
     """Two trials of the same trains: their differences are paired, and are the ranges of the changes."""
     for name, std in (("today", 0.35), ("new", 0.03)):
         text = "".join(f"[[position]]\nnumber = {k}\nexit_std_m_s = {std}\n" for k in (1, 2, 3))
-        text = f"[trains]\nnumber = 20\ncuts = 12\n{text}[output]\nplots = false\nreport = false\n"
+        judged = "[acceptance]\ncatch_ups = 1\noverspeed = 1\n[output]\nplots = false\nreport = false\n"
+        text = f"[trains]\nnumber = 20\ncuts = 12\n{text}{judged}"
         trial = written(tmp_path / f"{name}.toml", text)
         assert run("hump", "simulate", str(trial), "-o", str(tmp_path / name)).returncode == 0
     config = written(tmp_path / "c.toml", FEW + '[rates]\ntoday_trial = "today"\nnew_trial = "new"\n')

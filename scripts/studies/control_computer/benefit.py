@@ -26,7 +26,8 @@ LEAST_S = {"today": 2.6, "asked": 0.3, "new": 0.3, "tables": 0.3}
 """Least interval of the programs: where the study `hump-day` has about 0.1 % catch-ups, on other trains than here."""
 
 STDS_M_S = {"today": 0.35, "asked": 0.15, "new": 0.03, "tables": TABLES_STD_M_S}
-WIDER_RANGE = f"[exit_speeds]\nhighest_m_s = [{HIGHEST_M_S}, {HIGHEST_M_S}]\n"
+WIDER_RANGE = (f"highest_m_s = {HIGHEST_M_S}", f"highest_m_s = {HIGHEST_M_S}", "")
+"""Of the positions, for the speeds that tables have."""
 
 
 @dataclass(frozen=True)
@@ -147,8 +148,8 @@ def benefit_groups(seed: int, cuts: int, design_cuts: int, tables: bool, tell: T
     names = [name for name in LEAST_S if tables or name != "tables"]
     made = {}
     for name in names:
-        more = WIDER_RANGE if name == "tables" else ""
-        day = Day(seed, cuts, STDS_M_S[name], design_cuts=design_cuts, more=more)
+        positions = WIDER_RANGE if name == "tables" else ("", "", "")
+        day = Day(seed, cuts, STDS_M_S[name], design_cuts=design_cuts, positions=positions)
         trial = with_planner(day.trial(), least_s=LEAST_S[name])
         if name == "tables":
             trial = on_tables(trial, tell)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.hump.trains.outcomes import CLASSES_M_S
+from synth.hump.trains.outcomes import USUAL_COUPLINGS
 from synth.hump.trains.trial import HumpTrial
 
-FAST_M_S = CLASSES_M_S[-1]
+FAST_M_S = USUAL_COUPLINGS.harmful_m_s
 NOT_HELD_STDS = 3.0
 """A cut that leaves so many standard deviations above its command was not held by the full brake."""
 

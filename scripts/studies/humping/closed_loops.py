@@ -94,8 +94,8 @@ class ClosedLoops:
 
 def closed_loops(day: Day, stds_m_s: tuple[float, ...], tell: Tell) -> ClosedLoops:
     """All of them; books are tuned here, which takes minutes."""
-    limits = f"[exit_speeds]\nhighest_m_s = [{HIGHEST_M_S}, {HIGHEST_M_S}]\n"
-    base, made = replace(day, std_m_s=TABLES_STD_M_S, more=limits).trial(), {}
+    limits = f"highest_m_s = {HIGHEST_M_S}"
+    base, made = replace(day, std_m_s=TABLES_STD_M_S, positions=(limits, limits, "")).trial(), {}
     for name, regulator in REGULATORS.items():
         made[name] = table_positions(base, regulator)
         tell(f"books tuned: {name}")

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from scripts.studies.aiming.trial import Value
 from scripts.studies.humping.base_trial import FEEDBACK, OPEN
 from scripts.studies.humping.runs import Group
 from scripts.studies.markdown_table import ABSENT, plus_minus, span
 from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.train_figures import TrainFigure, train_figures
-from synth.hump.trains.trial import Floats, HumpTrial, Sensing
-from synth.simulation.replicates import student_quantile
+from synth.hump.trains.train_figures import TrainFigure, of_cuts, train_figures
+from synth.hump.trains.trial import HumpTrial, Sensing
 
 PERCENT = 100.0
 
@@ -40,7 +37,7 @@ class DayFigures:
 NEAR = 0.001
 """Shares of catch-ups are wanted so near."""
 
-CLASSES = ("overspeed_to_1_5", "overspeed_to_2", "overspeed_above_2")
+CLASSES = ("overspeed_slight", "overspeed_rough", "overspeed_harmful")
 
 
 def day_figures(found: TrainOutcomes) -> DayFigures:
@@ -110,23 +107,13 @@ class PairFigures:
     fewer: Value
 
 
+CAUGHT = of_cuts("caught", lambda found: found.caught + found.caught_in_last)
+
+
 def fewer_catch_ups(one: TrainOutcomes, other: TrainOutcomes) -> Value:
     """By how much the share of catch-ups, those in the last position included, is less in `other`."""
-    return difference(
-        (one.caught + one.caught_in_last).astype(float), one.cuts.astype(float),
-        (other.caught + other.caught_in_last).astype(float), other.cuts.astype(float),
-    )  # fmt: skip
-
-
-def difference(hits: Floats, base: Floats, other_hits: Floats, other_base: Floats) -> Value:
-    """Σ hits / Σ base − Σ other hits / Σ other base with its interval: Student's, linearised, paired by train."""
-    residual, value = np.zeros(len(base)), 0.0
-    for sign, h, b in ((1.0, hits, base), (-1.0, other_hits, other_base)):
-        ratio = float(h.sum() / b.sum())
-        value += sign * ratio
-        residual += sign * (h - ratio * b) / b.mean()
-    half = student_quantile(len(base) - 1) * float(residual.std(ddof=1)) / np.sqrt(len(base))
-    return Value(value, (value - half, value + half))
+    value, *ends = CAUGHT.difference(one, other)
+    return Value(value, (ends[0], ends[1]))
 
 
 def share(value: Value) -> str:

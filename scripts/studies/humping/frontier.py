@@ -9,11 +9,11 @@ import numpy as np
 
 from scripts.studies.aiming.trial import Value
 from scripts.studies.humping.base_trial import FEEDBACK, MEASURED, OPEN, SLOWING, with_interval_std, with_planner
-from scripts.studies.humping.crossings import Sums, decided, drawn_weights, sums_of
 from scripts.studies.humping.day_figures import DayFigures, day_figures, fewer_catch_ups
 from scripts.studies.humping.runs import Group
+from synth.hump.capacity.crossings import Sums, decided, drawn_weights, enough_for, sums_of
 from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.trial import HumpTrial
+from synth.hump.trains.trial import Floats, HumpTrial
 
 CONTROLS = {
     "open loop": OPEN,
@@ -22,9 +22,6 @@ CONTROLS = {
     "feedback, train slowed down": SLOWING,
 }
 OPEN_LOOP, WITH_FEEDBACK, WITH_MEASURED, WITH_SLOWING = CONTROLS
-
-FEWEST_EVENTS = 10.0
-"""Catch-ups that the trains must have at a limit; with fewer the bootstrap has nothing to draw from."""
 
 
 @dataclass(frozen=True)
@@ -170,18 +167,18 @@ class Frontier:
         if control != OPEN_LOOP and (positions, OPEN_LOOP) in self.lines:
             fewer = [fewer_catch_ups(*both) for both in zip(self.of((positions, OPEN_LOOP)), outcomes, strict=True)]
         limits = tuple(self.at_limit(sums, limit, outcomes[0]) for limit in self.limits)
-        speeds = tuple(AtSpeed(each, decided(sums.at_speed(each))) for each in self.speeds_m_s)
+        speeds = tuple(AtSpeed(each, told(sums.at_speed(each), len(outcomes[0]))) for each in self.speeds_m_s)
         return Curve(*line, tuple(map(Point, self.least_s, figures, fewer)), limits, speeds)
 
     def at_limit(self, sums: Sums, limit: float, trains: TrainOutcomes) -> AtLimit:
         """Where a curve has this share."""
         speed, cars = sums.crossing(limit) if self.enough(limit, trains) else (np.full(2, np.nan),) * 2
         ends = float(sums.hump_speed_m_s[0].min()), float(sums.hump_speed_m_s[0].max())
-        return AtLimit(limit, decided(speed), decided(cars), *ends)
+        return AtLimit(limit, told(speed, len(trains)), told(cars, len(trains)), *ends)
 
     def enough(self, limit: float, trains: TrainOutcomes) -> bool:
         """Whether the trains carry a share as small as this."""
-        return limit * float(trains.cuts.sum()) >= FEWEST_EVENTS
+        return enough_for(limit, int(trains.cuts.sum()))
 
     def gain(self, more: Line, than: Line, limit: float) -> Gain:
         """Of one curve over another, at a limit."""
@@ -192,8 +189,14 @@ class Frontier:
                     one - other
                     for one, other in zip(self.sums(more).crossing(limit), self.sums(than).crossing(limit), strict=True)
                 ]
-            found = [decided(each) for each in between]
+            found = [told(each, len(self.of(more)[0])) for each in between]
         return Gain(limit, name_of(*more), name_of(*than), *found)
+
+
+def told(values: Floats, trains: int) -> Value | None:
+    """What bootstrap values decide, as studies hold it."""
+    found = decided(values, trains)
+    return None if found is None else Value(found.value, (found.low95, found.high95))
 
 
 def lines_of(*parts: Families) -> tuple[Line, ...]:

@@ -51,8 +51,8 @@ def humped(
     workers: int, tell: Tell,
 ) -> Humped:  # fmt: skip
     """Books are tuned here, which takes minutes."""
-    more = f"[exit_speeds]\nhighest_m_s = [{HIGHEST_M_S}, {HIGHEST_M_S}]\n"
-    base = Day(seed, cuts, TABLES_STD_M_S, more=more).trial()
+    wider = f"highest_m_s = {HIGHEST_M_S}"
+    base = Day(seed, cuts, TABLES_STD_M_S, positions=(wider, wider, "")).trial()
     made = {}
     for name, price in ((TABLES, 0.0), (PRICED, price_m2_s3)):
         made[name] = table_positions(base, partial(Book.priced_tables, time_price_m2_s3=price)).on(base)

@@ -12,9 +12,9 @@ NAMES = {
     "cars_per_h": "cars_per_hour",
     "catch_ups": "catch_ups",
     "misrouted": "misrouted",
-    "over_speeds_to_1_5": "overspeed_to_1_5",
-    "over_speeds_to_2": "overspeed_to_2",
-    "over_speeds_above_2": "overspeed_above_2",
+    "over_speeds_to_1_5": "overspeed_slight",
+    "over_speeds_to_2": "overspeed_rough",
+    "over_speeds_above_2": "overspeed_harmful",
     "gap_m": "gap_per_cut",
 }
 """Our figures, and what `hump simulate` calls them in `summary.json`."""

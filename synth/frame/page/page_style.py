@@ -20,6 +20,14 @@ a { color: var(--blue); }
 .verdict p:first-child { font-size: 1.1rem; }
 .accepted { border-color: #009e73; }
 .refused { border-color: #d55e00; }
+.undecided { border-color: #e69f00; }
+.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(13rem, 1fr)); gap: .8rem; margin: 1rem 0; }
+.tile { padding: .7rem 1rem; background: var(--pale); border-left: 6px solid var(--line); }
+.tile strong { font-size: 1.7rem; line-height: 1.2; }
+.tile p { margin: .2rem 0 0; color: var(--soft); font-size: .9rem; }
+.tile.accepted { border-color: #009e73; }
+.tile.refused { border-color: #d55e00; }
+.tile.refused strong { color: #a33f00; }
 .scroll { overflow-x: auto; margin: .8rem 0; border: 1px solid var(--line); }
 table { border-collapse: collapse; font-size: .82rem; font-variant-numeric: tabular-nums; width: 100%; }
 caption { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }

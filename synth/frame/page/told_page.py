@@ -6,12 +6,15 @@ import re
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 
-from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table
+from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.page.document import Stamp, document, figure, file_table
 from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
 from synth.frame.page.parameter_table import parameter_section
 from synth.frame.picture.picture import Picture
 from synth.frame.told import Told
+
+VERDICTS = {True: ("Accepted", "accepted"), False: ("Not accepted", "refused"), None: ("Not decidable", "undecided")}
+"""Heading of the verdict, and its style."""
 
 WORDS = {True: "kept", False: "missed", None: "not decidable"}
 
@@ -24,14 +27,13 @@ def page_of(told: Told, pictures: Mapping[str, Picture], hashes: Mapping[str, st
 
 
 def verdict_box(told: Told) -> Markup:
-    """Accepted or not, limit by limit; nothing where nothing is judged."""
+    """Accepted, not, or not decidable, limit by limit; nothing where nothing is judged."""
     if not told.verdict.limits:
         return Markup()
-    accepted = told.verdict.accepted
     items = (element("li", f"{WORDS[limit.kept]}: {limit.sentence}") for limit in told.verdict.limits)
-    head = element("p", element("strong", "Accepted" if accepted else "Not accepted"))
-    style = f"verdict {'accepted' if accepted else 'refused'}"
-    return element("section", head, element("ul", *items), class_=style, id="verdict")
+    word, style = VERDICTS[told.verdict.kept]
+    head = element("p", element("strong", word))
+    return element("section", head, element("ul", *items), class_=f"verdict {style}", id="verdict")
 
 
 def sections(
@@ -56,6 +58,8 @@ def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
     match exhibit:
         case Sentence():
             return element("p", exhibit.text)
+        case Tiles():
+            return element("div", *(tile(each) for each in exhibit.tiles), class_="tiles")
         case Table():
             return joined((element("h3", exhibit.title), table_or_words(exhibit)))
         case Chart() if exhibit.name in pictures:
@@ -63,6 +67,12 @@ def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
         case File() if exhibit.title:
             return element("p", element("a", exhibit.title, href=exhibit.name))
     return Markup()
+
+
+def tile(of: Tile) -> Markup:
+    """A figure at a glance."""
+    style = "tile" if of.kept is None else f"tile {VERDICTS[of.kept][1]}"
+    return element("div", element("strong", of.figure), element("p", of.of), class_=style)
 
 
 def table_or_words(of: Table) -> Markup:

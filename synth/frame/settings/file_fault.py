@@ -15,10 +15,21 @@ from plant_models.errors import PlantError
 from plant_models.library.near_miss import near_miss
 from synth.frame.input_error import InputError
 from synth.frame.settings.fault_words import ALLOWED, shown
-from synth.frame.settings.section import Section, extra_of, length_limits, sections_in, setting_limits
+from synth.frame.settings.section import (
+    DIMENSIONLESS,
+    Section,
+    extra_of,
+    length_limits,
+    sections_in,
+    setting_limits,
+    setting_unit,
+)
 from tuning_tables.excerpt import excerpt
 
 Location = Sequence[str | int]
+
+PER_CENT: Final = (2.5, 100.0)
+"""Numbers that may be meant as per cent where a share is asked for."""
 
 LONGEST_SENTENCE: Final = 400
 """Characters of what is said of a value, which the sentence may repeat."""
@@ -67,7 +78,7 @@ def allowed(fault: ErrorDetails, root: type[Section]) -> str:
     kind, context = fault["type"], fault.get("ctx", {})
     if kind in ("greater_than_equal", "less_than_equal"):
         limits = setting_limits(field_at(fault["loc"], root))
-        return f"from {limits[0]:g} to {limits[1]:g}" if limits else fault["msg"]
+        return f"from {limits[0]:g} to {limits[1]:g}{share_words(fault, root)}" if limits else fault["msg"]
     if kind == "value_error":
         return str(context["error"]).removeprefix("it must be ")
     if kind == "literal_error":
@@ -78,6 +89,18 @@ def allowed(fault: ErrorDetails, root: type[Section]) -> str:
     if kind == "tuple_type" and "[" not in name and holds_section(fault["loc"], root):
         return f"a list of tables: write [[{name}]], not [{name}]"
     return ALLOWED.get(kind, fault["msg"])
+
+
+def share_words(fault: ErrorDetails, root: type[Section]) -> str:
+    """That a number is a share, where per cent may have been meant."""
+    field, value = field_at(fault["loc"], root), fault["input"]
+    limits = setting_limits(field)
+    is_share = setting_unit(field) == DIMENSIONLESS and limits is not None and limits[0] >= 0.0 and limits[1] <= 1.0
+    return (
+        f"; this is a share: {value / 100.0:g} for {value:g} %"
+        if is_share and PER_CENT[0] <= value <= PER_CENT[1]
+        else ""
+    )
 
 
 def holds_section(location: Location, root: type[Section]) -> bool:
@@ -96,6 +119,8 @@ def allowed_length(field: FieldInfo, value: object) -> str:
 def hint(location: Location, root: type[Section]) -> str:
     """Which key was meant: one of the section's, or the same name in another section, else all that the section has."""
     section, word = section_at(location[:-1], root), str(location[-1])
+    if issubclass(section, Section) and word in section.MEANT:
+        return f"did you mean {section.MEANT[word]}?"
     elsewhere = [key for key in dotted_keys(root, "") if key.split(".")[-1] == word]
     if elsewhere:
         return f"did you mean {elsewhere[0]}?"

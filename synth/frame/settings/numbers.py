@@ -10,9 +10,14 @@ from pydantic.fields import FieldInfo
 
 from plant_models.library import SourcedValue
 from plant_models.library.sourced_value import SET_BY_USER
-from synth.frame.settings.section import OF_LIBRARY, Section, setting_limits, setting_source, setting_unit
-
-DIMENSIONLESS: Final = "1"
+from synth.frame.settings.section import (
+    DIMENSIONLESS,
+    OF_LIBRARY,
+    Section,
+    setting_limits,
+    setting_source,
+    setting_unit,
+)
 
 NAMES: Final = ("name", "label", "input")
 """The key of a table in a list that tells it from the others, if it has one; else its number does."""

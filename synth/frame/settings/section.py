@@ -6,12 +6,14 @@ of parameters, the options of the command line and the JSON Schema follow from t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any, get_args
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, get_args
 
 from annotated_types import Ge, Le, MaxLen, MinLen
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.fields import FieldInfo
+
+DIMENSIONLESS = "1"
 
 TOOL_DEFAULT = "default of the tool"
 OF_LIBRARY = "the type in the library"
@@ -27,10 +29,15 @@ def needed(unit: str, low: float, high: float, meaning: str, source: str = TOOL_
     return Field(ge=low, le=high, description=meaning, json_schema_extra={"unit": unit, "source": source})
 
 
-def optional(unit: str, low: float, high: float, meaning: str, example: float) -> Any:
-    """A number that may be left out; the template shows `example` as a comment."""
+def optional(unit: str, low: float, high: float, meaning: str, example: float, source: str = "") -> Any:
+    """A number that may be left out; the template shows `example` as a comment. `source`: of what the tool then has."""
     return Field(
-        None, ge=low, le=high, description=meaning, examples=[example], json_schema_extra={"unit": unit, "source": ""}
+        None,
+        ge=low,
+        le=high,
+        description=meaning,
+        examples=[example],
+        json_schema_extra={"unit": unit, "source": source},
     )
 
 
@@ -66,7 +73,12 @@ def many(
 
 
 class Section(BaseModel):
-    """A table of the file: unknown keys, wrong types, inf and nan are refused."""
+    """A table of the file: unknown keys, wrong types, inf and nan are refused.
+
+    `MEANT`: words that users write for keys that have another name.
+    """
+
+    MEANT: ClassVar[Mapping[str, str]] = {}
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 

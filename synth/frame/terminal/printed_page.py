@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from synth.frame.terminal.printed_table import PrintedTable, table_lines
 from synth.frame.terminal.printed_words import HANGING, wrapped
@@ -12,11 +12,19 @@ from synth.frame.terminal.printed_words import HANGING, wrapped
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether the limits are kept, and the sentence that says so; in colour where the terminal has some."""
+    """Whether the limits are kept, None where that is not decided, and the sentence that says so; in colour where the
+    terminal has some."""
 
-    accepted: bool
+    kept: bool | None
     sentence: str
 
+
+VERDICTS: Final = {
+    True: ("accepted", "bold green"),
+    False: ("not accepted", "bold red"),
+    None: ("not decidable", "bold yellow"),
+}
+"""Word and style."""
 
 Exhibit: TypeAlias = PrintedTable[Any] | Verdict | str
 """A string is a sentence, or a few; spaces at its beginning are kept."""
@@ -40,7 +48,7 @@ def page_lines(page: tuple[Exhibit, ...], width: int | None) -> Iterator[tuple[s
             lines = [*[""] * apart, *table_lines(exhibit, width), *[""] * (place < len(page) - 1)]
             yield from ((line, "") for line in lines)
         elif isinstance(exhibit, Verdict):
-            word, style = ("accepted", "bold green") if exhibit.accepted else ("not accepted", "bold red")
+            word, style = VERDICTS[exhibit.kept]
             yield from ((line, style) for line in sentence_lines(f"{word}: {exhibit.sentence}", width))
         else:
             yield from ((line, "") for line in sentence_lines(exhibit, width))

@@ -31,7 +31,7 @@ def printed(told: Told) -> Iterator[Exhibit]:
                 each.title,
             )
     if told.verdict.limits:
-        yield Verdict(told.verdict.accepted, told.verdict.sentence)
+        yield Verdict(told.verdict.kept, told.verdict.sentence)
 
 
 def printed_column(column: Column) -> PrintedColumn[Row]:

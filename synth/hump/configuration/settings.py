@@ -12,8 +12,10 @@ from plant_models.library.sourced_value import JUDGEMENT
 from synth.aim.configuration.mix_settings import MixSettings
 from synth.aim.configuration.settings import ResistanceSettings, WeatherSettings
 from synth.frame.settings.output import OutputSettings
-from synth.frame.settings.section import Section, choice, many, needed, optional, setting
+from synth.frame.settings.section import Section, choice, many, optional, setting
 from synth.hump.configuration.counted_trains import CountedTrains
+from synth.hump.configuration.coupling_limits import CouplingLimits
+from synth.hump.configuration.position_settings import HumpPositionSettings
 from synth.retarder.configuration.top_keys import TopKeys
 
 DEFAULT_HUMP = "large"
@@ -21,16 +23,8 @@ DEFAULT_HUMP = "large"
 CATEGORY_SHARES = {"L": 0.3, "LS": 0.1, "S": 0.2, "ST": 0.1, "T": 0.3}
 """Of the library's weight categories, where a file gives none: assumed, most cars are empty or full."""
 
-EXIT_RANGE_M_S = (4.0, 7.0)
-"""Exit speeds of a position for intervals, where a file gives none: assumed."""
-
-USUAL_RANGE = f"{JUDGEMENT}: {EXIT_RANGE_M_S[0]:g} to {EXIT_RANGE_M_S[1]:g} m/s are usual of bunch positions"
-
 Share = Annotated[float, Field(ge=0.0, le=1e6)]
 """Shares count by their ratio."""
-
-Speed = Annotated[float, Field(ge=0.3, le=12.0)]
-"""At a position, m/s."""
 
 KNOWN = Literal["category", "measured"]
 
@@ -63,6 +57,9 @@ class TrainSettings(CountedTrains):
         None, 1, 31, "shares, {L = 0.3, T = 0.7}", "shares by weight category, which count by their ratio", "1",
         f"{JUDGEMENT}: most cars are empty or full", CATEGORY_SHARES,
     )  # fmt: skip
+    closed_tracks: tuple[int, ...] | None = many(
+        None, 1, 199, "numbers of tracks", "tracks to which no cut goes", example=[1, 2]
+    )
     track_shares: dict[str, Share] | None = many(
         None, 1, 199, "shares, {1 = 2.0, 2 = 1.0}", "shares by track; left out: all alike", "1",
         example={"1": 2.0, "2": 1.0},
@@ -139,22 +136,12 @@ class HumpSpeedSettings(Section):
 
 
 class ExitSpeedSettings(Section):
-    """Exit speeds of all positions but the last. A list has a number for each of these, from the crest on."""
+    """How the exit speeds of positions that keep cuts apart are chosen."""
 
     feedback: bool = choice(True, "chosen when a cut comes; false: planned before the train")
     knowledge: KNOWN = choice(
         "category", "resistance that cuts are expected to have: of their weight category, or as measured on the way"
     )
-    lowest_m_s: tuple[Speed, ...] | None = many(
-        None, 0, 10, "speeds", "lowest exit speeds", "m/s", USUAL_RANGE, [EXIT_RANGE_M_S[0]] * 2
-    )
-    highest_m_s: tuple[Speed, ...] | None = many(
-        None, 0, 10, "speeds", "highest exit speeds", "m/s", USUAL_RANGE, [EXIT_RANGE_M_S[1]] * 2
-    )
-    most_entry_m_s: tuple[Speed, ...] | None = many(
-        None, 0, 10, "speeds", "fastest that cuts may come to these positions; left out: no limit", "m/s",
-        example=[7.5, 7.5],
-    )  # fmt: skip
     choices: int = setting(7, "1", 2, 30, "exit speeds that are compared in each position")
     usable_share: float = setting(
         0.85, "1", 0.1, 1.0, "of the full brake of each position, what the control counts upon",
@@ -163,7 +150,7 @@ class ExitSpeedSettings(Section):
 
 
 class TrialAimSettings(Section):
-    """Exit speeds of the last position, which aim at the standing cars: chosen for the trial, or from exported tables.
+    """Exit speeds of positions that aim at the standing cars: chosen for the trial, or from exported tables.
 
     Tables given here count before those of the hump file.
     """
@@ -180,7 +167,7 @@ class TrialAimSettings(Section):
         None, "or those behind single retarders, by number", {"421": "out/aim-1", "422": "out/aim-2"}
     )
     p_overspeed: float = setting(
-        0.1, "1", 0.005, 0.9, "required probability of a coupling above 1.39 m/s (5 km/h)",
+        0.1, "1", 0.005, 0.9, "required probability of a coupling above couplings.allowed_m_s",
         "[kozachenko-aimed]: the share that its figures are drawn for",
     )  # fmt: skip
     lowest_m_s: float = setting(
@@ -192,8 +179,8 @@ class TrialAimSettings(Section):
     @model_validator(mode="after")
     def _low_before_high(self) -> TrialAimSettings:
         require(
-            self.lowest_m_s < self.highest_m_s,
-            f"lowest_m_s is {self.lowest_m_s:g}; it must be less than highest_m_s, {self.highest_m_s:g}",
+            self.lowest_m_s <= self.highest_m_s,
+            f"lowest_m_s is {self.lowest_m_s:g}; it must not be above highest_m_s, {self.highest_m_s:g}",
         )
         return self
 
@@ -207,40 +194,23 @@ class SensorSettings(Section):
     )  # fmt: skip
 
 
-class HumpPositionSettings(Section):
-    """What is otherwise than the hump file tells, of one position on every route that has so many."""
-
-    number: int = needed("1", 1, 10, "which position, 1 being the first behind the crest", "")
-    exit_std_m_s: float | None = optional(
-        "m/s", 0.0, 1.0, "standard deviation of the exit speed about the commanded one", 0.35
-    )
-    tables: str | None = choice(
-        None, "in its place, a book of controller tables, which runs in its closed loop", "out/book.h5"
-    )
-    tables_config: str | None = choice(
-        None, "the configuration that it was tuned with; left out: the built-in one", "my.toml"
-    )
-    out_of_service: bool = choice(False, "whether it brakes nothing")
-    supply_share: float | None = optional(
-        "1", 0.05, 1.0, "of the full brake power, where the supply pressure is low", 0.8
-    )
-
-    @model_validator(mode="after")
-    def _one_word_on_its_accuracy(self) -> HumpPositionSettings:
-        require(
-            self.exit_std_m_s is None or self.tables is None,
-            f"exit_std_m_s is {self.exit_std_m_s} and tables is {self.tables!r}; both say how exactly the position "
-            "works: leave out one of the two",
-        )
-        return self
+OVERSPEEDS_PER_ASKED = 1.5
+"""Over-speeds that a trial may have unless told, for each that its aim is asked to keep to."""
 
 
 class TrialAcceptanceSettings(Section):
-    """Shares of cuts that must not be passed, interval included; exit code 1 if one is."""
+    """Shares of cuts that must not be passed, interval included; exit code 1 if one is. A limit of 1 judges nothing."""
 
-    catch_ups: float | None = optional("1", 0.0, 1.0, "of all cuts: those that catch up", 0.001)
-    overspeed: float | None = optional("1", 0.0, 1.0, "of the cuts on their track: couplings above 1.39 m/s", 0.1)
-    overspeed_above_2: float | None = optional("1", 0.0, 1.0, "of these: couplings above 2 m/s", 0.002)
+    catch_ups: float = setting(
+        0.005, "1", 0.0, 1.0, "of all cuts: those that catch up",
+        f"{JUDGEMENT}: with more than one cut in 200 on a wrong track, or run into, a plan has failed",
+    )  # fmt: skip
+    overspeed: float | None = optional(
+        "1", 0.0, 1.0,
+        "of the cuts on their track: couplings faster than allowed; left out: 1.5 times aim.p_overspeed", 0.15,
+        f"{JUDGEMENT}: half as many again as the aim is asked for, since a cut may meet cars that still roll",
+    )  # fmt: skip
+    overspeed_harmful: float | None = optional("1", 0.0, 1.0, "of these: harmful couplings", 0.002)
 
 
 class HumpTrialSettings(TopKeys):
@@ -260,9 +230,14 @@ class HumpTrialSettings(TopKeys):
     hump_speed: HumpSpeedSettings = HumpSpeedSettings()
     exit_speeds: ExitSpeedSettings = ExitSpeedSettings()
     aim: TrialAimSettings = TrialAimSettings()
+    couplings: CouplingLimits = CouplingLimits()
     sensors: SensorSettings = SensorSettings()
     position: tuple[HumpPositionSettings, ...] = many(
-        (), 0, 10, "tables [[position]]", example=(HumpPositionSettings(number=2, exit_std_m_s=0.35, supply_share=0.8),)
+        (),
+        0,
+        10,
+        "tables [[position]]",
+        example=(HumpPositionSettings(number=2, exit_m_s={"all": 4.8}, supply_share=0.8),),
     )
     acceptance: TrialAcceptanceSettings = TrialAcceptanceSettings()
     output: OutputSettings = OutputSettings()

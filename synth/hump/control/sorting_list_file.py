@@ -4,8 +4,10 @@
     1,2,8,151.5,T,17,27.84,mean,0,1.7,
     2,1,4,23,L,3,13.92,bad,0,1.7,do-not-hump long-base
 
-The columns up to `track` must be there, the others may be left out, and the order of columns is free. `category` is the
-name of a weight category (Л or L, …); marks are words with blanks between. A mistake is told with row and column.
+The columns up to `track` must be there, but for `category`; the others may be left out, and the order is free.
+`category` is the name of a weight category (Л or L, …), without it that of mass and axles; marks are words with blanks
+between. Cells may be separated by semicolons or tabs, as spreadsheets do: then numbers may have a decimal comma. A
+mistake is told with row and column.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ import csv
 import io
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from plant_models.errors import PlantError
@@ -28,9 +31,24 @@ from tuning_tables.errors import DamagedTable
 from tuning_tables.excerpt import excerpt
 from tuning_tables.regular_file import read_regular_file
 
-NEEDED = ("cut", "cars", "axles", "mass_t", "category", "track")
-COLUMNS = (*NEEDED, "length_m", "rolling", "lead", "hump_speed_m_s", "marks")
+NEEDED = ("cut", "cars", "axles", "mass_t", "track")
+COLUMNS = (
+    "cut",
+    "cars",
+    "axles",
+    "mass_t",
+    "category",
+    "track",
+    "length_m",
+    "rolling",
+    "lead",
+    "hump_speed_m_s",
+    "marks",
+)
 LARGEST_BYTES = 1_000_000
+
+SEPARATORS = (",", ";", "\t")
+"""What may stand between cells."""
 
 
 def load_sorting_list(path: str | os.PathLike[str], categories: WeightCategories | None = None) -> SortingList:
@@ -53,13 +71,14 @@ def load_sorting_list(path: str | os.PathLike[str], categories: WeightCategories
 
 def sorting_list_of_csv(text: str, file: str, categories: WeightCategories) -> SortingList:
     """The list in `text`; `file` is what messages call it. `InputError`: one sentence for each row at fault."""
-    rows = csv_rows(text, file)
+    separator = separator_of(text)
+    rows = csv_rows(text, file, separator)
     columns = header_columns(rows[0], file)
     faults: list[str] = []
     cuts: list[CutRecord] = []
     for number, cells in enumerate(rows[1:], start=2):
         try:
-            cuts.append(cut_of_row(cells, columns, categories))
+            cuts.append(cut_of_row(cells, columns, Reading(categories, decimal_comma=separator != ",")))
         except ValueError as fault:
             faults.append(f"{file}: row {number}: {fault}")
     if faults:
@@ -70,10 +89,17 @@ def sorting_list_of_csv(text: str, file: str, categories: WeightCategories) -> S
         raise InputError(f"{file}: {fault}") from None
 
 
-def csv_rows(text: str, file: str) -> list[list[str]]:
+def separator_of(text: str) -> str:
+    """What separates the names of the first row."""
+    first = text.partition("\n")[0]
+    return max(SEPARATORS, key=first.count)
+
+
+def csv_rows(text: str, file: str, separator: str) -> list[list[str]]:
     """The rows of `text`, empty ones left out."""
+    content = io.StringIO(text.removeprefix("\ufeff"), newline="")
     try:
-        rows = [row for row in csv.reader(io.StringIO(text.removeprefix("\ufeff"), newline=""), strict=True) if row]
+        rows = [row for row in csv.reader(content, delimiter=separator, strict=True) if any(row)]
     except csv.Error as fault:
         raise InputError(f"{file}: this is not valid CSV ({fault}); correct the file") from None
     if not rows:
@@ -95,7 +121,15 @@ def header_columns(header: list[str], file: str) -> list[str]:
     return names
 
 
-def cut_of_row(cells: list[str], columns: list[str], categories: WeightCategories) -> CutRecord:
+@dataclass(frozen=True)
+class Reading:
+    """How cells are read: names of `categories`, and whether a number may have a decimal comma."""
+
+    categories: WeightCategories
+    decimal_comma: bool
+
+
+def cut_of_row(cells: list[str], columns: list[str], reading: Reading) -> CutRecord:
     """The cut in one row; `ValueError` tells the column and what is wrong there."""
     if len(cells) != len(columns):
         raise ValueError(f"{len(cells)} cells; the first row has {len(columns)} columns")
@@ -103,14 +137,15 @@ def cut_of_row(cells: list[str], columns: list[str], categories: WeightCategorie
     values: dict[str, Any] = {}
     for column, cell in given.items():
         if cell or column in NEEDED:
-            values[column] = READERS[column](column, cell, categories)
-    cars = values["cars"]
+            values[column] = READERS[column](column, cell, reading)
+    cars, axles, mass_t = values["cars"], values["axles"], values["mass_t"]
+    by_mass = reading.categories.of(mass_t, max(axles, 1)).number
     return CutRecord(
         serial=values["cut"],
         cars=cars,
-        axles=values["axles"],
-        mass_t=values["mass_t"],
-        category=values["category"],
+        axles=axles,
+        mass_t=mass_t,
+        category=values.get("category", by_mass),
         track=values["track"],
         length_m=values.get("length_m", USUAL_CAR_M * cars),
         rolling=values.get("rolling", Rolling.MEAN),
@@ -120,30 +155,32 @@ def cut_of_row(cells: list[str], columns: list[str], categories: WeightCategorie
     )
 
 
-def whole_number(column: str, cell: str, _: WeightCategories) -> int:
+def whole_number(column: str, cell: str, _: Reading) -> int:
     """A whole number of at most nine digits."""
     if not (cell.isascii() and cell.isdigit() and len(cell) <= 9):
         raise ValueError(f"{column} is {excerpt(cell)!r}; it must be a whole number")
     return int(cell)
 
 
-def decimal_number(column: str, cell: str, _: WeightCategories) -> float:
-    """A number with a decimal point."""
+def decimal_number(column: str, cell: str, reading: Reading) -> float:
+    """A number with a decimal point, or, where the file may have one, a comma."""
+    pointed = cell.replace(",", ".") if reading.decimal_comma else cell
     try:
-        return float(cell if cell.isascii() and "_" not in cell else "none")
+        return float(pointed if pointed.isascii() and "_" not in pointed else "none")
     except ValueError:
-        raise ValueError(f"{column} is {excerpt(cell)!r}; it must be a number, with a decimal point") from None
+        sign = "point or comma" if reading.decimal_comma else "point"
+        raise ValueError(f"{column} is {excerpt(cell)!r}; it must be a number, with a decimal {sign}") from None
 
 
-def category_number(column: str, cell: str, categories: WeightCategories) -> int:
+def category_number(column: str, cell: str, reading: Reading) -> int:
     """The number of the category with this name."""
     try:
-        return categories.named(excerpt(cell)).number
+        return reading.categories.named(excerpt(cell)).number
     except PlantError as fault:
         raise ValueError(f"{column}: {fault}") from None
 
 
-def rolling_code(column: str, cell: str, _: WeightCategories) -> Rolling:
+def rolling_code(column: str, cell: str, _: Reading) -> Rolling:
     """A name of `Rolling`."""
     names: Mapping[str, Rolling] = {code.name.lower(): code for code in Rolling}
     if cell not in names:
@@ -151,7 +188,7 @@ def rolling_code(column: str, cell: str, _: WeightCategories) -> Rolling:
     return names[cell]
 
 
-def mark_set(column: str, cell: str, _: WeightCategories) -> frozenset[Mark]:
+def mark_set(column: str, cell: str, _: Reading) -> frozenset[Mark]:
     """Words of `Mark`."""
     known = {mark.value: mark for mark in Mark}
     for word in cell.split():
@@ -160,7 +197,7 @@ def mark_set(column: str, cell: str, _: WeightCategories) -> frozenset[Mark]:
     return frozenset(known[word] for word in cell.split())
 
 
-READERS: Mapping[str, Callable[[str, str, WeightCategories], Any]] = {
+READERS: Mapping[str, Callable[[str, str, Reading], Any]] = {
     "cut": whole_number,
     "cars": whole_number,
     "axles": whole_number,

@@ -1,4 +1,4 @@
-"""Which aim tables command the last positions of a trial: those of the hump file, or others by the configuration."""
+"""Which aim tables command the positions that aim: those of the hump file, or others by the configuration."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from plant_models.hump import Retarder, Route
 from plant_models.library.weight_category import WeightCategory
 from synth.hump.configuration.settings import TrialAimSettings
 from synth.hump.control.number_ranges import ranges
+from synth.hump.trains.hump_routes import HumpRoutes
+from synth.hump.trains.position_roles import Roles
 from synth.retarder.forms.aim_file import read_aims
 from tuning_tables.aim import AimTable, AimTables
 from tuning_tables.errors import InvalidTable
@@ -43,28 +45,28 @@ class AimChoice:
         if found is None:
             held = ", ".join(f"{t.category.name} by {KNOWN[t.is_measured]}" for t in self.tables.tables)
             raise PlantError(
-                f"{self.named}, which has no table by {KNOWN[measured]} for the weight category {category.name}, "
+                f"{self.named}, which has no table by {KNOWN[measured]} for the weight category {category.label}, "
                 f"number {category.number}; there are {held}: make one for each category, as aim.knowledge asks"
             )
         return found
 
 
 def aim_choices(
-    routes: Sequence[Route], settings: TrialAimSettings, hump_folder: Path, folder: Path
+    routes: HumpRoutes, roles: Roles, settings: TrialAimSettings, hump_folder: Path, folder: Path
 ) -> tuple[AimChoice, ...]:
-    """The aim tables of the routes that have any, by what names them; names of the hump file begin at `hump_folder`,
-    those of `settings` at `folder`.
+    """The aim tables of the routes on which a position aims and that have any, by what names them; names of the hump
+    file begin at `hump_folder`, those of `settings` at `folder`.
 
     `PlantError` with the key at fault; `TableError` for a damaged table.
     """
-    last = {row: held for row, route in enumerate(routes) if (held := last_retarder(route)) is not None}
+    last = {row: last_retarder(routes.routes[row]) for row in roles.aimed_rows}
     own = settings.tables_of or {}
     numbers = {str(retarder.number) for retarder in last.values()}
     for name in own:
         require(
             name in numbers,
-            f"aim.tables_of names {name!r}; retarders in the last position of a route: "
-            f"{ranges(sorted(map(int, numbers)))}",
+            f"aim.tables_of names {name!r}; retarders that aim at the standing cars: "
+            f"{ranges(sorted(map(int, numbers))) or 'none'}",
         )
     named: dict[tuple[Path, ...], str] = {}
     rows: dict[tuple[Path, ...], list[int]] = {}
@@ -76,10 +78,9 @@ def aim_choices(
     return tuple(choice_of(named[paths], paths, rows[paths], last) for paths in rows)
 
 
-def last_retarder(route: Route) -> Retarder | None:
-    """The last retarder of a route, if it has any."""
-    held = [each.vertex for each in route.elements if isinstance(each.vertex, Retarder)]
-    return held[-1] if held else None
+def last_retarder(route: Route) -> Retarder:
+    """The last retarder of a route, which has some."""
+    return [each.vertex for each in route.elements if isinstance(each.vertex, Retarder)][-1]
 
 
 def source_of(

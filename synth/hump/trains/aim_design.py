@@ -14,6 +14,7 @@ from plant_models.hump import Retarder, Route
 from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
 from synth.aim.aim_table import AimOrder, chosen, rounded_down, thresholds_at
+from synth.aim.coupling_speed import COUPLING_SPEED_M_S
 from synth.aim.knowledge import ByCategory, ByReading, Requirement
 from synth.aim.position_models import PositionModel
 from synth.aim.scene import AimScene, MeasuredStretch, SceneCuts
@@ -55,7 +56,8 @@ class MeasuredAhead:
 @dataclass(frozen=True)
 class AimDesign:
     """How exit speeds of the last position are chosen: for whom, for which position, and on how many drawn cuts of
-    each weight category and number of cars. `threads` work on them, 0: one a processor; they change no result."""
+    each weight category and number of cars; a coupling faster than `coupling_speed_m_s` is over-speed. `threads` work
+    on them, 0: one a processor; they change no result."""
 
     population: CutPopulation
     position: PositionModel
@@ -65,6 +67,7 @@ class AimDesign:
     design_cuts: int = 2000
     seed: int = 1
     threads: int = 0
+    coupling_speed_m_s: float = COUPLING_SPEED_M_S
 
     def __post_init__(self) -> None:
         require(
@@ -130,6 +133,7 @@ def scene_of(route: Route, design: AimDesign, threads: int) -> AimScene:
         entrance_m=entrance,
         exit_m=leave,
         stretch=MeasuredStretch(begin, entrance, *law),
+        coupling_speed_m_s=design.coupling_speed_m_s,
         threads=threads,
     )
 

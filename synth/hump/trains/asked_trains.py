@@ -76,7 +76,13 @@ def trains_of(
     if trains.list is not None:
         path = folder / trains.list
         try:
-            return fitting_list(load_sorting_list(path, categories), str(path), people, routes)
+            listed = fitting_list(load_sorting_list(path, categories), str(path), people, routes)
+            for cut in listed.cuts:
+                require(
+                    cut.track not in (trains.closed_tracks or ()),
+                    f"{path}: cut {cut.serial} goes to track {cut.track}, which trains.closed_tracks closes",
+                )
+            return listed
         except PlantError as fault:
             raise InputError(str(fault)) from None
     longest = trains.most_cars * max(each.car.length_m for each in people.mix.cars)
@@ -90,10 +96,28 @@ def trains_of(
         mix=people.mix,
         categories=categories,
         category_shares={categories.named(name).number: share for name, share in shares.items()},
-        track_shares=track_shares(trains.track_shares, routes),
+        track_shares=open_shares(trains, routes),
         cars_mean=trains.cars_mean,
         most_cars=trains.most_cars,
     )
+
+
+def open_shares(trains: TrainSettings, routes: HumpRoutes) -> dict[int, float]:
+    """Shares by number of the track, 0 for those that are closed; `PlantError` where none is left."""
+    shares, known = track_shares(trains.track_shares, routes), [int(track) for track in routes.tracks]
+    closed = trains.closed_tracks or ()
+    for number in closed:
+        require(
+            number in known,
+            f"trains.closed_tracks names {number}; signal {routes.lead} leads to tracks {min(known)} to {max(known)}",
+        )
+    left = {number: 0.0 if number in closed else share for number, share in shares.items()}
+    require(
+        sum(left.values()) > 0.0,
+        "trains.track_shares leaves no track to which cuts go: tracks that it does not name have the share 0; to close "
+        "some and keep all others, name them in trains.closed_tracks alone",
+    )
+    return left
 
 
 def track_shares(given: dict[str, float] | None, routes: HumpRoutes) -> dict[int, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.motion import Cars, Moving, Push, rolled_free
-from synth.hump.trains.route_choices import Choices, choices_by_route
 from synth.kernels.roll import exit_choices as kernel
 
 Floats = NDArray[np.float64]
@@ -34,6 +34,21 @@ class Expected:
     first_axle_m: Floats
     last_axle_m: Floats
     braked_m2_s2: Floats
+
+
+class Choices(Protocol):
+    """Exit speeds of a position that are compared."""
+
+    @property
+    def most_entry_m_s(self) -> Floats | float:
+        """Fastest that a cut may come to the position."""
+
+    @property
+    def least_entry_m_s(self) -> Floats | float:
+        """Slowest that it may come, so that worse runners than expected come, too."""
+
+    def speeds(self, most_m_s: Floats) -> Floats:
+        """(n, choices); a cut cannot be faster than `most_m_s` (n,)."""
 
 
 @frozen_arrays
@@ -149,12 +164,10 @@ def from_entrance(
 def through(
     routes: HumpRoutes, expected: Expected, start: Moving, before_s: Floats, position: int, choices: tuple[Choices, ...]
 ) -> Ways:
-    """From `start` at the entrance of `position` through all positions behind it. The last of `choices` is of the last
-    position of each route, which on some routes comes before that of others."""
+    """From `start` at the entrance of `position` through it and all positions behind it, which have the `choices`."""
     count, marks, most = len(before_s), before_s.shape[1], len(choices)
     heads, fastest, stretches = heads_m(routes, expected), start.speed_m_s, []
     begins = np.maximum(entrance_m(routes, expected, position), start.head_m)
-    choices = choices if routes.even else choices_by_route(routes, expected.cars.routes, position, choices)
     for place, of_one in enumerate(choices, position):
         stretches.append(stretch(routes, expected, place, heads, Moving(begins, fastest, np.zeros(count)), of_one))
         fastest, begins = stretches[-1].ends_m_s.max(axis=1), entrance_m(routes, expected, place + 1)
@@ -177,8 +190,8 @@ def through(
         roll_s=roll,
         ends_s=ends,
         ends_m_s=ends_speed,
-        most_entry_m_s=np.stack([np.broadcast_to(each.most_entry_m_s, count) for each in choices]),
-        least_entry_m_s=np.stack([np.broadcast_to(each.least_entry_m_s, count) for each in choices]),
+        most_entry_m_s=np.stack([each.most_entry_m_s for each in stretches]),
+        least_entry_m_s=np.stack([each.least_entry_m_s for each in stretches]),
         braked_m2_s2=np.ascontiguousarray(expected.braked_m2_s2[:, position : position + most].T),
     )
     return Ways(routes, legs)
@@ -196,19 +209,22 @@ class Stretch:
     roll_s: Floats
     ends_s: Floats
     ends_m_s: Floats
+    most_entry_m_s: Floats
+    least_entry_m_s: Floats
 
 
 def stretch(
     routes: HumpRoutes, expected: Expected, position: int, heads_m: Floats, start: Moving, choices: Choices
 ) -> Stretch:
     """`position` with each of the `choices` for cuts that come as at `start`, at the fastest. On a route that has no
-    such position nothing happens: it has no length, at the end of the way that is forecast."""
+    such position it has no length, at the end of the way that is forecast, and cuts keep their speed."""
     count = len(heads_m)
     exit_m = routes.exit_m[expected.cars.routes, position]
     there = np.isfinite(exit_m)
     leaves = np.where(there, exit_m + expected.last_axle_m, start.head_m)
     unbraked, _ = rolled_free(expected.cars, start, leaves, np.empty((count, 0)))
-    speeds = choices.speeds(np.maximum(unbraked.speed_m_s, SLOWEST_M_S))
+    most = np.maximum(unbraked.speed_m_s, SLOWEST_M_S)
+    speeds = np.where(there[:, None], choices.speeds(most), most[:, None])
     chosen = speeds.shape[1]
     each = np.repeat(np.arange(count), chosen)
     begins = Moving(leaves[each], speeds.reshape(-1), np.zeros(len(each)))
@@ -224,6 +240,8 @@ def stretch(
         roll_s=roll.reshape(count, chosen, -1),
         ends_s=ends.time_s.reshape(count, chosen),
         ends_m_s=ends.speed_m_s.reshape(count, chosen),
+        most_entry_m_s=np.where(there, choices.most_entry_m_s, np.inf),
+        least_entry_m_s=np.where(there, choices.least_entry_m_s, 0.0),
     )
 
 

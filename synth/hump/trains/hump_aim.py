@@ -1,4 +1,4 @@
-"""What the last position of each route is commanded: aim tables by group of routes and weight category."""
+"""What positions that aim are commanded: aim tables by group of routes and weight category."""
 
 from __future__ import annotations
 
@@ -93,9 +93,15 @@ def no_speeds() -> AimGrid:
     return aim_grid(AimAxes(np.array([1]), np.zeros(1)), np.full((1, 1), np.nan))
 
 
+def no_aim(routes: int, categories: int, lowest_m_s: float) -> HumpAim:
+    """Where no position aims: nobody asks for these speeds."""
+    tables = (tuple(CategoryAim(no_speeds()) for _ in range(categories)),)
+    return HumpAim(np.zeros(routes, dtype=np.int64), tables, lowest_m_s)
+
+
 def joined_aims(parts: Sequence[tuple[Ints, HumpAim]], routes: int) -> HumpAim:
-    """One aim for all `routes`, of (rows, aim of these rows) that are no two for one route. Routes without a position
-    are in none, and nobody asks for them."""
+    """One aim for all `routes`, of (rows, aim of these rows) that are no two for one route. Routes on which
+    no position aims are in none, and nobody asks for them."""
     group, stretch = np.zeros(routes, dtype=np.int64), np.full((routes, 2), np.nan)
     tables: list[tuple[CategoryAim, ...]] = []
     for rows, aim in parts:

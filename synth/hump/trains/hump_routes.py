@@ -85,6 +85,18 @@ class HumpRoutes:
         return read_only(np.isfinite(self.entrance_m).sum(axis=1))
 
     @cached_property
+    def parts_behind(self) -> NDArray[np.bool_]:
+        """Whether there is a switch behind the last position of each route, (routes,)."""
+        last = self.retarder.max(axis=1, initial=-1)
+        return read_only(((self.points >= 0) & (np.arange(self.elements) > last[:, None])).any(axis=1))
+
+    @cached_property
+    def is_last(self) -> NDArray[np.bool_]:
+        """Whether each of the `numbers` is the last position of some route."""
+        rows, last = np.arange(len(self.routes)), self.retarder.max(axis=1, initial=-1)
+        return read_only(np.isin(np.arange(len(self.numbers)), self.vertex[rows, last][last >= 0]))
+
+    @cached_property
     def release_m(self) -> Floats:
         """Where the last position of each route ends, (routes,); 0 where it has none."""
         return read_only(self.exit_m.max(axis=1, initial=0.0, where=np.isfinite(self.exit_m)))

@@ -23,12 +23,12 @@ class HumpedTrial:
     @property
     def of_trial(self) -> TrialTrains:
         """Of which trial the trains are, for their file."""
-        return TrialTrains(self.config.routes, self.config.trains_sha256)
+        return TrialTrains(self.config.routes, self.config.trains_sha256, len(self.config.categories.members))
 
     @property
     def category_names(self) -> tuple[str, ...]:
         """Names of the weight categories in their places."""
-        return tuple(member.name for member in self.config.categories.members)
+        return tuple(member.label for member in self.config.categories.members)
 
 
 def humped_trial(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes) -> HumpedTrial:

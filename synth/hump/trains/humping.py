@@ -221,7 +221,7 @@ class OneCut:
         place = lanes, self.cut, position
         memory.begin_s[place], memory.entry_m_s[place] = start.time_s, start.speed_m_s
         memory.command_m_s[place], memory.exit_m_s[place] = command, passed.exit_m_s
-        memory.ruled_m_s[place] = command
+        memory.unbraked_m_s[place], memory.ruled_m_s[place] = unbraked.speed_m_s, command
         memory.end_s[place], memory.strokes[place] = end.time_s, passed.switchings
         ended = merged(moving, end, held)
         self.halt(moving, ended)

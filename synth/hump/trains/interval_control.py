@@ -15,8 +15,8 @@ from synth.hump.trains.forecast import from_crest, from_entrance
 from synth.hump.trains.interval import IntervalRule, possible
 from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.motion import Moving, Push
+from synth.hump.trains.position_roles import Roles
 from synth.hump.trains.rollability import Rollability
-from synth.hump.trains.route_choices import Choices
 from synth.hump.trains.sight import Sight
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import Planner, TrainPlan, apart_m, free_by_s
@@ -37,29 +37,35 @@ class ProgramSpeeds:
         return np.asarray(self.speed_m_s[:, cut])
 
 
-def by_position(asked: Asked, aim: AimControl, kept: Callable[[Asked], Floats]) -> Floats:
-    """Exit speeds (n,): by `aim` of the cuts for which it is the last position of the route on which they roll by now,
-    of all others what `kept` commands."""
-    last = aim.routes.positions_of[asked.routes] == asked.position + 1
-    if last.all():
+def by_role(asked: Asked, roles: Roles, aim: AimControl, chosen: Callable[[Asked], Floats]) -> Floats:
+    """Exit speeds (n,): by `aim` where the position aims on the route on which a cut rolls by now; else what is fixed,
+    or what is `chosen`."""
+
+    def kept(asked: Asked) -> Floats:
+        fixed = roles.exits[asked.position].fixed_m_s(aim.trains.category[asked.lanes * aim.trains.cuts + asked.cut])
+        return chosen(asked) if fixed is None else fixed
+
+    aims = roles.aims[asked.position][asked.routes]
+    if aims.all():
         return aim.command(asked)
-    if not last.any():
+    if not aims.any():
         return kept(asked)
-    found = np.empty(len(last))
-    found[last], found[~last] = aim.command(asked.chosen(last)), kept(asked.chosen(~last))
+    found = np.empty(len(aims))
+    found[aims], found[~aims] = aim.command(asked.chosen(aims)), kept(asked.chosen(~aims))
     return found
 
 
 @dataclass(frozen=True)
 class OpenLoop:
-    """Exit speeds as planned, for the track of the list; the last position of the route on which a cut rolls aims."""
+    """Exit speeds as planned, for the track of the list; but a cut is aimed by the route on which it rolls."""
 
     plan: TrainPlan
+    roles: Roles
     aim: AimControl
 
     def command(self, asked: Asked) -> Floats:
         """See the class."""
-        return by_position(asked, self.aim, self.planned)
+        return by_role(asked, self.roles, self.aim, self.planned)
 
     def planned(self, asked: Asked) -> Floats:
         """What the plan has."""
@@ -84,21 +90,21 @@ class Feedback:
     ) -> None:
         self.planner, self.known, self.plan = planner, known, plan
         self.rule, self.rollability, self.aim = rule, rollability, aim
-        self.sight = Sight(planner.routes, known, plan)
+        self.sight = Sight(planner.routes, known, plan, planner.roles)
 
     def command(self, asked: Asked) -> Floats:
-        """Exit speeds (n,); the last position of the route on which a cut rolls aims."""
-        return by_position(asked, self.aim, self.chosen)
+        """Exit speeds (n,), by the role of the position on the route on which a cut rolls."""
+        return by_role(asked, self.planner.roles, self.aim, self.chosen)
 
     def chosen(self, asked: Asked) -> Floats:
-        """Exit speeds (n,) of cuts that go on to another position."""
-        routes, ranges = self.planner.routes, self.planner.ranges
+        """Exit speeds (n,) of cuts that a position keeps apart."""
+        routes = self.planner.routes
         cut, lanes, memory = asked.cut, asked.lanes, asked.memory
         self.sight.learn(cut, memory)
         rows = lanes * self.known.cuts + cut
         resistance = self.rollability.resistance_n_per_kn(asked)
         expected = self.known.expected(rows, asked.routes, resistance)
-        choices: tuple[Choices, ...] = (*ranges[asked.position :], self.known.aim_of(rows))
+        choices = self.known.choices(rows, asked.routes, self.planner.roles, asked.position)
         ways = from_entrance(routes, expected, asked.start, asked.position, choices)
         later = (memory.crest_s[lanes, cut] - self.plan.crest_s[lanes, cut])[:, None]
         free_by = later + free_by_s(routes, self.known, self.plan.first_in_s, asked.routes, lanes, cut)
@@ -148,7 +154,7 @@ class FeedbackSpeeds:
         expected = known.expected(rows, own, known.mean_n_per_kn[rows])
         start = Moving(0.5 * known.length_m[rows], speed_m_s, time)
         push = Push(memory.hump_speed_m_s[lanes, cut - 1], apart_m)
-        ways = from_crest(routes, expected, start, push, (*feedback.planner.ranges, known.aim_of(rows)))
+        ways = from_crest(routes, expected, start, push, known.choices(rows, own, feedback.planner.roles))
         free_from = feedback.sight.free_from_s(cut, lanes, own, now, memory)
         compared = ways.compared(free_from, np.full(free_from.shape, np.inf))
         return np.asarray(np.where(possible(compared), compared.ahead_s, -np.inf).max(axis=1))

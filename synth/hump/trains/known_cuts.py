@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY
 from plant_models.rolling.random_cuts import DrawnCuts
-from synth.hump.trains.forecast import Expected, Given
+from synth.hump.trains.forecast import Choices, Expected, Given
 from synth.hump.trains.motion import Cars, Rolls
+from synth.hump.trains.position_roles import Roles
 from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.route_ways import RouteWays
 from synth.hump.trains.train_cuts import TrainCuts, expected
@@ -24,14 +25,15 @@ Ints = NDArray[np.int64]
 @dataclass(frozen=True, eq=False)
 class KnownCuts:
     """All cuts of some trains, a row each: `rolls` with mean bends and wind; resistance: `mean_n_per_kn`, and that of
-    good and of bad runners, `good_n_per_kn` and `bad_n_per_kn` (rows,). `aim` (rows,): exit speeds of the
-    last position as they are expected before the train, and how fast cuts may come to it; `braked_m2_s2` (rows,
+    good and of bad runners, `good_n_per_kn` and `bad_n_per_kn` (rows,). `aim` (rows,): exit speeds of
+    positions that aim as they are expected before the train, and how fast cuts may come to them; `braked_m2_s2` (rows,
     positions): most loss of v² to the brake of each position."""
 
     rolls: Rolls
     trains: int
     cuts: int
     route: Ints
+    category: Ints
     length_m: Floats
     first_axle_m: Floats
     last_axle_m: Floats
@@ -52,10 +54,15 @@ class KnownCuts:
         return Expected(cars, *axles, self.braked_m2_s2[rows])
 
     def aim_of(self, rows: Ints) -> Given:
-        """What the last position is expected to make of the cuts `rows`."""
+        """What a position that aims is expected to make of the cuts `rows`."""
         aim = self.aim
         most, least = (np.broadcast_to(m, len(aim.speed_m_s)) for m in (aim.most_entry_m_s, aim.least_entry_m_s))
         return Given(aim.speed_m_s[rows], most[rows], least[rows])
+
+    def choices(self, rows: Ints, routes: Ints, roles: Roles, position: int = 0) -> tuple[Choices, ...]:
+        """What the positions from `position` on may make of the cuts `rows` on `routes`, (n,) both."""
+        kept = tuple(exits.choices(self.category[rows]) for exits in roles.exits[position:])
+        return roles.aimed(kept, routes, self.aim_of(rows), position)
 
 
 GOOD, BAD = 0.023, 0.977
@@ -72,6 +79,7 @@ def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, braked_m2_s2: Flo
         trains=trains.trains,
         cuts=trains.cuts,
         route=trains.route,
+        category=trains.category,
         length_m=trains.length_m,
         first_axle_m=trains.first_axle_m,
         last_axle_m=trains.last_axle_m,

@@ -12,9 +12,7 @@ from plant_models.library import load_position
 from plant_models.library.position_entry import PositionEntry
 from synth.frame.input_error import InputError
 from synth.hump.control.sorting_list import SortingList
-from synth.hump.trains.asked_speeds import ExitRange
 from synth.hump.trains.class_choice import ClassChoice
-from synth.hump.trains.forecast import SpeedRange
 from synth.hump.trains.free_tracks import AsInFile, DrawnFree, FreeTracks
 from synth.hump.trains.hump_position import HumpPosition
 from synth.hump.trains.hump_speed import HumpSpeedLimits, PairByPair, SpeedMethod, WholeTrain
@@ -29,9 +27,6 @@ from synth.hump.trains.trial import ConstantSpeed, Control, HumpTrial, Program, 
 from synth.hump.trains.trial_aim import trial_aim
 from synth.retarder.book_classes import book_classes, unfitting
 from synth.retarder.table_class import TableClass
-
-UNBRAKED_M_S = 99.0
-"""An exit speed that no cut has: whoever asks for it leaves the brake open."""
 
 METHODS: dict[str, SpeedMethod] = {"whole-train": WholeTrain(), "pair-by-pair": PairByPair()}
 
@@ -54,8 +49,10 @@ def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
         control=control_of(config),
         aim=trial_aim(config, threads),
         usable_heads_m=tuple(replace(brake, share=usable * brake.share).head_m for brake in brakes),
+        full_heads_m=tuple(brake.head_m for brake in brakes),
         free=free_of(config),
         threads=threads,
+        couplings=config.settings.couplings,
     )
 
 
@@ -105,13 +102,29 @@ def classes_of(choice: PositionChoice, config: ResolvedTrial) -> tuple[TableClas
 def table_model(choice: PositionChoice, config: ResolvedTrial) -> HumpPosition:
     """The closed loops of the tables in the book of a position; `InputError` unless there are some for all cuts."""
     found = ClassChoice(classes_of(choice, config), config.categories)
-    try:
-        for category, axles in sorted(kinds_of_cuts(config)):
-            found.able(category, axles)
-    except PlantError as fault:
+    missing = {kind for kind in kinds_of_cuts(config) if not found.serves(*kind)}
+    if missing:
         assert choice.book is not None
-        raise InputError(unfitting(f"{config.place}: position {choice.number}", choice.book, fault)) from None
+        named = f"{config.place}: position {choice.number}"
+        said = f"tables: {found.missing(missing)}, {or_fewer_kinds(missing, config)}"
+        raise InputError(unfitting(named, choice.book, PlantError(said)))
     return TableHumpPosition(found)
+
+
+def or_fewer_kinds(missing: set[tuple[int, int]], config: ResolvedTrial) -> str:
+    """What a user may set so that trains have none of the kinds of cuts that are `missing`."""
+    trains = config.trains
+    if isinstance(trains, SortingList):
+        return "or take a list without them"
+    members = config.categories.members
+    cars = {
+        place: {int(n) for n in config.people.mix.of(config.categories, members[place]).axles} for place, _ in missing
+    }
+    most = min((axles - 1) // max(cars[place]) for place, axles in missing)
+    if most >= 1:
+        return f"or set trains.most_cars = {most}"
+    names = sorted({members[place].latin for place, axles in missing if axles <= max(cars[place])})
+    return f"or leave {', '.join(names)} out of trains.category_shares"
 
 
 def kinds_of_cuts(config: ResolvedTrial) -> set[tuple[int, int]]:
@@ -130,24 +143,13 @@ def kinds_of_cuts(config: ResolvedTrial) -> set[tuple[int, int]]:
     }
 
 
-def speed_range(choice: PositionChoice, given: ExitRange, choices: int) -> SpeedRange:
-    """What a position for intervals may be commanded."""
-    low, high, entry = given
-    if choice.out_of_service:
-        return SpeedRange(UNBRAKED_M_S, UNBRAKED_M_S, 1)
-    return SpeedRange(low, high, choices, entry)
-
-
 def planner_of(config: ResolvedTrial) -> Planner:
     """How trains are planned."""
-    speed, choices = config.settings.hump_speed, config.settings.exit_speeds.choices
+    speed = config.settings.hump_speed
     return Planner(
         routes=config.routes,
         limits=HumpSpeedLimits(steps_m_s(config), speed.acceleration_m_s2),
-        ranges=tuple(
-            speed_range(choice, given, choices)
-            for choice, given in zip(config.positions[:-1], config.ranges_m_s, strict=True)
-        ),
+        roles=config.roles,
         least_s=speed.least_s,
         early_s=speed.early_s,
         worst_pair=speed.worst_pair,

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.hump.trains.hump_routes import HumpRoutes
-from synth.hump.trains.outcomes import CLASSES_M_S, GAP_BINS_M, SPEED_BINS_M_S, TrainOutcomes
+from synth.hump.trains.outcomes import GAP_BINS_M, SPEED_BINS_M_S, USUAL_COUPLINGS, TrainOutcomes
 from tuning_tables import DamagedTable
 from tuning_tables.seal import seal_of, unsealed
 
@@ -28,7 +28,7 @@ NUMBERS, TRIAL = "element_number", "trains_sha256"
 EDGES = {"speed_bin_edges_m_s": SPEED_BINS_M_S, "gap_bin_edges_m": GAP_BINS_M}
 """What stands besides: the numbers of the elements by column, of which trial the trains are, edges of histograms."""
 
-FLOATS = ("span_s", "span_m", "span_cars", "gap_m", "error2_m2_s2")
+FLOATS = ("span_s", "span_m", "span_cars", "gap_m", "error2_m2_s2", "commands_m_s", "tightest_s")
 """Fields of numbers that are not whole."""
 
 NO_ARCHIVE = (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError)
@@ -37,10 +37,12 @@ NO_ARCHIVE = (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error, Not
 
 @dataclass(frozen=True)
 class TrialTrains:
-    """Of which trial trains are, by the hash of what each of them depends on, and over which routes."""
+    """Of which trial trains are, by the hash of what each of them depends on, over which routes, and of how many
+    weight categories their cuts can be."""
 
     routes: HumpRoutes
     trains_sha256: str
+    categories: int
 
     def beside(self) -> dict[str, NDArray[Any]]:
         """What stands in the file besides the outcomes."""
@@ -51,8 +53,9 @@ class TrialTrains:
         elements, positions = (count, len(self.routes.numbers)), (count, self.routes.positions)
         wide = {
             **dict.fromkeys(("misrouted", "contact", "unseparated", "foul"), elements),
-            **dict.fromkeys(("passes", "strokes", "error2_m2_s2"), positions),
-            "overspeed": (count, len(CLASSES_M_S)),
+            **dict.fromkeys(("passes", "strokes", "error2_m2_s2", "short", "at_lowest"), positions),
+            **dict.fromkeys(("commanded", "commands_m_s"), (*positions, self.categories)),
+            "overspeed": (count, len(USUAL_COUPLINGS.classes_m_s)),
             "speed_bins": (count, len(SPEED_BINS_M_S) - 1),
             "gap_bins": (count, len(GAP_BINS_M) - 1),
         }

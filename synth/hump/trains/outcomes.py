@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.aim.scene import COUPLING_SPEED_M_S
+from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.hump_routes import HumpRoutes
+from synth.hump.trains.tightest_pairs import tightest_pairs
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 
@@ -19,8 +21,11 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-CLASSES_M_S = (COUPLING_SPEED_M_S, 1.5, 2.0)
-"""Over-speeds are told in the classes of [hump-computer-1970s]: up to 1.5, up to 2, faster."""
+USUAL_COUPLINGS = CouplingLimits()
+"""By the practice of most yards."""
+
+SAME_M_S = 1e-6
+"""Speeds that differ by less are the same."""
 
 SPEED_BINS_M_S = np.linspace(0.0, 6.0, 61)
 GAP_BINS_M = np.linspace(0.0, 600.0, 61)
@@ -38,7 +43,11 @@ class TrainOutcomes:
     `caught_on_track`: cuts that coupled to the one ahead while that rolled. `stopped`: on the way. `judged`: all
     others, which reached a track; of these `overspeed` (n, 3) coupled in each class of speed, `gap_m` is what they left
     free, all together. `speed_bins`, `gap_bins`: histograms. `passes`, `strokes`, `error2_m2_s2` (n, positions):
-    passes, commands to valves, and squares of (exit less command) summed up.
+    passes, commands to valves, and squares of (exit less command) summed up; `short`: passes that ended faster than
+    commanded for want of brake, `at_lowest`: those commanded the lowest speed that there is. (n, positions,
+    categories): `commanded` passes, and `commands_m_s`, their commands summed up. `tightest_s`: least interval of the
+    train between a cut and the next one on an element, at `tightest_at`, the column of the element, −1 for none,
+    `tightest_ahead` and `tightest_behind` being the places of the weight categories of both.
     """
 
     train: Ints
@@ -63,6 +72,14 @@ class TrainOutcomes:
     passes: Ints
     strokes: Ints
     error2_m2_s2: Floats
+    short: Ints
+    at_lowest: Ints
+    commanded: Ints
+    commands_m_s: Floats
+    tightest_s: Floats
+    tightest_at: Ints
+    tightest_ahead: Ints
+    tightest_behind: Ints
 
     def __len__(self) -> int:
         return len(self.train)
@@ -73,8 +90,21 @@ def joined(parts: Sequence[TrainOutcomes]) -> TrainOutcomes:
     return TrainOutcomes(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(TrainOutcomes)))
 
 
-def outcomes(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory) -> TrainOutcomes:
-    """What is to be told of `trains` that were humped."""
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PassLimits:
+    """What positions can do with some cuts, (rows, positions): `lowest_m_s`, the lowest command that the control may
+    give, NaN where there is no choice; `braked_m2_s2`, most loss of v² to the brake, at mean friction."""
+
+    lowest_m_s: Floats
+    braked_m2_s2: Floats
+
+
+def outcomes(
+    routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory, able: PassLimits | None = None,
+    couplings: CouplingLimits = USUAL_COUPLINGS,
+) -> TrainOutcomes:  # fmt: skip
+    """What is to be told of `trains` that were humped; without `able` no pass is counted as limited."""
     shape = trains.trains, trains.cuts
     none = routes.elements
     last_retarder = routes.retarder[memory.route].max(axis=2)
@@ -88,11 +118,13 @@ def outcomes(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory) -> Trai
     gap = np.where(
         judged & (memory.end_speed_m_s <= 0.0) & ~memory.caught_on_track, np.maximum(memory.free_m - ends, 0.0), 0.0
     )
-    bounds = (*CLASSES_M_S, np.inf)
+    bounds = (*couplings.classes_m_s, np.inf)
     over = [((speed > low) & (speed <= high)).sum(axis=1) for low, high in pairwise(bounds)]
     length, cars = trains.length_m.reshape(shape), trains.cars.reshape(shape)
     passed = np.isfinite(memory.exit_m_s)
     error2 = np.where(passed, memory.exit_m_s - memory.command_m_s, 0.0) ** 2
+    short, at_lowest = limited(memory, able)
+    tightest = tightest_pairs(routes, trains, memory)
     return TrainOutcomes(
         train=trains.first + np.arange(trains.trains),
         cuts=np.full(trains.trains, trains.cuts),
@@ -116,7 +148,39 @@ def outcomes(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory) -> Trai
         passes=passed.sum(axis=1),
         strokes=memory.strokes.sum(axis=1),
         error2_m2_s2=error2.sum(axis=1),
+        short=short.sum(axis=1),
+        at_lowest=at_lowest.sum(axis=1),
+        commanded=by_category(trains, passed.astype(np.int64)),
+        commands_m_s=by_category(trains, np.where(passed, memory.command_m_s, 0.0)),
+        tightest_s=tightest.interval_s,
+        tightest_at=tightest.at,
+        tightest_ahead=tightest.ahead,
+        tightest_behind=tightest.behind,
     )
+
+
+def limited(memory: TrainMemory, able: PassLimits | None) -> tuple[Bools, Bools]:
+    """(passes that ended faster than commanded because the full brake can no more, passes commanded the lowest speed
+    that there is), (trains, cuts, positions) both."""
+    command, shape = memory.command_m_s, memory.command_m_s.shape
+    if able is None:
+        return np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
+    least2 = memory.unbraked_m_s**2 - able.braked_m2_s2.reshape(shape)
+    short = (least2 > command**2) & (memory.exit_m_s > command)
+    at_lowest = np.isfinite(memory.exit_m_s) & (np.abs(command - able.lowest_m_s.reshape(shape)) < SAME_M_S)
+    return short, at_lowest
+
+
+def by_category(trains: TrainCuts, values: NDArray[Any]) -> NDArray[Any]:
+    """`values` (trains, cuts, positions) of the passes summed up, (trains, positions, categories)."""
+    place = trains.category.reshape(values.shape[:2])
+    members = np.arange(len(trains.population.categories.members))
+    return np.stack([(values * (place == k)[:, :, None]).sum(axis=1) for k in members], axis=2)
+
+
+def caught_at(routes: HumpRoutes, found: TrainOutcomes) -> Ints:
+    """Misroutes, and contacts ahead of a last position, of all trains at each element, (numbers,)."""
+    return np.asarray(found.misrouted.sum(axis=0) + np.where(routes.is_last, 0, found.contact.sum(axis=0)))
 
 
 def at_elements(routes: HumpRoutes, route: Ints, column: Ints) -> Ints:

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from plant_models.errors import PlantError, require
 from plant_models.hump import Retarder, Route
-from synth.hump.configuration.settings import HumpPositionSettings
+from synth.hump.configuration.position_settings import HumpPositionSettings
 from synth.retarder.forms.table_file import read_tables
 
 T = TypeVar("T")

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from plant_models.errors import require
 from plant_models.library import (
     CAR_MIXES,
@@ -22,21 +24,23 @@ from plant_models.library.hump_entry import HumpEntry
 from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
 from synth.frame.settings.numbers import range_warnings
-from synth.hump.configuration.settings import HumpTrialSettings
+from synth.hump.configuration.settings import OVERSPEEDS_PER_ASKED, HumpTrialSettings
 from synth.hump.configuration.trial_file import TrialFile, read_trial_file
 from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.railml.write import to_railml
 from synth.hump.trains.aim_choice import AimChoice, aim_choices
-from synth.hump.trains.asked_speeds import ExitRange, exit_ranges, filled_speeds
+from synth.hump.trains.asked_roles import asked_roles, role_values, role_warnings, settings_of
 from synth.hump.trains.asked_trains import (
     cars_of_cuts,
     filled_trains,
     population_of,
     trains_of,
 )
+from synth.hump.trains.car_warnings import car_warnings, list_warnings, weather_warnings
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from synth.hump.trains.position_choice import PositionChoice, position_choices
+from synth.hump.trains.position_roles import Fixed, Roles
 from synth.hump.trains.rising_track import require_falling
 from synth.hump.trains.table_aim import aim_warnings, require_fitting
 from synth.hump.trains.trial_parameters import (
@@ -65,8 +69,8 @@ KEY_OF_PLANT_MESSAGE: Final = {
 class ResolvedTrial:
     """Everything that humped trains depend on.
 
-    `trains`: a population, or the humped cuts of a sorting list. `ranges_m_s`: of each position but the last. `aims`:
-    exported aim tables of last positions; for routes that have none, speeds are chosen for the trial.
+    `trains`: a population, or the humped cuts of a sorting list. `aims`: exported aim tables of positions that aim;
+    where there are none, speeds are chosen for the trial.
     `library`: with the user's own types. `parameters`: every number with unit, range, source and whether it is assumed;
     `warnings`: sentences about values outside their sensible range; `place`: what messages call the file.
     """
@@ -78,7 +82,7 @@ class ResolvedTrial:
     people: CutPopulation
     trains: TrainPopulation | SortingList
     positions: tuple[PositionChoice, ...]
-    ranges_m_s: tuple[ExitRange, ...]
+    roles: Roles
     aims: tuple[AimChoice, ...]
     settings: HumpTrialSettings
     library: Library
@@ -100,7 +104,7 @@ class ResolvedTrial:
     @property
     def designed_rows(self) -> tuple[int, ...]:
         """The routes with a position whose aim is chosen for the trial."""
-        return rows_without(self.aims, self.routes)
+        return rows_without(self.aims, self.roles)
 
     @property
     def canonical_json(self) -> str:
@@ -143,16 +147,18 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         mix = settings.cars.applied_to(load_car_mix(settings.cars.mix, library))
         categories = load_weight_categories(settings.weight_categories, library)
         positions = position_choices(routes.routes, settings.position, file.hump_source.parent, file.folder)
-        settings, usual = (filled(each, mix, categories, routes, positions) for each in (settings, HumpTrialSettings()))
-        ranges = exit_ranges(settings.exit_speeds, positions[:-1])
+        settings, usual = (filled(each, mix, categories, routes) for each in (settings, HumpTrialSettings()))
+        asked = settings_of(len(positions), settings.position, settings.exit_speeds.choices)
+        roles = asked_roles(asked, positions, routes, categories)
         people = population_of(mix, categories, settings)
         trains = trains_of(settings.trains, file.folder, people, routes)
         require_falling(routes, settings)
-        aims = aim_choices(routes.routes, settings.aim, file.hump_source.parent, file.folder)
+        aims = aim_choices(routes, roles, settings.aim, file.hump_source.parent, file.folder)
         for each in aims:
             require_fitting(each, routes, cars_of_cuts(trains, categories), settings.aim.knowledge == "measured")
     parameters = (
-        *trial_numbers(settings, usual, file.hump, mix, categories, designed=len(rows_without(aims, routes)) > 0),
+        *trial_numbers(settings, usual, file.hump, mix, categories, designed=len(rows_without(aims, roles)) > 0),
+        *role_values(asked, roles, categories),
         *position_values(positions, file.hump),
     )
     return ResolvedTrial(
@@ -163,32 +169,50 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         people=people,
         trains=trains,
         positions=positions,
-        ranges_m_s=ranges,
+        roles=roles,
         aims=aims,
         settings=settings,
         library=library,
         parameters=parameters,
         notes=(*file.hump.notes, *mix.notes),
-        warnings=(*range_warnings(parameters), *aim_warnings(aims, routes, settings)),
-        names=names_of(file, routes.lead, mix, categories, trains, positions) | aim_names(aims),
+        warnings=(
+            *range_warnings(parameters),
+            *aim_warnings(aims, routes, settings),
+            *role_warnings(asked, roles, positions, routes),
+            *car_warnings(file.hump.cars, cars_of_cuts(trains, categories)),
+            *weather_warnings(settings),
+            *list_warnings(trains.cuts if isinstance(trains, SortingList) else (), categories),
+        ),
+        names=names_of(file, routes.lead, mix, categories, trains, positions)
+        | {"roles": role_names(roles)}
+        | aim_names(aims),
     )
 
 
 def filled(
-    settings: HumpTrialSettings, mix: CarMixEntry, categories: WeightCategories, routes: HumpRoutes,
-    positions: tuple[PositionChoice, ...],
-) -> HumpTrialSettings:  # fmt: skip
+    settings: HumpTrialSettings, mix: CarMixEntry, categories: WeightCategories, routes: HumpRoutes
+) -> HumpTrialSettings:
     """`settings` with what follows from hump, mix and categories where the file leaves it out."""
+    acceptance = settings.acceptance
+    if acceptance.overspeed is None:
+        most = min(OVERSPEEDS_PER_ASKED * settings.aim.p_overspeed, 1.0)
+        acceptance = acceptance.model_copy(update={"overspeed": most})
     trains = filled_trains(settings.trains, mix, categories, routes)
-    return settings.model_copy(
-        update={"trains": trains, "exit_speeds": filled_speeds(settings.exit_speeds, positions[:-1])}
-    )
+    return settings.model_copy(update={"trains": trains, "acceptance": acceptance})
 
 
-def rows_without(aims: tuple[AimChoice, ...], routes: HumpRoutes) -> tuple[int, ...]:
-    """The routes with a position that has no aim tables."""
+def rows_without(aims: tuple[AimChoice, ...], roles: Roles) -> tuple[int, ...]:
+    """The routes on which a position aims that has no aim tables."""
     told = {row for each in aims for row in each.rows}
-    return tuple(row for row in range(len(routes.routes)) if routes.positions_of[row] > 0 and row not in told)
+    return tuple(row for row in roles.aimed_rows if row not in told)
+
+
+def role_names(roles: Roles) -> list[Any]:
+    """What trains depend on of roles besides speeds: on which routes each position aims, and what is fixed."""
+    return [
+        [isinstance(exits, Fixed), np.flatnonzero(aims).tolist()]
+        for exits, aims in zip(roles.exits, roles.aims, strict=True)
+    ]
 
 
 def aim_names(aims: tuple[AimChoice, ...]) -> dict[str, Any]:
@@ -220,6 +244,7 @@ def names_of(
         "list": [cut_line(cut) for cut in trains.cuts] if isinstance(trains, SortingList) else None,
         "one_wind_a_train": settings.trains.one_wind_a_train,
         "standing": settings.tracks.standing,
+        "closed_tracks": sorted(set(settings.trains.closed_tracks or ())),
         "method": settings.hump_speed.method,
         "worst_pair": settings.hump_speed.worst_pair,
         "feedback": settings.exit_speeds.feedback,

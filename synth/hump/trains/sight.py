@@ -10,6 +10,7 @@ from synth.hump.trains.forecast import Forecast, Given, entrance_m, from_crest, 
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.motion import Moving
+from synth.hump.trains.position_roles import Roles
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import LEADERS, TrainPlan, push_of, shared_needs
 
@@ -24,10 +25,11 @@ class Sight:
     class holds nothing that is younger than itself, and only those are used that are older than the question.
     """
 
-    def __init__(self, routes: HumpRoutes, known: KnownCuts, plan: TrainPlan) -> None:
-        self.routes, self.known, self.plan = routes, known, plan
+    def __init__(self, routes: HumpRoutes, known: KnownCuts, plan: TrainPlan, roles: Roles) -> None:
+        self.routes, self.known, self.plan, self.roles = routes, known, plan, roles
         trains, cuts, positions = plan.exit_m_s.shape
-        shape = trains, cuts, 1 + 2 * positions
+        self.told = roles.not_of_all
+        shape = trains, cuts, 1 + 2 * len(self.told)
         self.known_s, self.out_s = np.full(shape, np.inf), np.full((*shape, routes.elements), np.nan)
         self.chosen_m_s = np.repeat(plan.exit_m_s[:, :, None], positions, axis=2)
         mean = known.mean_n_per_kn.reshape(trains, cuts, 1)
@@ -37,10 +39,11 @@ class Sight:
     def decided(self, asked: Asked, resistance_n_per_kn: Floats, taken: Forecast) -> None:
         """A cut was given its command, as in the forecast `taken`, and is expected with this resistance."""
         lanes, cut, position = asked.lanes, asked.cut, asked.position
-        self.chosen_m_s[lanes, cut, position, position:] = taken.exit_m_s[:, :-1]
+        version = 1 + 2 * self.told.index(position)
+        self.chosen_m_s[lanes, cut, position, position:] = taken.exit_m_s
         self.resistance_n_per_kn[lanes, cut, position] = resistance_n_per_kn
-        self.known_s[lanes, cut, 1 + 2 * position] = asked.start.time_s
-        self.out_s[lanes, cut, 1 + 2 * position] = taken.last_out_s
+        self.known_s[lanes, cut, version] = asked.start.time_s
+        self.out_s[lanes, cut, version] = taken.last_out_s
 
     def learn(self, cut: int, memory: TrainMemory) -> None:
         """Add the forecasts of the cut ahead of number `cut`, once."""
@@ -50,12 +53,13 @@ class Sight:
         self.learnt = ahead
         known, rows = self.known, self.known.of_cut(ahead)
         start = Moving(0.5 * known.length_m[rows], memory.hump_speed_m_s[:, ahead], memory.crest_s[:, ahead])
-        planned = (Given(self.plan.exit_m_s[:, ahead, q]) for q in range(self.plan.exit_m_s.shape[2]))
+        planned = tuple(Given(self.plan.exit_m_s[:, ahead, q]) for q in range(self.routes.positions))
+        choices = self.roles.aimed(planned, known.route[rows], known.aim_of(rows))
         expected = known.expected(rows, known.route[rows], known.mean_n_per_kn[rows])
         push = push_of(known, memory.hump_speed_m_s, ahead)
-        ways = from_crest(self.routes, expected, start, push, (*planned, known.aim_of(rows)))
+        ways = from_crest(self.routes, expected, start, push, choices)
         self.known_s[:, ahead, 0], self.out_s[:, ahead, 0] = memory.crest_s[:, ahead], ways.followed().last_out_s
-        for position in range(self.plan.exit_m_s.shape[2]):
+        for position in self.told:
             self.learn_pass(ahead, position, memory)
 
     def learn_pass(self, cut: int, position: int, memory: TrainMemory) -> None:
@@ -69,19 +73,14 @@ class Sight:
         head = np.maximum(entrance_m(self.routes, expected, position), 0.5 * self.known.length_m[rows])
         start = Moving(head, memory.entry_m_s[lanes, cut, position], memory.begin_s[lanes, cut, position])
         exits = memory.exit_m_s[lanes, cut, position]
-        later = range(position + 1, self.plan.exit_m_s.shape[2])
-        next_m_s = (Given(self.chosen_m_s[lanes, cut, position, q]) for q in later)
-        choices = (Given(exits), *next_m_s, self.aim_after(rows, routes, position, exits))
-        told = from_entrance(self.routes, expected, start, position, choices).followed()
+        later = range(position + 1, self.routes.positions)
+        next_m_s = tuple(Given(self.chosen_m_s[lanes, cut, position, q]) for q in later)
+        behind = self.roles.aimed(next_m_s, routes, self.known.aim_of(rows), position + 1)
+        told = from_entrance(self.routes, expected, start, position, (Given(exits), *behind)).followed()
         shift = ended - told.ended_s[:, 0]
-        self.known_s[lanes, cut, 2 + 2 * position] = ended
-        self.out_s[lanes, cut, 2 + 2 * position] = told.last_out_s + shift[:, None]
-
-    def aim_after(self, rows: Ints, routes: Ints, position: int, exit_m_s: Floats) -> Given:
-        """What is expected of the last position when the cuts `rows` (n,) have left `position` with `exit_m_s`: just
-        that, where it was the last one of their `routes`."""
-        aim, last = self.known.aim_of(rows), self.routes.positions_of[routes] == position + 1
-        return aim if not last.any() else Given(np.where(last, exit_m_s, aim.speed_m_s))
+        version = 2 + 2 * self.told.index(position)
+        self.known_s[lanes, cut, version] = ended
+        self.out_s[lanes, cut, version] = told.last_out_s + shift[:, None]
 
     def routes_by(self, lanes: Ints, cut: Ints, now_s: Floats, memory: TrainMemory) -> Ints:
         """Routes (n,) on which the cuts (n,) are at `now_s`, as far as one can see: their own until they are misrouted,

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.frame.processors import available
 from synth.hump.configuration.trial_file import INPUTS, TrialFile, parse_trial_file, trial_text
 from synth.hump.trains.simulate_options import SimulateOptions
 
 if TYPE_CHECKING:
-    from synth.frame.workers.engine import Engine
     from synth.hump.trains.asked_trial import AskedTrial
-    from synth.hump.trains.batch import BatchOrder
     from synth.hump.trains.humped_trial import HumpedTrial
     from synth.hump.trains.outcomes import TrainOutcomes
     from synth.hump.trains.trial import HumpTrial
@@ -82,47 +80,27 @@ def compute(asked: AskedTrains, work: Work) -> HumpedTrial:
 
 def humped(asked: AskedTrains, trial: HumpTrial, work: Work) -> TrainOutcomes:
     """The outcomes of all trains, those of earlier runs among them. Raises `Unfinished` for a batch that fails."""
-    from synth.frame.workers.stored_results import missing_of
-    from synth.hump.trains.batch import orders_of
-    from synth.hump.trains.outcome_file import TrialTrains
-    from synth.hump.trains.train_run import BatchFiles, run_trains
+    from synth.hump.trains.train_engine import engine_for
+    from synth.hump.trains.train_run import run_of, run_trials
 
-    config, progress = asked.trial.config, work.progress
-    orders = list(orders_of(trial, config.trains_sha256, asked.number))
-    files = BatchFiles(work.directory, TrialTrains(config.routes, config.trains_sha256))
-    missing = missing_of(orders, files.file, progress)
-    progress.begin(len(orders) - len(missing))
-    return run_trains(orders, missing, files, engine_for(missing, asked.options), progress)
-
-
-def engine_for(missing: Sequence[BatchOrder], options: SimulateOptions) -> Engine:
-    """The cluster that was named, processes, or this process for a single batch: workers have to load first."""
-    from synth.hump.trains.batch import answer_batch, answer_batch_here
-
-    if options.scheduler is not None:
-        from synth.frame.workers.dask_cluster import connect
-
-        return connect(options.scheduler, answer_batch)
-    if options.workers is None and min(len(missing), available()) < 2:
-        from synth.frame.workers.engine import InThisProcess
-
-        return InThisProcess(answer_batch_here)
-    from synth.frame.workers.local_workers import LocalWorkers
-
-    return LocalWorkers(max(1, min(options.workers or available(), len(missing))), answer_batch)
+    run = run_of(asked.trial.config, trial, asked.number, work.directory)
+    (found,) = run_trials((run,), partial(engine_for, asked.options), work.progress)
+    return found
 
 
 def limits(result: HumpedTrial) -> Iterable[Limit]:
     """Those of the configuration."""
     from synth.hump.trains.trial_limits import trial_limits
 
-    return trial_limits(result.figures, result.config.settings.acceptance)
+    return trial_limits(result)
 
 
 def show(result: HumpedTrial) -> Iterator[Chapter]:
     """All trains first: whatever becomes of the one that is shown, their figures are written before it is humped."""
+    from synth.hump.trains.chosen_trains import chosen_trains
     from synth.hump.trains.shown.figures import figures
-    from synth.hump.trains.shown.one_train import SHOWN_TRAIN, one_train_exhibits, traced_once
+    from synth.hump.trains.shown.first_screen import first_screen
+    from synth.hump.trains.shown.one_train import one_train_exhibits, traced_once
     from synth.hump.trains.shown.places import catch_ups, couplings
     from synth.hump.trains.shown.positions import positions
     from synth.hump.trains.shown.program import program_exhibits, pushed_chart
@@ -130,15 +108,17 @@ def show(result: HumpedTrial) -> Iterator[Chapter]:
     from synth.hump.trains.traced_train import one_train
     from synth.kernels.cache import guarded
 
+    yield Chapter("At a glance", tuple(first_screen(result)))
     yield Chapter("Figures", tuple(figures(result)))
     yield Chapter("Catch-ups", tuple(catch_ups(result)))
-    yield Chapter("Couplings and gaps", tuple(couplings(result.found)))
+    yield Chapter("Couplings and gaps", tuple(couplings(result.found, result.trial.couplings)))
     yield Chapter("Positions", tuple(positions(result)))
-    shown = guarded(one_train, result.trial, SHOWN_TRAIN)
+    number = chosen_trains(result.found)[0].number
+    shown = guarded(one_train, result.trial, number)
     traced = traced_once(shown)
-    yield Chapter(f"Train {SHOWN_TRAIN + 1}", tuple(one_train_exhibits(result, shown, traced)))
-    program = program_exhibits(guarded(speed_program, result.trial, SHOWN_TRAIN), brief=False)
-    yield Chapter("Hump speed", (*program, pushed_chart(SHOWN_TRAIN, traced)))
+    yield Chapter(f"Train {number + 1}", tuple(one_train_exhibits(result, shown, traced)))
+    program = program_exhibits(guarded(speed_program, result.trial, number), brief=False)
+    yield Chapter("Hump speed", (*program, pushed_chart(number, traced)))
 
 
 COMMAND = Command(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.hump.trains.hump_routes import HumpRoutes
+from synth.hump.trains.position_roles import Roles
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_plan import TrainPlan
 from synth.hump.trains.trial import HumpTrial
@@ -18,7 +19,7 @@ Floats = NDArray[np.float64]
 @dataclass(frozen=True)
 class ProgramRow:
     """Cut number `cut` of the train, from 1. `time_s`, `pushed_m`: when its middle is at the crest, since that of the
-    first cut was there; `exit_m_s`: of the positions of its route, the last one by the aim as it is expected."""
+    first cut was there; `exit_m_s`: of the positions of its route, of one that aims as it is expected."""
 
     cut: int
     cars: int
@@ -56,13 +57,22 @@ class SpeedProgram:
 def speed_program(trial: HumpTrial, number: int) -> SpeedProgram:
     """The program of train `number` of `trial`; nothing is humped."""
     trains, _, known, plan = trial.planned(number, 1)
-    return program_of(number, trains, plan, known.aim.speed_m_s, trial.routes)
+    exits = planned_m_s(trains, plan, known.aim.speed_m_s, trial.planner.roles)
+    return program_of(number, trains, plan, exits, trial.routes)
 
 
-def program_of(number: int, trains: TrainCuts, plan: TrainPlan, aim_m_s: Floats, routes: HumpRoutes) -> SpeedProgram:
-    """The program that `plan` has for its only train."""
-    kept = np.maximum(routes.positions_of[trains.route] - 1, 0)
-    aimed = routes.positions_of[trains.route] > 0
+def planned_m_s(trains: TrainCuts, plan: TrainPlan, aim_m_s: Floats, roles: Roles) -> Floats:
+    """What the positions are to be commanded for the cuts of the only train of `plan`, (cuts, positions)."""
+    found = plan.exit_m_s[0].copy()
+    for position, exits in enumerate(roles.exits):
+        fixed = exits.fixed_m_s(trains.category)
+        kept = found[:, position] if fixed is None else fixed
+        found[:, position] = np.where(roles.aims[position][trains.route], aim_m_s, kept)
+    return np.asarray(found)
+
+
+def program_of(number: int, trains: TrainCuts, plan: TrainPlan, exit_m_s: Floats, routes: HumpRoutes) -> SpeedProgram:
+    """The program that `plan` has for its only train, whose positions are to be commanded `exit_m_s`."""
     middle = np.cumsum(trains.length_m) - 0.5 * trains.length_m
     members = trains.population.categories.members
     rows = tuple(
@@ -77,7 +87,7 @@ def program_of(number: int, trains: TrainCuts, plan: TrainPlan, aim_m_s: Floats,
             hump_speed_m_s=float(plan.hump_speed_m_s[0, cut]),
             time_s=float(plan.crest_s[0, cut] - plan.crest_s[0, 0]),
             pushed_m=float(middle[cut] - middle[0]),
-            exit_m_s=(*plan.exit_m_s[0, cut, : kept[cut]].tolist(), *([float(aim_m_s[cut])] if aimed[cut] else [])),
+            exit_m_s=tuple(exit_m_s[cut, : routes.positions_of[trains.route[cut]]].tolist()),
         )
         for cut in range(trains.cuts)
     )

@@ -32,5 +32,8 @@ def stored_trains(directory: Path, said: str) -> StoredTrains:
             raise InputError(f"{said}: there is no {name} in it; give what 'hump simulate' left")
     config = load_trial(directory / CONFIG)
     content = (directory / TRAINS).read_bytes()
-    trial, count = TrialTrains(config.routes, config.trains_sha256), config.settings.trains.number
+    trial, count = (
+        TrialTrains(config.routes, config.trains_sha256, len(config.categories.members)),
+        config.settings.trains.number,
+    )
     return StoredTrains(config, from_npz(content, str(directory / TRAINS), trial, count), content)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from plant_models.errors import PlantError, require
 from plant_models.library.weight_category import WeightCategory
 from synth.aim.readings import MOST_N_PER_KN, ResistanceByTwoSpeeds
-from synth.aim.scene import COUPLING_SPEED_M_S, MeasuredStretch
+from synth.aim.scene import MeasuredStretch
 from synth.hump.configuration.settings import HumpTrialSettings
 from synth.hump.trains.aim_choice import AimChoice
 from synth.hump.trains.aim_design import AimDesign, MeasuredAhead, scene_of
@@ -86,10 +86,10 @@ def aim_warnings(aims: tuple[AimChoice, ...], routes: HumpRoutes, settings: Hump
                     f"{known.speed_std_m_s:g} m/s"
                 )
             asked = table.required.coupling_speed_m_s
-            if abs(asked - COUPLING_SPEED_M_S) > COUPLING_TOLERANCE_M_S:
+            if abs(asked - settings.couplings.allowed_m_s) > COUPLING_TOLERANCE_M_S:
                 yield (
                     f"the aim table {table.id} is for couplings at up to {asked:g} m/s; over-speeds are told above "
-                    f"{COUPLING_SPEED_M_S:.2f} m/s"
+                    f"{settings.couplings.allowed_m_s:.2f} m/s"
                 )
         ends, exit_m = routes.release_m[list(choice.rows)], choice.tables.tables[0].position.exit_at_m
         if np.abs(ends - exit_m).max() > SAME_PLACE_M:

@@ -26,7 +26,9 @@ class OneTrain:
         """Its cuts on their ways."""
         trial = self.trial
         rolls = rolling_on(trial.ways, self.trains.population, self.trains.drawn, trial.threads)
-        return train_trace(Hump(trial.routes, trial.positions, rolls), self.trains, self.memory, 0)
+        return train_trace(
+            Hump(trial.routes, trial.positions, rolls), self.trains, self.memory, 0, trial.couplings.allowed_m_s
+        )
 
     def controlled(self) -> ControlledTrain:
         """What the hump control records of it."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,35 +103,96 @@ def share(hits: Floats, base: Floats) -> tuple[float, float, float, float]:
     return p, low if low >= NEGLIGIBLE * p else 0.0, high if 1.0 - high >= NEGLIGIBLE * (1.0 - p) else 1.0, effect
 
 
-def train_figures(found: TrainOutcomes, wanted_share: float = 0.005) -> tuple[TrainFigure, ...]:
-    """The figures that are told of trains; `wanted_share`: for `enough_n` of shares."""
-    cuts, judged = found.cuts.astype(float), found.judged.astype(float)
+Of = Callable[[TrainOutcomes], Floats]
+"""A number of each train, (n,)."""
 
-    def part(name: str, hits: NDArray[np.int64], base: Floats) -> TrainFigure:
-        p, low, high, effect = share(hits.astype(float), base)
+
+@dataclass(frozen=True)
+class FigureOf:
+    """How a figure follows from trains: Σ `hits` / Σ `base`; `is_share`: of cuts, else a mean over trains."""
+
+    name: str
+    unit: str
+    hits: Of
+    base: Of
+    is_share: bool
+
+    def figure(self, found: TrainOutcomes, wanted_share: float) -> TrainFigure:
+        """The figure of some trains with its interval; `wanted_share`: for `enough_n`."""
+        hits, base = self.hits(found), self.base(found)
+        if not self.is_share:
+            return TrainFigure(self.name, self.unit, *ratio(hits, base), len(base))
+        p, low, high, effect = share(hits, base)
         enough = 1.959964**2 * p * (1.0 - p) / wanted_share**2 * effect
-        return TrainFigure(name, "1", p, low, high, int(base.sum()), enough)
+        return TrainFigure(self.name, self.unit, p, low, high, int(base.sum()), enough)
 
-    def mean(name: str, unit: str, sums: Floats, base: Floats) -> TrainFigure:
-        return TrainFigure(name, unit, *ratio(sums, base), len(base))
+    def difference(self, found: TrainOutcomes, other: TrainOutcomes) -> tuple[float, float, float]:
+        """By how much the figure of `found` is more than that of `other`, which are the same trains, with the interval
+        of Student's, linearised, paired by train; NaN where there is none."""
+        residual, value = np.zeros(len(found)), 0.0
+        for sign, trains in ((1.0, found), (-1.0, other)):
+            hits, base = self.hits(trains), self.base(trains)
+            if len(base) < FEWEST_TRAINS or base.sum() == 0.0:
+                return float("nan"), float("nan"), float("nan")
+            p = float(hits.sum() / base.sum())
+            value += sign * p
+            residual += sign * (hits - p * base) / base.mean()
+        half = (
+            float(stdtrit(len(found) - 1, 0.5 + 0.5 * CONFIDENCE)) * float(residual.std(ddof=1)) / np.sqrt(len(found))
+        )
+        return value, value - half, value + half
 
-    passes = found.passes.sum(axis=1).astype(float)
-    figures = [
-        mean("hump_speed", "m/s", found.span_m, found.span_s),
-        mean("cars_per_hour", "1/h", 3600.0 * found.span_cars, found.span_s),
-        part("catch_ups", found.caught, cuts),
-        part("misrouted", found.misrouted.sum(axis=1), cuts),
-        part("contacts", found.contact.sum(axis=1), cuts),
-        part("contacts_in_last_position", found.caught_in_last, cuts),
-        part("caught_on_track", found.caught_on_track, cuts),
-        part("stopped_on_the_way", found.stopped, cuts),
-        mean("unseparated_elements_per_cut", "1", found.unseparated.sum(axis=1).astype(float), cuts),
-        part("overspeed", found.overspeed.sum(axis=1), judged),
-        part("overspeed_to_1_5", found.overspeed[:, 0], judged),
-        part("overspeed_to_2", found.overspeed[:, 1], judged),
-        part("overspeed_above_2", found.overspeed[:, 2], judged),
-        mean("gap_per_cut", "m", found.gap_m, judged),
-    ]
-    if found.strokes.any():  # no position models its valves otherwise
-        figures.append(mean("strokes_per_pass", "1", found.strokes.sum(axis=1).astype(float), passes))
-    return tuple(figures)
+
+def of_cuts(name: str, hits: Callable[[TrainOutcomes], NDArray[np.int64]]) -> FigureOf:
+    """A share of all cuts."""
+    return FigureOf(name, "1", lambda found: hits(found).astype(float), lambda found: found.cuts.astype(float), True)
+
+
+def of_judged(name: str, hits: Callable[[TrainOutcomes], NDArray[np.int64]]) -> FigureOf:
+    """A share of the cuts that reached a track."""
+    return FigureOf(name, "1", lambda found: hits(found).astype(float), lambda found: found.judged.astype(float), True)
+
+
+def mean(name: str, unit: str, hits: Of, base: Of) -> FigureOf:
+    """A mean over trains."""
+    return FigureOf(name, unit, hits, base, False)
+
+
+FIGURES: Final = (
+    mean("hump_speed", "m/s", lambda found: found.span_m, lambda found: found.span_s),
+    mean("cars_per_hour", "1/h", lambda found: 3600.0 * found.span_cars, lambda found: found.span_s),
+    of_cuts("catch_ups", lambda found: found.caught),
+    of_cuts("misrouted", lambda found: found.misrouted.sum(axis=1)),
+    of_cuts("contacts", lambda found: found.contact.sum(axis=1)),
+    of_cuts("contacts_in_last_position", lambda found: found.caught_in_last),
+    of_cuts("caught_on_track", lambda found: found.caught_on_track),
+    of_cuts("stopped_on_the_way", lambda found: found.stopped),
+    mean(
+        "unseparated_elements_per_cut",
+        "1",
+        lambda found: found.unseparated.sum(axis=1).astype(float),
+        lambda found: found.cuts.astype(float),
+    ),
+    of_judged("overspeed", lambda found: found.overspeed.sum(axis=1)),
+    of_judged("overspeed_slight", lambda found: found.overspeed[:, 0]),
+    of_judged("overspeed_rough", lambda found: found.overspeed[:, 1]),
+    of_judged("overspeed_harmful", lambda found: found.overspeed[:, 2]),
+    mean("gap_per_cut", "m", lambda found: found.gap_m, lambda found: found.judged.astype(float)),
+    mean(
+        "strokes_per_pass",
+        "1",
+        lambda found: found.strokes.sum(axis=1).astype(float),
+        lambda found: found.passes.sum(axis=1).astype(float),
+    ),
+)
+"""The figures that are told of trains; the last one only where a position models its valves."""
+
+
+def figures_told(found: TrainOutcomes) -> tuple[FigureOf, ...]:
+    """Those of `FIGURES` that these trains have."""
+    return FIGURES if found.strokes.any() else FIGURES[:-1]
+
+
+def train_figures(found: TrainOutcomes, wanted_share: float = 0.005) -> tuple[TrainFigure, ...]:
+    """The figures of trains; `wanted_share`: for `enough_n` of shares."""
+    return tuple(each.figure(found, wanted_share) for each in figures_told(found))

@@ -11,7 +11,8 @@ class TrainMemory:
     """Arrays (trains, cuts, …), NaN or −1 where nothing happened yet.
 
     `route`: rows of the routes that the cuts went, at last. `crest_s`, `hump_speed_m_s`. `time_s` (…, elements, marks).
-    (…, positions): `begin_s` and `entry_m_s` of a pass, `command_m_s`, `exit_m_s`, `end_s`, `strokes` of valves;
+    (…, positions): `begin_s` and `entry_m_s` of a pass, `unbraked_m_s` with which it would end unbraked,
+    `command_m_s`, `exit_m_s`, `end_s`, `strokes` of valves;
     `ruled_m_s`, what the position was set to while the cut was in it, also where it was in contact.
     Columns of elements, the number of elements where none: `misrouted_at`, `contact_at`; `behind`, the cut with which
     it is in contact from `since_s` on, −1 for none. (…, elements): `unseparated`, `foul`. At the track: `free_m` that
@@ -25,9 +26,10 @@ class TrainMemory:
         self.route = np.full(shape, -1)
         self.crest_s, self.hump_speed_m_s = np.full(shape, np.nan), np.full(shape, np.nan)
         self.time_s = np.full((*shape, elements, len(Mark)), np.nan)
-        self.begin_s, self.entry_m_s, self.command_m_s, self.exit_m_s, self.end_s, self.ruled_m_s = (
-            np.full((*shape, positions), np.nan) for _ in range(6)
+        self.begin_s, self.entry_m_s, self.unbraked_m_s, self.command_m_s = (
+            np.full((*shape, positions), np.nan) for _ in range(4)
         )
+        self.exit_m_s, self.end_s, self.ruled_m_s = (np.full((*shape, positions), np.nan) for _ in range(3))
         self.strokes = np.zeros((*shape, positions), dtype=np.int64)
         self.misrouted_at, self.contact_at = np.full(shape, elements), np.full(shape, elements)
         self.unseparated, self.foul = np.zeros((*shape, elements), bool), np.zeros((*shape, elements), bool)

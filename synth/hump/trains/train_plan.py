@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.hump.trains.forecast import Given, SpeedRange, from_crest
+from synth.hump.trains.forecast import Given, from_crest
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTrain
 from synth.hump.trains.interval import CentredRule, EarlyRule, IntervalRule, possible
 from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.meeting import Ahead, LastUsers
 from synth.hump.trains.motion import Moving, Push
+from synth.hump.trains.position_roles import Roles
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -41,7 +42,7 @@ class TrainPlan:
     """The plan of some trains, (trains, cuts): `crest_s`, `hump_speed_m_s`, `margin_s`: the largest to those ahead that
     some choice of exit speeds gives; with it, `margins_s` (…, leaders) to the cut 1, 2, … ahead.
 
-    `exit_m_s` (…, positions): of the interval positions. `first_in_s`, `last_out_s` (…, elements): of the
+    `exit_m_s` (…, positions): exit speeds. `first_in_s`, `last_out_s` (…, elements): of the
     elements up to the end of the last position.
     """
 
@@ -56,7 +57,7 @@ class TrainPlan:
 
 @dataclass(frozen=True)
 class Planner:
-    """Plans trains on `routes`. `ranges`: choices of the interval positions, from the crest on.
+    """Plans trains on `routes`, whose positions have the `roles`.
 
     `least_s`: the interval that a pair must keep at its worst element; `early_s`: of it, what a cut keeps to the cut
     ahead when those behind wait for it. `worst_pair`: a bad runner ahead and a good one behind (2.3 and 97.7 % of their
@@ -66,7 +67,7 @@ class Planner:
 
     routes: HumpRoutes
     limits: HumpSpeedLimits
-    ranges: tuple[SpeedRange, ...]
+    roles: Roles
     least_s: float = 0.5
     early_s: float = 0.2
     worst_pair: bool = False
@@ -145,7 +146,7 @@ class Sweep:
         mean = 0.5 * (speeds_m_s[:, 1:] + speeds_m_s[:, :-1])
         self.crest_s = np.zeros(shape)
         self.crest_s[:, 1:] = np.cumsum(apart_m(known)[:, 1:] / mean, axis=1)
-        self.exit_m_s = np.zeros((*shape, len(planner.ranges)))
+        self.exit_m_s = np.zeros((*shape, routes.positions))
         self.first_in_s, self.last_out_s, self.left_s = (np.full((*shape, routes.elements), np.nan) for _ in range(3))
 
     def run(self, rule: IntervalRule) -> TrainPlan:
@@ -171,13 +172,13 @@ class Sweep:
         resistance = known.good_n_per_kn if planner.worst_pair else known.mean_n_per_kn
         expected = known.expected(rows, known.route[rows], resistance[rows])
         push = push_of(known, self.hump_speed_m_s, cut)
-        ways = from_crest(planner.routes, expected, start, push, (*planner.ranges, known.aim_of(rows)))
+        ways = from_crest(planner.routes, expected, start, push, known.choices(rows, known.route[rows], planner.roles))
         compared = ways.compared(*self.neighbours(cut))
         taken = ways.followed(rule.best(compared))
         margins = np.where(possible(compared), compared.ahead_s, -np.inf)
         self.margin_s[:, cut] = margins.max(axis=1)
         self.measure(cut, ways.followed(margins.argmax(axis=1)).first_in_s)
-        self.exit_m_s[:, cut] = taken.exit_m_s[:, :-1]
+        self.exit_m_s[:, cut] = taken.exit_m_s
         self.first_in_s[:, cut], self.last_out_s[:, cut] = taken.first_in_s, taken.last_out_s
 
     def measure(self, cut: int, first_in_s: Floats) -> None:
@@ -198,10 +199,11 @@ class Sweep:
         rows, out = known.of_cut(cut), self.last_out_s[:, cut]
         if planner.worst_pair:
             start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
-            given = (Given(self.exit_m_s[:, cut, q]) for q in range(len(planner.ranges)))
+            given = tuple(Given(self.exit_m_s[:, cut, q]) for q in range(planner.routes.positions))
             slow = known.expected(rows, known.route[rows], known.bad_n_per_kn[rows])
             push = push_of(known, self.hump_speed_m_s, cut)
-            out = from_crest(planner.routes, slow, start, push, (*given, known.aim_of(rows))).followed().last_out_s
+            choices = planner.roles.aimed(given, known.route[rows], known.aim_of(rows))
+            out = from_crest(planner.routes, slow, start, push, choices).followed().last_out_s
         self.left_s[:, cut] = out
         times = np.full((known.trains, planner.routes.elements, len(Mark)), np.nan)
         times[:, :, Mark.FIRST_IN], times[:, :, Mark.LAST_OUT] = self.first_in_s[:, cut], out

@@ -1,20 +1,31 @@
-"""A run of a hump trial: batches that are not there yet are humped, and stored one by one; then all are joined."""
+"""A run of hump trials: batches that are not there yet are humped, and stored one by one; then all are joined."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from synth.frame.command import Unfinished
 from synth.frame.results_directory import ResultsDirectory
 from synth.frame.workers.engine import Engine, Watcher
-from synth.hump.trains.batch import BatchOrder
+from synth.frame.workers.stored_results import missing_of
+from synth.hump.trains.batch import BatchOrder, orders_of
 from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
 from synth.hump.trains.outcomes import TrainOutcomes, joined
+from synth.hump.trains.resolved_trial import ResolvedTrial
+from synth.hump.trains.trial import HumpTrial
 
 FOLDER = "batches"
+
+
+class Progress(Watcher, Protocol):
+    """Is told how much is there already, then of each batch."""
+
+    def begin(self, done: int) -> None:
+        """So many batches are stored."""
 
 
 @dataclass(frozen=True)
@@ -42,26 +53,48 @@ class BatchFiles:
         return from_npz(path.read_bytes(), str(path), self.trial, count)
 
 
-def run_trains(
-    orders: Sequence[BatchOrder],
-    missing: Sequence[BatchOrder],
-    files: BatchFiles,
-    engine: Engine,
-    watcher: Watcher,
-) -> TrainOutcomes:
-    """All trains of `orders`; those `missing` are humped by `engine` and stored as they come.
+@dataclass(frozen=True)
+class TrialRun:
+    """All batches of one trial of a run; `name` tells it from the others, "" where it is alone."""
+
+    name: str
+    files: BatchFiles
+    orders: tuple[BatchOrder, ...]
+
+    def outcomes(self) -> TrainOutcomes:
+        """Those of all its trains, from the stored batches."""
+        return joined([self.files.stored(order.key, order.count) for order in self.orders])
+
+
+def run_of(
+    config: ResolvedTrial, trial: HumpTrial, number: int, directory: ResultsDirectory, name: str = ""
+) -> TrialRun:
+    """The first `number` trains of `trial`, which was made of `config`."""
+    files = BatchFiles(directory, TrialTrains(config.routes, config.trains_sha256, len(config.categories.members)))
+    return TrialRun(name, files, tuple(orders_of(trial, config.trains_sha256, number)))
+
+
+def run_trials(runs: Sequence[TrialRun], engine: Callable[[int], Engine], watcher: Progress) -> list[TrainOutcomes]:
+    """The outcomes of each run; batches that are not stored are humped by the `engine` for so many, and stored as they
+    come.
 
     `Unfinished` tells why one could not be humped. What was stored before stays.
     """
-    names = {order.key: order.name for order in missing}
-    with closing(engine.answers(missing, lambda order: None)) as answers:
+    owner = {order.key: (run, order) for run in runs for order in run.orders}
+    orders = [order for _, order in owner.values()]
+    missing = missing_of(orders, lambda key: owner[key][0].files.file(key), watcher)
+    watcher.begin(len(orders) - len(missing))
+    with closing(engine(len(missing)).answers(missing, lambda order: None)) as answers:
         for answer in answers:
+            run, order = owner[answer.key]
+            name = ", ".join(filter(None, (run.name, order.name)))
             if answer.result is None:
-                raise Unfinished(f"{names[answer.key]}: {answer.reason}")
-            files.store(answer.key, answer.result)
-            watcher.done(f"{names[answer.key]}: {words(answer.result)}")
-    files.directory.retain(*(files.name(order.key) for order in orders))
-    return joined([files.stored(order.key, order.count) for order in orders])
+                raise Unfinished(f"{name}: {answer.reason}")
+            run.files.store(answer.key, answer.result)
+            watcher.done(f"{name}: {words(answer.result)}")
+    for key, (run, _) in owner.items():
+        run.files.directory.retain(run.files.name(key))
+    return [run.outcomes() for run in runs]
 
 
 def words(found: TrainOutcomes) -> str:

@@ -8,10 +8,10 @@ from enum import Enum
 
 import numpy as np
 
-from synth.aim.scene import COUPLING_SPEED_M_S
 from synth.hump.trains.cut_trace import CutTrace, TracedTrain
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.humping import Hump
+from synth.hump.trains.outcomes import USUAL_COUPLINGS
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 
@@ -96,13 +96,15 @@ class TracedCut:
 
 @dataclass(frozen=True)
 class TrainTrace:
-    """The train `number`, from 0, of its seed; its cuts in order; alarms by time."""
+    """The train `number`, from 0, of its seed; its cuts in order; alarms by time. Couplings above `allowed_m_s` are
+    over-speeds."""
 
     number: int
     routes: HumpRoutes
     cuts: tuple[TracedCut, ...]
     occupied: tuple[Occupied, ...]
     alarms: tuple[Alarm, ...]
+    allowed_m_s: float
 
     @property
     def end_s(self) -> float:
@@ -118,7 +120,9 @@ class TrainTrace:
         return pushed / (self.cuts[-1].crest_s - self.cuts[0].crest_s)
 
 
-def train_trace(hump: Hump, trains: TrainCuts, memory: TrainMemory, lane: int) -> TrainTrace:
+def train_trace(
+    hump: Hump, trains: TrainCuts, memory: TrainMemory, lane: int, allowed_m_s: float = USUAL_COUPLINGS.allowed_m_s
+) -> TrainTrace:
     """The train `lane` of those that `memory` tells; `hump` and `trains` must be those that were humped.
 
     Nothing is simulated anew: free rolls go from the states that the memory has, passes as they were.
@@ -136,8 +140,9 @@ def train_trace(hump: Hump, trains: TrainCuts, memory: TrainMemory, lane: int) -
                 ways[cut], touch_s[cut] = ways[cut].behind(ways[leader], length, by_s)
     cuts = tuple(traced_cut(hump, trains, memory, lane, way) for way in enumerate(ways))
     occupied = tuple(occupations(hump.routes, memory, lane))
-    found = sorted(alarms(hump.routes, memory, lane, cuts, touch_s), key=lambda alarm: (alarm.time_s, alarm.cut))
-    return TrainTrace(trains.first + lane, hump.routes, cuts, occupied, tuple(found))
+    told = alarms(hump.routes, memory, lane, cuts, touch_s, allowed_m_s)
+    found = sorted(told, key=lambda alarm: (alarm.time_s, alarm.cut))
+    return TrainTrace(trains.first + lane, hump.routes, cuts, occupied, tuple(found), allowed_m_s)
 
 
 def leader_of(memory: TrainMemory, lane: int, cut: int) -> int | None:
@@ -223,8 +228,9 @@ def occupations(routes: HumpRoutes, memory: TrainMemory, lane: int) -> Iterator[
 
 
 def alarms(
-    routes: HumpRoutes, memory: TrainMemory, lane: int, cuts: tuple[TracedCut, ...], touch_s: Mapping[int, float]
-) -> Iterator[Alarm]:
+    routes: HumpRoutes, memory: TrainMemory, lane: int, cuts: tuple[TracedCut, ...], touch_s: Mapping[int, float],
+    allowed_m_s: float,
+) -> Iterator[Alarm]:  # fmt: skip
     """What went wrong, cut by cut. Elements where two cuts are not separated count at the first of them alone, and not
     where they are coupled already.
 
@@ -250,7 +256,7 @@ def alarms(
         if memory.caught_on_track[lane, cut]:
             ahead = leader_of(memory, lane, cut)
             yield Alarm(AlarmKind.ON_TRACK, touch_s.get(cut, ends_s), cut, ahead, None)
-        if each.coupled_m_s is not None and each.coupled_m_s > COUPLING_SPEED_M_S:
+        if each.coupled_m_s is not None and each.coupled_m_s > allowed_m_s:
             yield Alarm(AlarmKind.OVERSPEED, touch_s.get(cut, ends_s), cut, None, None)
         if stopped_early(routes, memory, lane, cut):
             yield Alarm(AlarmKind.STOPPED, ends_s, cut, None, None)

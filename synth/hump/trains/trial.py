@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require, require_between
+from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.aim_control import AimControl, ReadAhead
 from synth.hump.trains.asked import ExitSpeeds, HumpSpeeds
 from synth.hump.trains.expected_way import ExpectedWay
@@ -22,7 +23,7 @@ from synth.hump.trains.humping import Hump, humped
 from synth.hump.trains.interval import CentredRule, IntervalRule
 from synth.hump.trains.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
 from synth.hump.trains.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
-from synth.hump.trains.outcomes import TrainOutcomes, outcomes
+from synth.hump.trains.outcomes import USUAL_COUPLINGS, PassLimits, TrainOutcomes, outcomes
 from synth.hump.trains.rollability import CategoryMean, Rollability, measured_rollability
 from synth.hump.trains.route_rolling import RouteRolling, rolling_on
 from synth.hump.trains.route_ways import RouteWays
@@ -124,10 +125,10 @@ class Control:
 class HumpTrial:
     """Trains from `source` over `routes`, whose `ways` are the routes as their cars feel them.
 
-    `positions`: models in order from the crest, of every route that has so many; the last of each route aims, all
-    others keep intervals; `planner` with the ranges of all but the last one; `free`: tracks before each train. `aim`:
-    exit speeds of the last position of each route; `usable_heads_m`: energy head (rows,) that
-    each position can be trusted to take from cuts, by mass, axles and category.
+    `positions`: models in order from the crest, of every route that has so many; `planner` has their roles; `free`:
+    tracks before each train. `aim`: exit speeds of the positions that aim, by route; `usable_heads_m`: energy head
+    (rows,) that each position can be trusted to take from cuts, by mass, axles and category; `full_heads_m`: what it
+    takes at mean friction. `couplings`: which couplings are too fast.
     """
 
     source: TrainSource
@@ -139,20 +140,33 @@ class HumpTrial:
     control: Control
     aim: HumpAim
     usable_heads_m: tuple[BrakeHead, ...]
+    full_heads_m: tuple[BrakeHead, ...]
     free: FreeTracks
     threads: int = 0
+    couplings: CouplingLimits = USUAL_COUPLINGS
 
     def __post_init__(self) -> None:
         require(
-            len(self.positions) == self.routes.positions == len(self.planner.ranges) + 1,
-            f"hump trial: {len(self.positions)} position models and {len(self.planner.ranges)} ranges of exit speeds; "
-            f"the hump has {self.routes.positions} positions, and ranges belong to all but the last",
+            len(self.positions) == self.routes.positions == len(self.planner.roles.exits),
+            f"hump trial: {len(self.positions)} position models and {len(self.planner.roles.exits)} roles; the hump "
+            f"has {self.routes.positions} positions",
         )
 
     def batch(self, first: int, count: int) -> TrainOutcomes:
         """What the trains `first` … `first + count − 1` come to."""
         trains, _, memory = self.humped(first, count)
-        return outcomes(self.routes, trains, memory)
+        return outcomes(self.routes, trains, memory, self.able(trains, memory.route.ravel()), self.couplings)
+
+    def able(self, trains: TrainCuts, route: Ints) -> PassLimits:
+        """What the positions can do with the cuts of `trains`, which went on `route` (rows,)."""
+        roles, category = self.planner.roles, trains.category
+        heads = [brake(trains.mass_t, trains.axles, category) for brake in self.full_heads_m]
+        aim = self.aim.lowest_by_table_m_s[self.aim.group[route], category]
+        lowest = [
+            np.where(aims[route], aim, exits.lowest_m_s) for exits, aims in zip(roles.exits, roles.aims, strict=True)
+        ]
+        braked = 2.0 * reduced_gravity_m_s2(trains)[:, None] * np.stack(heads, axis=1)
+        return PassLimits(np.stack(lowest, axis=1), braked)
 
     def humped(self, first: int, count: int) -> tuple[TrainCuts, TrainPlan, TrainMemory]:
         """The same trains with their plan and all that happened to them."""
@@ -201,7 +215,7 @@ class HumpTrial:
         return np.asarray(1e-3 * stretch * (worse + drawn.air_n_per_kn * (against[1] - against[0])))
 
     def aim_of(self, trains: TrainCuts, known: KnownCuts, rolls: RouteRolling) -> AimControl:
-        """The control of the last position for these trains, which roll as in `rolls`."""
+        """The control of positions that aim for these trains, which roll as in `rolls`."""
         sensing, stretch_m = self.control.sensing, self.aim.stretch_m
         reading: AimReading | None = None
         if sensing is not None and sensing.for_aim:
@@ -214,7 +228,7 @@ class HumpTrial:
     def control_of(self, trains: TrainCuts, known: KnownCuts, plan: TrainPlan, aim: AimControl) -> ExitSpeeds:
         """The control of all positions for these trains."""
         if not self.control.feedback:
-            return OpenLoop(plan, aim)
+            return OpenLoop(plan, self.planner.roles, aim)
         sensing = self.control.sensing
         rollability: Rollability = CategoryMean(known)
         if sensing is not None and sensing.for_intervals:

@@ -1,14 +1,14 @@
-"""What the last position of each route aims with: exported aim tables where some are named, else speeds that are chosen
-for the trial."""
+"""What positions aim with: exported aim tables where some are named, else speeds that are chosen for the trial."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from synth.aim.knowledge import ByCategory, Requirement
 from synth.aim.position_models import NormalPosition
 from synth.hump.trains.aim_design import AimDesign, MeasuredAhead, hump_aim
-from synth.hump.trains.hump_aim import HumpAim, joined_aims
+from synth.hump.trains.hump_aim import HumpAim, joined_aims, no_aim
 from synth.hump.trains.position_choice import PositionChoice
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.table_aim import table_aim
@@ -16,8 +16,8 @@ from synth.retarder.forms.table_file import read_tables
 
 
 def trial_aim(config: ResolvedTrial, threads: int) -> HumpAim:
-    """The exit speeds of the last position of each route; `threads` choose them."""
-    parts = []
+    """The exit speeds of the position that aims on each route; `threads` choose them."""
+    parts: list[tuple[NDArray[np.int64], HumpAim]] = []
     for choice in config.aims:
         design = design_of(config, threads, config.positions[-1])
         parts.append((np.array(choice.rows), table_aim(choice, config.routes, config.kinds, design)))
@@ -25,6 +25,8 @@ def trial_aim(config: ResolvedTrial, threads: int) -> HumpAim:
         rows = np.array([row for row in config.designed_rows if config.routes.positions_of[row] == number])
         design = design_of(config, threads, config.positions[number - 1])
         parts.append((rows, hump_aim(config.routes, design, rows)))
+    if not parts:
+        return no_aim(len(config.routes.routes), len(config.categories.members), config.settings.aim.lowest_m_s)
     return joined_aims(parts, len(config.routes.routes))
 
 
@@ -40,6 +42,7 @@ def design_of(config: ResolvedTrial, threads: int, last: PositionChoice) -> AimD
         design_cuts=aim.design_cuts,
         seed=config.settings.trains.seed,
         threads=threads,
+        coupling_speed_m_s=config.settings.couplings.allowed_m_s,
     )
 
 

@@ -18,6 +18,7 @@ from plant_models.library import Library, TypeFile
 from synth.frame.results_directory import ResultsDirectory
 from synth.frame.settings.toml_file import read_text, toml_tree
 from synth.frame.settings.toml_text import toml_text
+from synth.hump.configuration.position_settings import HumpPositionSettings
 from synth.hump.configuration.trial_file import INPUTS, TrialFile
 from synth.hump.hump_file import RAILML_SUFFIXES, hump_text
 from synth.hump.trains.position_choice import PositionChoice
@@ -52,7 +53,8 @@ def write_inputs(file: TrialFile, config: ResolvedTrial, directory: ResultsDirec
     if file.settings.trains.list is not None:
         tree.setdefault("trains", {})["list"] = LIST
         contents[LIST] = (file.folder / file.settings.trains.list).read_bytes()
-    told = (position_tree(choice, contents, own) for choice in config.positions)
+    said = {each.number: each for each in file.settings.position}
+    told = (position_tree(choice, said.get(choice.number), contents, own) for choice in config.positions)
     tree["position"] = [each for each in told if len(each) > 1]
     if config.aims:
         kept = {key: value for key, value in tree.get("aim", {}).items() if key not in ("tables", "tables_of")}
@@ -65,15 +67,14 @@ def write_inputs(file: TrialFile, config: ResolvedTrial, directory: ResultsDirec
     directory.write_all({f"{INPUTS}/{name}": content for name, content in contents.items()})
 
 
-def position_tree(choice: PositionChoice, contents: dict[str, bytes], own: dict[str, TypeFile]) -> dict[str, Any]:
-    """A position as [[position]] tells it; its files are added to `contents`, the types that they name to `own`."""
+def position_tree(
+    choice: PositionChoice, said: HumpPositionSettings | None, contents: dict[str, bytes], own: dict[str, TypeFile]
+) -> dict[str, Any]:
+    """A position as [[position]] tells it, where the user has `said` something; its files are added to `contents`, the
+    types that they name to `own`."""
     found: dict[str, Any] = {"number": choice.number}
-    if choice.out_of_service:
-        found["out_of_service"] = True
-    if choice.supply_share != 1.0:
-        found["supply_share"] = choice.supply_share
-    if choice.std_set_by_user:
-        found["exit_std_m_s"] = choice.exit_std_m_s
+    if said is not None:
+        found |= said.model_dump(mode="json", exclude_none=True, exclude_unset=True)
     if choice.book is not None:
         found["tables"] = f"{TABLES}/position-{choice.number}{choice.book.suffix}"
         contents[found["tables"]] = choice.book.read_bytes()

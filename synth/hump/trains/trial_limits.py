@@ -1,21 +1,90 @@
-"""Whether trains keep the limits of a configuration, given how exactly their figures are known."""
+"""Whether a plan has failed: the limits of a configuration, given how exactly the figures of its trains are known."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping
+from typing import Final
 
+from plant_models.hump.element_number import element_name
 from synth.frame.command import Limit
-from synth.hump.configuration.settings import TrialAcceptanceSettings
+from synth.hump.control.number_ranges import ranges
+from synth.hump.trains.humped_trial import HumpedTrial
+from synth.hump.trains.outcomes import caught_at
+from synth.hump.trains.position_strength import strengths
 from synth.hump.trains.train_figures import TrainFigure
 
-WORDS = {True: "keeps", False: "misses", None: "cannot be told from"}
+JUDGES_NOTHING: Final = 1.0
+"""A limit that every share keeps."""
 
 
-def trial_limits(figures: Sequence[TrainFigure], limits: TrialAcceptanceSettings) -> Iterator[Limit]:
-    """Each limit that is set, with the one of `figures` that has its name; None where its interval holds the limit."""
-    told = {figure.name: figure for figure in figures}
-    for name, limit in limits.model_dump(exclude_none=True).items():
-        figure = told[name]
-        kept = False if figure.low95 > limit else True if figure.high95 <= limit else None
-        interval = f"{figure.value:.4g} [{figure.low95:.4g}, {figure.high95:.4g}]"
-        yield Limit(f"{name} {interval} {WORDS[kept]} the limit {limit:g}", kept)
+def trial_limits(result: HumpedTrial) -> Iterator[Limit]:
+    """Each limit with the figure that has its name; None where the interval of the figure holds the limit."""
+    told, speeds = {figure.name: figure for figure in result.figures}, result.trial.couplings
+    words = {
+        "catch_ups": "cuts that caught up",
+        "overspeed": f"couplings above {speeds.allowed_m_s:.3g} m/s",
+        "overspeed_harmful": f"couplings above {speeds.harmful_m_s:.3g} m/s",
+    }
+    for name, limit in result.config.settings.acceptance.model_dump(exclude_none=True).items():
+        if limit < JUDGES_NOTHING:
+            yield limit_of(words[name], told[name], limit, result)
+
+
+def limit_of(what: str, figure: TrainFigure, limit: float, result: HumpedTrial) -> Limit:
+    """One limit, on `what` the figure tells; where it is not kept, the sentence says what it comes from."""
+    kept = kept_within(figure, limit)
+    shares = (f"{100.0 * each:.3g}" for each in (figure.value, figure.low95, figure.high95))
+    sentence = "{}: {} % [{}, {}]".format(what, *shares)
+    sentence += f", at most {100.0 * limit:.3g} % allowed"
+    if kept is None:
+        return Limit(f"{sentence}; these trains are too few to tell", None)
+    reasons = [] if kept else [said for reason in REASONS[figure.name] if (said := reason(result))]
+    return Limit("; ".join((sentence, *reasons)), kept)
+
+
+def kept_within(figure: TrainFigure, limit: float) -> bool | None:
+    """Whether a figure keeps the limit, interval included; None where the interval holds it, where there is none, and
+    where the limit judges nothing."""
+    if limit >= JUDGES_NOTHING:
+        return None
+    return False if figure.low95 > limit else True if figure.high95 <= limit else None
+
+
+def where_caught(result: HumpedTrial) -> str:
+    """The element at which most cuts caught up."""
+    routes = result.config.routes
+    counts = caught_at(routes, result.found)
+    if not counts.any():
+        return ""
+    worst = int(counts.argmax())
+    return f"{100.0 * counts[worst] / counts.sum():.0f} % of them at {element_name(routes.numbers[worst])}"
+
+
+def not_aimed(result: HumpedTrial) -> str:
+    """The tracks on which nothing brakes cuts for the standing cars."""
+    aims = result.config.roles.aims.any(axis=0)
+    tracks = sorted(int(track) for track in result.config.routes.tracks[~aims])
+    if not tracks:
+        return ""
+    return (
+        f"on tracks {ranges(tracks)} no position aims at the standing cars: cuts couple as fast as they come there "
+        "(track brakes and skates are not in the model; acceptance.overspeed = 1 judges no couplings)"
+    )
+
+
+def too_weak(result: HumpedTrial) -> str:
+    """The positions whose brake is too weak for these trains."""
+    weak = (
+        f"position {each.number} let {100.0 * each.share:.3g} % of its cuts go too fast for want of brake"
+        for each in strengths(result.found)
+        if each.weak
+    )
+    return "; ".join(weak)
+
+
+REASONS: Final[Mapping[str, tuple[Callable[[HumpedTrial], str], ...]]] = {
+    "catch_ups": (where_caught, too_weak),
+    "overspeed": (not_aimed, too_weak),
+    "overspeed_harmful": (not_aimed, too_weak),
+}
+"""What a missed limit may come from."""

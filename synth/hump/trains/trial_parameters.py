@@ -10,7 +10,8 @@ from plant_models.library import SourcedValue, WeightCategories
 from plant_models.library.car_mix_entry import CarMixEntry
 from plant_models.library.hump_entry import HumpEntry
 from synth.frame.settings.numbers import numbers_of, sourced
-from synth.hump.configuration.settings import HumpPositionSettings, HumpSpeedSettings, HumpTrialSettings
+from synth.hump.configuration.position_settings import HumpPositionSettings
+from synth.hump.configuration.settings import HumpSpeedSettings, HumpTrialSettings
 from synth.hump.trains.position_choice import PositionChoice
 
 OF_POPULATION: Final = ("cuts", "cars_mean", "most_cars", "category_shares", "track_shares")
@@ -54,6 +55,7 @@ def sections_in_force(settings: HumpTrialSettings, designed: bool) -> Iterator[s
         "hump_speed": True,
         "exit_speeds": True,
         "aim": designed,
+        "couplings": True,
         "sensors": measured,
         "acceptance": True,
     }

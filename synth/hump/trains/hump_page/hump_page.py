@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 
 from plant_models.library.hump_entry import HumpEntry
@@ -17,16 +17,18 @@ POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inli
 """The browser itself keeps the page from loading anything."""
 
 
-def hump_page(hump: HumpEntry, trace: TrainTrace, categories: Sequence[str]) -> str:
-    """One HTML document: `trace` on the plan of `hump`. The same train gives the same text."""
-    used = sorted({row for cut in trace.cuts for row in (cut.route, cut.wanted)})
-    routes = {row: trace.routes.routes[row] for row in used}
+def hump_page(hump: HumpEntry, shown: Mapping[str, TrainTrace], categories: Sequence[str]) -> str:
+    """One HTML document: the trains `shown`, by their titles in a menu, on the plan of `hump`; the first of them is
+    there when the page is opened. The same trains give the same text."""
+    traces = tuple(shown.values())
+    used = sorted({row for trace in traces for cut in trace.cuts for row in (cut.route, cut.wanted)})
+    routes = {row: traces[0].routes.routes[row] for row in used}
     data = {
         "title": hump.title,
         "plan": plan_data(hump.graph, routes),
-        "train": train_data(trace, categories),
+        "trains": [{"title": title, **train_data(trace, categories)} for title, trace in shown.items()],
     }
-    title = f"Train {trace.number + 1} over the hump"
+    title = "Trains over the hump" if len(traces) > 1 else f"Train {traces[0].number + 1} over the hump"
     head = element(
         "head",
         element("meta", charset="utf-8"),

@@ -1,7 +1,10 @@
 "use strict";
 // Plays a train on the plan. All data are in the element "data"; nothing is loaded.
 (() => {
-  const { plan, train } = JSON.parse(document.getElementById("data").textContent);
+  const { plan, trains } = JSON.parse(document.getElementById("data").textContent);
+  const wanted = /[#&]train=([0-9]+)/.exec(location.hash);
+  const chosen = Math.min(wanted ? Number(wanted[1]) : 0, trains.length - 1);
+  const train = trains[chosen];
   const SVG = "http://www.w3.org/2000/svg";
   const COLOURS = ["#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#222222", "#0072b2", "#f0e442"];
   const ALARM = "#d55e00", QUIET = "#767676";
@@ -230,6 +233,10 @@
     if (event.key === "ArrowRight") show(now + 1);
     if (event.key === "ArrowLeft") show(now - 1);
   });
+  const menu = at("train");
+  for (const each of trains) menu.add(new Option(each.title));
+  menu.selectedIndex = chosen;
+  menu.addEventListener("change", () => { location.hash = `train=${menu.selectedIndex}`; location.reload(); });
   const asked = /[#&]t=(-?[0-9.]+)/.exec(location.hash);
   if (asked) now = Number(asked[1]);
   view();

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -22,17 +24,18 @@ from synth.frame.picture.house_style import (
     place,
 )
 from synth.frame.printed_numbers import counted
-from synth.hump.trains.outcomes import CLASSES_M_S, GAP_BINS_M, SPEED_BINS_M_S, TrainOutcomes
+from synth.hump.configuration.coupling_limits import CouplingLimits
+from synth.hump.trains.outcomes import GAP_BINS_M, SPEED_BINS_M_S, USUAL_COUPLINGS, TrainOutcomes
 
 Counts = NDArray[np.int64]
 
 CLASS_LINES: tuple[tuple[str, LineStyleType], ...] = ((ORANGE, "-"), (VERMILLION, "--"), (PURPLE, "-."))
-"""Of the bounds of `CLASSES_M_S`."""
+"""Of where each class of over-speeds begins."""
 
 LAST_BIN = "the last bin also holds what is beyond"
 
 
-def couplings(found: TrainOutcomes) -> Figure:
+def couplings(found: TrainOutcomes, limits: CouplingLimits = USUAL_COUPLINGS) -> Figure:
     """Histograms of both; the classes of over-speed with the share of cuts in each."""
     judged = int(found.judged.sum())
     speeds, gaps = found.speed_bins.sum(axis=0), found.gap_bins.sum(axis=0)
@@ -47,7 +50,7 @@ def couplings(found: TrainOutcomes) -> Figure:
     of_speeds, of_gaps = figure.subplots(1, 2)
     dress(of_speeds, "Cuts that coupled", "coupling speed, m/s", "cuts")
     draw_bins(of_speeds, speeds, SPEED_BINS_M_S)
-    handles = draw_classes(of_speeds, found)
+    handles = draw_classes(of_speeds, found, limits.classes_m_s)
     dress(of_gaps, "Cuts that left a gap", "gap to the standing cars, m", "cuts")
     draw_bins(of_gaps, gaps, GAP_BINS_M)
     legend_below(figure, handles, columns=1)
@@ -66,13 +69,13 @@ def draw_bins(axes: Axes, counts: Counts, edges: NDArray[np.float64]) -> None:
         axes.annotate(LAST_BIN, (0.98, 0.97), xycoords="axes fraction", ha="right", va="top", fontsize=7, color=INK)
 
 
-def draw_classes(axes: Axes, found: TrainOutcomes) -> list[Artist]:
+def draw_classes(axes: Axes, found: TrainOutcomes, classes_m_s: Sequence[float]) -> list[Artist]:
     """A line at each bound; returned: what they mean."""
     judged, over = max(int(found.judged.sum()), 1), found.overspeed.sum(axis=0)
-    axes.set_xlim(right=max(axes.get_xlim()[1], 1.1 * CLASSES_M_S[-1]))
+    axes.set_xlim(right=max(axes.get_xlim()[1], 1.1 * classes_m_s[-1]))
     handles: list[Artist] = []
-    uppers = [f", to {high:.3g} m/s" for high in CLASSES_M_S[1:]] + [" m/s"]
-    for low, upper, count, (colour, style) in zip(CLASSES_M_S, uppers, over, CLASS_LINES, strict=True):
+    uppers = [f", to {high:.3g} m/s" for high in classes_m_s[1:]] + [" m/s"]
+    for low, upper, count, (colour, style) in zip(classes_m_s, uppers, over, CLASS_LINES, strict=True):
         axes.axvline(low, color=colour, linestyle=style, linewidth=1.4, zorder=4)
         label = f"right of it: above {low:.3g}{upper}: {counted(int(count), 'cut')}, {100.0 * count / judged:.2f} %"
         handles.append(Line2D([], [], color=colour, linestyle=style, linewidth=1.4, label=label))

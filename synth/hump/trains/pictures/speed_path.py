@@ -9,7 +9,6 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.aim.scene import COUPLING_SPEED_M_S
 from synth.frame.picture.house_style import INK, LINE_STYLES, VERMILLION, dress, legend_below, new_figure, place
 from synth.frame.picture.series import graded
 from synth.hump.trains.pictures.element_strip import draw_strip
@@ -40,7 +39,7 @@ def speed_path(trace: TrainTrace, categories: Sequence[str]) -> Figure:
             axes.plot([at_m], [command], marker="_", color=VERMILLION, markersize=6, zorder=5)
     upto_m = max(float(cut.trace.head_m[-1]) for cut in trace.cuts)
     draw_strip(figure, axes, trace.routes, upto_m)
-    axes.axhline(COUPLING_SPEED_M_S, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), zorder=2)
+    axes.axhline(trace.allowed_m_s, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), zorder=2)
     axes.set_xlim(0.0, upto_m)
     axes.set_ylim(bottom=0.0)
     legend_below(figure, legend(trace, categories, colours), columns=5)
@@ -67,6 +66,6 @@ def legend(trace: TrainTrace, categories: Sequence[str], colours: Sequence[str])
         Line2D([], [], color=VERMILLION, marker="_", markersize=7, linewidth=0.8, linestyle="none",
                label="commanded exit speed, and the line to the actual one")
     )  # fmt: skip
-    limit = f"highest speed for coupling, {COUPLING_SPEED_M_S:.2f} m/s"
+    limit = f"highest speed for coupling, {trace.allowed_m_s:.2f} m/s"
     handles.append(Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=limit))
     return handles

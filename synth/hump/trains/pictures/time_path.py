@@ -37,8 +37,8 @@ BAND_COLOURS = (GREEN, PURPLE, INK, GREY)
 
 SECONDS_PER_INCH, SHORTEST_IN, TALLEST_IN = 24.0, 4.0, 40.0
 STEP_M = 4.0
-BEHIND_M = 40.0
-"""Of the track behind the last position that is shown."""
+BEHIND_M = 20.0
+"""Of the tracks behind the last element of any route, a switch or a position, that is shown."""
 
 SHOWN = (AlarmKind.MISROUTED, AlarmKind.CONTACT, AlarmKind.FOUL, AlarmKind.UNSEPARATED)
 """Alarms that belong to an element."""
@@ -49,7 +49,7 @@ MARKERS = dict(zip(SHOWN, ("X", "o", "^", "s"), strict=True))
 def time_path(trace: TrainTrace) -> Figure:
     """Path across from the crest, time down. Sections of all routes stand beside one another at their metres."""
     routes = trace.routes
-    upto_m = float(routes.exit_m[np.isfinite(routes.exit_m)].max()) + BEHIND_M
+    upto_m = float(routes.ends_m.max()) + BEHIND_M
     ends_s = max(float(cut.trace.time_s[cut.trace.head_m <= upto_m].max()) for cut in trace.cuts)
     tall = min(max(ends_s / SECONDS_PER_INCH, SHORTEST_IN), TALLEST_IN)
     figure = new_figure(12.5, tall + 2.45, f"Time–path diagram of train {trace.number + 1}", subject_of(trace))

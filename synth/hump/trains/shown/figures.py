@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 from synth.frame.exhibits import Column, Exhibit, File, Row, Sentence, Table
 from synth.frame.printed_numbers import three_figures
+from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.outcome_file import TRAINS, to_npz
 from synth.hump.trains.train_figures import TrainFigure
@@ -22,19 +23,15 @@ TITLES: Final = {
     "caught_on_track": "caught up on the track",
     "stopped_on_the_way": "stopped on the way",
     "unseparated_elements_per_cut": "elements where a cut was not separated",
-    "overspeed": "over-speed",
-    "overspeed_to_1_5": "over-speed up to 1.5 m/s",
-    "overspeed_to_2": "over-speed above 1.5, up to 2 m/s",
-    "overspeed_above_2": "over-speed above 2 m/s",
     "gap_per_cut": "gap a cut",
     "strokes_per_pass": "commands to valves a pass",
 }
-"""What a figure is called; others go by their names."""
+"""What figures are called, but for those of over-speeds."""
 
 HOW_TO_READ: Final = (
     "Misrouted: the cut came to a switch before it could be thrown behind the cut ahead, and followed that one. In "
     "contact: it ran into the cut ahead. Catch-up: one of both, but not in the last position alone. Over-speed: of the "
-    "cuts that reached a track undisturbed, those that couple faster than 5 km/h. Gap: what such cuts leave free, 0 "
+    "cuts that reached a track undisturbed, those that couple faster than allowed. Gap: what such cuts leave free, 0 "
     "for those that couple. Brackets: 95 % intervals; a train is what is drawn, and cuts of one train are not "
     "independent. The last column of the shares tells how many cuts would give the share within 0.5 % either way."
 )
@@ -70,26 +67,38 @@ def figures(result: HumpedTrial) -> Iterator[Exhibit]:
         {"trains": len(found), "cuts": cuts, "cars": cars, "trains_sha256": config.trains_sha256},
         brief=True,
     )
-    shares = [share_row(each) for each in result.figures if each.is_share]
-    means = [mean_row(each) for each in result.figures if not each.is_share]
+    titles = titles_of(result.trial.couplings)
+    shares = [share_row(each, titles) for each in result.figures if each.is_share]
+    means = [mean_row(each, titles) for each in result.figures if not each.is_share]
     yield Table("means", "Means over trains", MEANS, means, brief=True)
     yield Table("shares", "Shares of cuts", SHARES, shares, brief=True)
     yield Sentence(HOW_TO_READ)
     yield File(TRAINS, to_npz(found, result.of_trial))
 
 
-def share_row(figure: TrainFigure) -> Row:
+def titles_of(limits: CouplingLimits) -> dict[str, str]:
+    """What figures are called."""
+    allowed, rough, harmful = (f"{each:.3g}" for each in limits.classes_m_s)
+    return TITLES | {
+        "overspeed": f"over-speed, above {allowed} m/s",
+        "overspeed_slight": f"over-speed up to {rough} m/s",
+        "overspeed_rough": f"over-speed above {rough}, up to {harmful} m/s",
+        "overspeed_harmful": f"over-speed above {harmful} m/s",
+    }
+
+
+def share_row(figure: TrainFigure, titles: Mapping[str, str]) -> Row:
     """A share of cuts; without any cut there is none."""
     enough = figure.enough_n if figure.enough_n > 0.0 else None
-    return {**names_of(figure), "share": figure.told, "n": figure.n, "enough_n": enough}
+    return {**names_of(figure, titles), "share": figure.told, "n": figure.n, "enough_n": enough}
 
 
-def mean_row(figure: TrainFigure) -> Row:
+def mean_row(figure: TrainFigure, titles: Mapping[str, str]) -> Row:
     """A mean over trains."""
     unit = None if figure.unit == "1" else figure.unit
-    return {**names_of(figure), "mean": figure.told, "unit": unit, "n": figure.n}
+    return {**names_of(figure, titles), "mean": figure.told, "unit": unit, "n": figure.n}
 
 
-def names_of(figure: TrainFigure) -> Row:
+def names_of(figure: TrainFigure, titles: Mapping[str, str]) -> Row:
     """For people and for programs."""
-    return {"title": TITLES.get(figure.name, figure.name.replace("_", " ")), "name": figure.name}
+    return {"title": titles[figure.name], "name": figure.name}

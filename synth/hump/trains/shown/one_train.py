@@ -8,13 +8,11 @@ from typing import Any, Final
 
 from synth.frame.exhibits import Chart, Exhibit, File, Sentence
 from synth.hump.control.event_log import to_log_csv
+from synth.hump.trains.chosen_trains import chosen_trains
 from synth.hump.trains.hump_page.hump_page import hump_page
 from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.traced_train import OneTrain
+from synth.hump.trains.traced_train import OneTrain, one_train
 from synth.hump.trains.train_trace import TrainTrace
-
-SHOWN_TRAIN: Final = 0
-"""The train that is drawn and played, and whose program and log are written."""
 
 PLAYER, LOG = "hump.html", "events.csv"
 
@@ -36,11 +34,15 @@ def traced_once(shown: OneTrain) -> Traced:
 
 
 def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Traced) -> Iterator[Exhibit]:
-    """What happened to it: the page that plays it, its log, and pictures."""
+    """What happened to it: the page that plays it and others, its log, and pictures."""
     yield from standing_cuts(result, shown)
     if result.config.settings.output.report:
-        page = hump_page(result.config.hump, traced(), result.category_names)
-        yield File(PLAYER, page.encode(), "Play the train on the plan")
+        first, *others = chosen_trains(result.found)
+        traces = {first.title: traced()} | {
+            each.title: one_train(result.trial, each.number).traced() for each in others
+        }
+        page = hump_page(result.config.hump, traces, result.category_names)
+        yield File(PLAYER, page.encode(), f"Play on the plan: {'; '.join(traces)}")
     control = shown.controlled()
     otherwise = len(control.disagreements)
     yield File(LOG, to_log_csv(control.events).encode(), "Event log of the hump control for this train")
@@ -49,7 +51,7 @@ def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Traced) -> 
         "times.",
         {"points_lay_otherwise": otherwise},
     )
-    number = SHOWN_TRAIN + 1
+    number = shown.trains.first + 1
     yield Chart(
         "hump-time-path", f"Time–path diagram of train {number}", TIME_PATH,
         lambda: _pictures().time_path(traced()),
@@ -66,8 +68,8 @@ def standing_cuts(result: HumpedTrial, shown: OneTrain) -> Iterator[Sentence]:
     if standing:
         first, fall_m = result.trial.routes.first_element
         yield Sentence(
-            f"Warning: {standing} of the {len(shown.trains)} cuts of train {SHOWN_TRAIN + 1} stand before element "
-            f"{first}; the track falls by {fall_m:.2f} m up to there.",
+            f"Warning: {standing} of the {len(shown.trains)} cuts of train {shown.trains.first + 1} stand before "
+            f"element {first}; the track falls by {fall_m:.2f} m up to there.",
             {"standing_cuts": standing},
             brief=True,
         )

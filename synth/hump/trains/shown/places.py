@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Table
+from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.outcomes import TrainOutcomes
@@ -51,9 +52,9 @@ def catch_ups(result: HumpedTrial) -> Iterator[Exhibit]:
     yield Table("elements", "Cuts by element, where there was one", (Column("number", "element"), *COUNTS), rows)
 
 
-def couplings(found: TrainOutcomes) -> Iterator[Exhibit]:
+def couplings(found: TrainOutcomes, limits: CouplingLimits) -> Iterator[Exhibit]:
     """How cuts ended."""
-    yield Chart("hump-couplings", "Coupling speeds and gaps", COUPLINGS, lambda: _pictures().couplings(found))
+    yield Chart("hump-couplings", "Coupling speeds and gaps", COUPLINGS, lambda: _pictures().couplings(found, limits))
 
 
 def by_element(routes: HumpRoutes, counts: NDArray[np.int64]) -> dict[int, int]:

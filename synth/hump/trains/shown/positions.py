@@ -3,26 +3,42 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 import numpy as np
 
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
+from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals
+from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.aim_choice import AimChoice
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.position_choice import PositionChoice
-from synth.hump.trains.train_figures import interval_of, ratio
+from synth.hump.trains.position_roles import Fixed
+from synth.hump.trains.position_strength import MOST_SHORT, strengths
+from synth.hump.trains.resolved_trial import ResolvedTrial
+from synth.hump.trains.shown.figures import in_hundred
+from synth.hump.trains.train_figures import Floats, interval_of, ratio, share
+from synth.hump.trains.trial_aim import told_exit_std_m_s
 
 POSITIONS: Final = (
     Column("number", "position"),
     Column("site", "is", words=True),
-    Column("aims_on_tracks", "aims on tracks", words=True),
-    Column("passes", "passes"),
+    Column("role", "role", words=True),
+    Column("aims_on_tracks", "aims on tracks", words=True, detail=True),
+    Column("passes", "passes", spare=4),
+    Column("short", "left too fast for want of brake", "%", in_hundred),
     Column("rms_of_exit_less_command_m_s", "rms of exit less command", "m/s", decimals(3)),
-    Column("strokes_per_pass", "commands to valves a pass"),
+    Column("told_exit_std_m_s", "told", "m/s", decimals(3), spare=1),
+    Column("at_lowest", "commanded its lowest speed", "%", in_hundred, spare=2),
+    Column("strokes_per_pass", "commands to valves a pass", spare=3),
+)
+HOW_TO_READ: Final = (
+    "For want of brake: the full brake, at mean friction, leaves these cuts faster than commanded. Told: the standard "
+    f"deviation of the exit speed that the hump file, the configuration or the book has. Above {100 * MOST_SHORT:g} % "
+    "the position is too weak for these cuts: its figures are not those of its regulator."
 )
 AIMS: Final = (
     Column("tracks", "tracks", words=True, once=True),
@@ -44,11 +60,22 @@ AIMED: Final = (
 
 def positions(result: HumpedTrial) -> Iterator[Exhibit]:
     """A row for each position, and for each aim table."""
+    strong = {each.number: each for each in strengths(result.found)}
     rows = [position_row(result, choice, place) for place, choice in enumerate(result.config.positions)]
-    yield Table("positions", "Positions", POSITIONS, rows)
+    rows = [{**row, "short": strong[row["number"]].told} for row in rows]
+    yield Table("positions", "Positions", POSITIONS, rows, brief=True, bad=lambda row: strong[row["number"]].weak)
+    for each in strong.values():
+        if each.weak:
+            yield Sentence(
+                f"Warning: the brake of position {each.number} is too weak for these cuts: {100.0 * each.share:.3g} % "
+                "left faster than commanded with all of it.",
+                brief=True,
+            )
+    yield Sentence(HOW_TO_READ)
     if result.config.aims:
         yield Sentence(AIMED)
-        aims = [row for choice in result.config.aims for row in aim_rows(result.config.routes, choice)]
+        labels = {member.number: member.label for member in result.config.categories.members}
+        aims = [row for choice in result.config.aims for row in aim_rows(result.config.routes, choice, labels)]
         yield Table("aim-tables", "Aim tables", AIMS, aims)
 
 
@@ -57,13 +84,18 @@ def position_row(result: HumpedTrial, choice: PositionChoice, place: int) -> Row
     and commands to its valves, none where none are modelled."""
     found = result.found
     passes, strokes = found.passes[:, place].astype(float), found.strokes[:, place].astype(float)
+    lowest = found.at_lowest[:, place].astype(float)
+    exits = result.config.roles.exits[place]
     rms, low, high = (root(each) for each in ratio(found.error2_m2_s2[:, place], passes))
     return {
         "number": choice.number,
         "site": choice.site,
-        "aims_on_tracks": aimed_tracks(result.config.routes, place + 1),
+        "role": role_words(result.config, place),
+        "aims_on_tracks": aimed_tracks(result.config, place),
         "passes": int(passes.sum()),
         "rms_of_exit_less_command_m_s": interval_of(rms, low, high, len(found)),
+        "told_exit_std_m_s": told_exit_std_m_s(choice),
+        "at_lowest": None if isinstance(exits, Fixed) else share_of(lowest, passes),
         "strokes_per_pass": interval_of(*ratio(strokes, passes), len(found)) if strokes.any() else None,
     }
 
@@ -73,20 +105,37 @@ def root(square: float) -> float:
     return math.sqrt(max(square, 0.0)) if math.isfinite(square) else square
 
 
-def aimed_tracks(routes: HumpRoutes, number: int) -> tuple[int, ...]:
-    """Tracks of the routes that have `number` positions."""
-    return tuple(int(track) for track in np.sort(routes.tracks[routes.positions_of == number]))
+def share_of(hits: Floats, base: Floats) -> Interval | float:
+    """A share of the passes."""
+    value, low, high, _ = share(hits, base)
+    return interval_of(value, low, high, int(base.sum()))
 
 
-def aim_rows(routes: HumpRoutes, choice: AimChoice) -> Iterator[Row]:
-    """The tables that command the last position, and on which tracks."""
+def role_words(config: ResolvedTrial, place: int) -> str:
+    """What a position does with cuts."""
+    aimed, roles = aimed_tracks(config, place), config.roles
+    if config.positions[place].out_of_service:
+        return "out of service"
+    kept = "fixed speeds" if isinstance(roles.exits[place], Fixed) else "keeps apart"
+    if place not in roles.not_of_all:
+        return "aims"
+    return f"{kept}; aims on tracks {ranges(aimed)}" if aimed else kept
+
+
+def aimed_tracks(config: ResolvedTrial, place: int) -> tuple[int, ...]:
+    """Tracks of the routes on which the position at `place` aims."""
+    return tuple(int(track) for track in np.sort(config.routes.tracks[config.roles.aims[place]]))
+
+
+def aim_rows(routes: HumpRoutes, choice: AimChoice, labels: Mapping[int, str]) -> Iterator[Row]:
+    """The tables that command the last position, and on which tracks; `labels`: of weight categories, by number."""
     for table in choice.tables.tables:
         yield {
             "tracks": tuple(sorted(int(routes.tracks[row]) for row in choice.rows)),
             "retarders": choice.retarders,
             "id": table.id,
             "position": table.position.name,
-            "category": table.category.name,
+            "category": labels.get(table.category.number, table.category.name),
             "knowledge": "measured" if table.is_measured else "category",
             "p_overspeed": table.required.p_overspeed,
             "coupling_speed_m_s": table.required.coupling_speed_m_s,

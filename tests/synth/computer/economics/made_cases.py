@@ -96,6 +96,8 @@ def made_outcomes(
         caught=caught, caught_in_last=none, caught_on_track=none, stopped=none, judged=judged, overspeed=over,
         gap_m=rates.gap_m * judged * train_effect * random.normal(1.0, 0.05, trains),
         speed_bins=wide, gap_bins=wide, passes=wide, strokes=wide, error2_m2_s2=wide.astype(float),
+        short=wide, at_lowest=wide, commanded=wide[:, :, None], commands_m_s=wide[:, :, None].astype(float),
+        tightest_s=none.astype(float), tightest_at=none, tightest_ahead=none, tightest_behind=none,
     )  # fmt: skip
 
 

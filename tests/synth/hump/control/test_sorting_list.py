@@ -69,6 +69,14 @@ def test_the_columns_that_must_be_there_are_enough() -> None:
     assert cut == CutRecord(7, 2, 8, 151.5, 5, 17, 2 * 13.92)
 
 
+def test_a_spreadsheet_may_write_semicolons_and_decimal_commas_and_leave_the_category_out() -> None:
+    plain = sorting_list_of_csv(HEAD + "1,2,8,151.5,T,17\n2,1,4,23,L,3\n", "train.csv", CATEGORIES)
+    for separator in (";", "\t"):
+        rows = ("cut,cars,axles,mass_t,track", "1,2,8,151/5,17", "2,1,4,23,3", ",,,,")
+        text = "\ufeff" + "\r\n".join(row.replace(",", separator).replace("/", ",") for row in rows)
+        assert sorting_list_of_csv(text, "train.csv", CATEGORIES) == plain
+
+
 def test_columns_may_stand_in_any_order_and_names_of_categories_be_latin_or_cyrillic() -> None:
     text = (
         "\ufeffmarks,track,category,mass_t,axles,cars,cut\r\ndo-not-hump long-base,3,ЛС,40,4,1,1\r\n,4,LS,40,4,1,2\r\n"
@@ -82,7 +90,7 @@ def test_columns_may_stand_in_any_order_and_names_of_categories_be_latin_or_cyri
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("", "train.csv: it is empty; its first row must name the columns cut, cars, axles, mass_t, category, track"),
+        ("", "train.csv: it is empty; its first row must name the columns cut, cars, axles, mass_t, track"),
         ("cut,wheels\n", "train.csv: row 1: column 'wheels' is unknown; known: "),
         ("cut,cut\n", "train.csv: row 1: column cut is there twice; leave one out"),
         ("cut,cars,axles,mass_t,category\n", "train.csv: row 1: column track is missing; add it"),

@@ -22,6 +22,7 @@ from synth.hump.trains.hump_position import Arrivals
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTrain
 from synth.hump.trains.normal_hump_position import NormalHumpPosition
+from synth.hump.trains.position_roles import Roles, Spacing
 from synth.hump.trains.route_ways import route_ways
 from synth.hump.trains.train_cuts import TrainCuts, trains
 from synth.hump.trains.train_plan import Planner
@@ -36,6 +37,8 @@ Ints = NDArray[np.int64]
 CATEGORIES: WeightCategories = load_weight_categories()
 STEPS_M_S = tuple(np.round(np.arange(1.2, 3.25, 0.2), 3).tolist())
 RANGES = (SpeedRange(3.0, 6.5, 5), SpeedRange(2.5, 6.0, 5))
+UNUSED = SpeedRange(1.0, 1.0, 1)
+"""Of the last position, which aims all cuts."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +120,9 @@ class Day:
         shares = {member.number: 1.0 for member in CATEGORIES.members}
         lists = TrainPopulation(MIX, CATEGORIES, shares, tracks, self.cars_mean, self.most_cars)
         own = routes.positions
-        ranges = self.ranges[: own - 1]
+        numbers = np.arange(1, own + 1)[:, None]
+        last, held = routes.positions_of == numbers, routes.positions_of >= numbers
+        roles = Roles(tuple(Spacing(each) for each in (*self.ranges[: own - 1], UNUSED)), last, held)
         limits = HumpSpeedLimits(self.steps_m_s, self.acceleration_m_s2)
         heads = (*self.heads_m[: own - 1], self.heads_m[-1])
         return HumpTrial(
@@ -125,11 +130,12 @@ class Day:
             routes=routes,
             ways=route_ways(people, routes.routes, MIX),
             positions=tuple(NormalHumpPosition(self.std_m_s, GivenHead(head)) for head in heads),
-            planner=Planner(routes, limits, ranges, worst_pair=self.worst_pair, method=self.method),
+            planner=Planner(routes, limits, roles, worst_pair=self.worst_pair, method=self.method),
             program=self.program,
             control=self.control,
             aim=even_aim(routes, self.aim_m_s, self.aim_far_m_s or self.aim_m_s),
             usable_heads_m=tuple(UsableHead(0.8 * head) for head in heads),
+            full_heads_m=tuple(UsableHead(head) for head in heads),
             free=self.free,
             threads=self.threads,
         )

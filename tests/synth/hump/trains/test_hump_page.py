@@ -39,6 +39,7 @@ const alarm = document.querySelector("#alarms li:not(.pale) button");
 alarm.click();
 out.alarm = { text: alarm.textContent, time: Number(document.getElementById("plan").dataset.time) };
 out.drawn = document.querySelectorAll("#plan .cut polyline[points]").length;
+out.menu = document.getElementById("train").selectedOptions[0].textContent;
 out.passes = document.querySelectorAll("#passes tr").length;
 out.title = document.querySelector("p.meta").textContent;
 document.getElementById("view").value = "yard";
@@ -94,8 +95,9 @@ def in_browser(page: str, folder: Path, fragment: str) -> Seen:
 @pytest.fixture(scope="module")
 def seen(humped: HumpedTrains, trace: TrainTrace, tmp_path_factory: pytest.TempPathFactory) -> Seen:
     evil = replace(humped.entry, title=EVIL)
-    page = hump_page(evil, trace, [EVIL, *NAMES[1:]])
-    return in_browser(page, tmp_path_factory.mktemp("page"), f"#t={SECONDS}")
+    other = train_trace(humped.hump, humped.trains, humped.memory, 1)
+    page = hump_page(evil, {"other": other, EVIL: trace}, [EVIL, *NAMES[1:]])
+    return in_browser(page, tmp_path_factory.mktemp("page"), f"#train=1&t={SECONDS}")
 
 
 def test_the_console_is_silent(seen: Seen) -> None:
@@ -158,12 +160,12 @@ def test_a_pause_shows_no_later_time_and_asks_for_no_frame(seen: Seen) -> None:
 
 
 def test_names_of_files_stay_text(seen: Seen) -> None:
-    assert seen[0]["title"] == EVIL
+    assert seen[0]["title"] == seen[0]["menu"] == EVIL
 
 
 def test_the_page_loads_nothing_and_is_the_same_each_time(humped: HumpedTrains, trace: TrainTrace) -> None:
-    page = hump_page(humped.entry, trace, NAMES)
-    assert page == hump_page(humped.entry, trace, NAMES)
+    page = hump_page(humped.entry, {"first": trace}, NAMES)
+    assert page == hump_page(humped.entry, {"first": trace}, NAMES)
     outside = re.findall(r"""(?:src|href)=|@import|url\(|fetch\(|https?://(?!www\.w3\.org/2000/svg)""", page)
     assert outside == []
     assert "default-src 'none'" in page

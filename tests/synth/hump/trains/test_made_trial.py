@@ -58,7 +58,8 @@ def test_a_position_out_of_service_brakes_nothing(arrivals: Callable[..., Arriva
     serving, idle = made().positions[1], made("[[position]]\nnumber = 2\nout_of_service = true\n")
     np.testing.assert_array_equal(idle.positions[1].passed(coming).exit_m_s, coming.unbraked_exit_m_s)
     assert abs(serving.passed(coming).exit_m_s - coming.commanded_m_s).max() < 1.0
-    assert idle.planner.ranges[1].speeds(np.array([5.5])).tolist() == [[5.5]]
+    left_open = idle.planner.roles.exits[1].choices(np.array([0]))
+    assert left_open.speeds(np.array([5.5])).tolist() == [[5.5]]
     trains, _, memory = idle.humped(0, 2)
     assert len(trains) == 10
     rolls = np.isfinite(memory.exit_m_s[:, :, 1])
@@ -100,7 +101,7 @@ def test_the_program_is_the_one_that_is_humped() -> None:
     trial = made()
     program, (_, plan, memory) = speed_program(trial, 2), trial.humped(0, 4)
     np.testing.assert_array_equal([row.hump_speed_m_s for row in program.rows], memory.hump_speed_m_s[2])
-    np.testing.assert_array_equal([row.exit_m_s[:2] for row in program.rows], plan.exit_m_s[2])
+    np.testing.assert_array_equal([row.exit_m_s for row in program.rows], plan.exit_m_s[2])
     np.testing.assert_allclose([row.time_s for row in program.rows], memory.crest_s[2] - memory.crest_s[2, 0])
 
 
@@ -153,8 +154,12 @@ def test_books_that_lack_a_class_or_targets_are_refused(tmp_path: Path) -> None:
     heavy = changed(SMALL, ("[aim]\ndesign_cuts = 200\n", "")) + changed(BOOKED, ("L = 1.0", "T = 1.0"))
     with pytest.raises(InputError, match=r"position 3 names .*park.h5, which does not fit: tables: none for cuts of"):
         made_trial(resolve_trial(parse_trial_file(heavy, place)))
-    ahead = "[exit_speeds]\nhighest_m_s = [7.0, 6.5]\n[[position]]\nnumber = 2\ntables = 'park.h5'\n"
-    with pytest.raises(InputError, match=r"highest_m_s\[1\] is 6.5; the book of position 2 has tables .* up to 3:"):
+    ahead = "[[position]]\nnumber = 2\ntables = 'park.h5'\n"
+    with pytest.raises(InputError, match=r"position 2: highest_m_s is 6.5; its book .*park.h5 has tables .* up to 3:"):
+        resolve_trial(parse_trial_file(f"{SMALL}{ahead}highest_m_s = 6.5\n", place))
+    with pytest.raises(
+        InputError, match=r"position 2: the book .*up to 3 m/s, and the lowest .* is 4 unless given: set"
+    ):
         resolve_trial(parse_trial_file(SMALL + ahead, place))
 
 

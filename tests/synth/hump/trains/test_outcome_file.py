@@ -16,7 +16,7 @@ import pytest
 from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.trial import ConstantSpeed
-from tests.synth.hump.trains.made_trials import Day
+from tests.synth.hump.trains.made_trials import CATEGORIES, Day
 from tuning_tables import DamagedTable
 from tuning_tables.seal import SEAL_BYTES, seal_of
 
@@ -30,7 +30,7 @@ def stored() -> tuple[TrialTrains, TrainOutcomes, bytes]:
     """Some trains and their file."""
     trial = Day(cuts=4, program=ConstantSpeed(1.5)).on("medium")
     found = trial.batch(0, TRAINS)
-    of = TrialTrains(trial.routes, "a" * 64)
+    of = TrialTrains(trial.routes, "a" * 64, len(CATEGORIES.members))
     return of, found, to_npz(found, of)
 
 

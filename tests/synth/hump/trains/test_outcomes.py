@@ -12,9 +12,18 @@ from plant_models import PlantError
 from plant_models.library import load_hump
 from synth.hump.trains.free_tracks import AsInFile, DrawnFree
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
-from synth.hump.trains.outcomes import GAP_BINS_M, SPEED_BINS_M_S, TrainOutcomes, histograms, joined, outcomes
+from synth.hump.trains.outcomes import (
+    GAP_BINS_M,
+    SPEED_BINS_M_S,
+    PassLimits,
+    TrainOutcomes,
+    histograms,
+    joined,
+    outcomes,
+)
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.trial import SPARE_M, with_room
+from tests.plant_models.rolling.populations import population
 from tests.synth.hump.trains.bare_cuts import LEAD, BareTrains, one_switch
 from tests.synth.hump.trains.made_trials import Day
 
@@ -28,6 +37,8 @@ class CountedTrains(BareTrains):
     """With numbers of cars."""
 
     cars = np.array([1, 2, 1, 1, 3, 1])
+    population = population()
+    category = np.array([0, 4, 0, 4, 0, 0])
 
 
 def memory_of_six(routes: HumpRoutes) -> TrainMemory:
@@ -45,6 +56,7 @@ def memory_of_six(routes: HumpRoutes) -> TrainMemory:
     memory.end_speed_m_s[:] = [1.6, 0.0, 3.0, np.nan, 0.0, 0.0]
     memory.caught_on_track[0, 5] = True
     memory.command_m_s[0, :, 0] = [2.0, 2.0, 2.0, np.nan, 1.0, 2.0]
+    memory.unbraked_m_s[0, :, 0] = [2.5, 4.0, 2.0, np.nan, np.nan, 2.1]
     memory.exit_m_s[0, :, 0] = [2.5, 1.5, 2.0, np.nan, np.nan, 2.0]
     memory.strokes[0, :, 0] = [4, 3, 2, 0, 0, 1]
     return memory
@@ -53,7 +65,9 @@ def memory_of_six(routes: HumpRoutes) -> TrainMemory:
 def test_six_cuts_are_counted_by_hand() -> None:
     routes = hump_routes(one_switch(), LEAD)
     trains = CountedTrains(routes, np.array([[1, 2, 1, 2, 1, 2]]), LENGTH_M, first=7)
-    found = outcomes(routes, trains, memory_of_six(routes))  # type: ignore[arg-type]  # bare trains
+    lowest = np.array([1.5, 2.0, 2.0, 1.0, 1.0, 2.0])[:, None]
+    able = PassLimits(lowest, np.array([2.0, 99.0, 99.0, 99.0, 99.0, 99.0])[:, None])
+    found = outcomes(routes, trains, memory_of_six(routes), able)  # type: ignore[arg-type]  # bare trains
     counts = {f.name: getattr(found, f.name).tolist()[0] for f in fields(TrainOutcomes) if "bins" not in f.name}
     assert counts == {
         "train": 7,
@@ -76,6 +90,14 @@ def test_six_cuts_are_counted_by_hand() -> None:
         "passes": [4],
         "strokes": [10],
         "error2_m2_s2": [0.5],
+        "short": [1],
+        "at_lowest": [3],
+        "commanded": [[3, 0, 0, 0, 1]],
+        "commands_m_s": [[6.0, 0.0, 0.0, 0.0, 2.0]],
+        "tightest_s": 0.0,
+        "tightest_at": -1,
+        "tightest_ahead": 0,
+        "tightest_behind": 4,
     }
     assert routes.numbers == (1, 401, 402)
     assert np.flatnonzero(found.speed_bins[0]).tolist() == [16]

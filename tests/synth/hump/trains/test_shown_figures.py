@@ -10,8 +10,9 @@ import pytest
 from synth.frame.exhibits import Column, Row
 from synth.frame.interval import Interval
 from synth.frame.summary import plain
+from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.outcomes import TrainOutcomes, outcomes
-from synth.hump.trains.shown.figures import MEANS, SHARES, TITLES, mean_row, share_row
+from synth.hump.trains.shown.figures import MEANS, SHARES, mean_row, share_row, titles_of
 from synth.hump.trains.shown.places import element_rows
 from synth.hump.trains.train_figures import TrainFigure, interval_of, train_figures
 from tests.synth.hump.trains.humped_trains import humped_trains
@@ -30,12 +31,12 @@ def numbers_in(columns: tuple[Column, ...], key: str, row: Row) -> list[float]:
 
 
 def test_every_figure_has_a_row_with_its_interval(found: TrainOutcomes) -> None:
-    figures = train_figures(found)
+    figures, titles = train_figures(found), titles_of(CouplingLimits())
     assert {figure.is_share for figure in figures} == {True, False}
     for figure in figures:
         columns, key, scale = (SHARES, "share", 100.0) if figure.is_share else (MEANS, "mean", 1.0)
-        row = share_row(figure) if figure.is_share else mean_row(figure)
-        assert (row["title"], row["name"], row["n"]) == (TITLES[figure.name], figure.name, figure.n)
+        row = share_row(figure, titles) if figure.is_share else mean_row(figure, titles)
+        assert (row["title"], row["name"], row["n"]) == (titles[figure.name], figure.name, figure.n)
         wanted = [scale * each for each in (figure.value, figure.low95, figure.high95)]
         assert numbers_in(columns, key, row) == pytest.approx(wanted, rel=0.006)
         assert plain(row[key]) == asdict(Interval(figure.value, figure.low95, figure.high95, figure.n))
@@ -44,8 +45,8 @@ def test_every_figure_has_a_row_with_its_interval(found: TrainOutcomes) -> None:
 def test_a_figure_without_interval_shows_none() -> None:
     """One train has no interval, and no cuts have no share: neither is taken for a sure 0."""
     nan = float("nan")
-    row = mean_row(TrainFigure("new_figure", "m", 1234.5, nan, nan, 1))
-    assert (row["title"], numbers_in(MEANS, "mean", row), row["unit"]) == ("new figure", [1234.0], "m")
+    row = mean_row(TrainFigure("gap_per_cut", "m", 1234.5, nan, nan, 1), titles_of(CouplingLimits()))
+    assert (row["title"], numbers_in(MEANS, "mean", row), row["unit"]) == ("gap a cut", [1234.0], "m")
     assert plain(row["mean"]) == 1234.5
     assert plain(interval_of(nan, nan, nan, 0)) is None
 

@@ -90,7 +90,7 @@ def test_groups_of_tracks_have_tables_of_their_own_and_the_rest_is_designed(tmp_
     file = parse_trial_file(changed(SMALL + told, ('"medium"', '"mine.toml"')), str(tmp_path / "trial.toml"))
     config = resolve_trial(file)
     assert [choice.rows for choice in config.aims] == [(0, 1, 2, 3), (4, 7)]
-    assert {row["tracks"] for row in aim_rows(config.routes, config.aims[1])} == {(5, 8)}
+    assert {row["tracks"] for row in aim_rows(config.routes, config.aims[1], {})} == {(5, 8)}
     assert config.designed_rows == (5, 6, *range(8, 16))
     found = made_trial(config)
     rows, of_all = np.arange(16), np.zeros(16, dtype=np.int64)
@@ -211,7 +211,7 @@ def test_an_exported_aim_agrees_with_the_one_that_is_designed_for_the_trial(tmp_
             'tables = "other"',
             "aim.tables names {0}/other, whose table aim-1-category is for the position ours, but ret",
         ),
-        ('tables_of = { 7 = "all" }', "aim.tables_of names '7'; retarders in the last position of a route: "),
+        ('tables_of = { 7 = "all" }', "aim.tables_of names '7'; retarders that aim at the standing cars: "),
     ],
 )
 def test_each_fault_is_one_sentence(text: str, said: str, tmp_path: Path) -> None:

@@ -205,12 +205,12 @@ def test_the_nearest_class_stands_for_a_cut(classes: tuple[TableClass, ...]) -> 
 
 @pytest.mark.parametrize(
     ("category", "axles", "words"),
-    [(0, 40, "none for cuts of category Л with 40 axles"), (4, 4, "none for cuts of category Т with 4 axles")],
+    [(0, 40, "none for cuts of category Л .L. with 40 axles"), (4, 4, "none for cuts of category Т .T. with 4 axles")],
 )
 def test_a_cut_without_a_class_is_named(
     classes: tuple[TableClass, ...], position: TableHumpPosition, category: int, axles: int, words: str
 ) -> None:
     came = as_drawn(classes[0], 2.0, 3)
     odd = replace(came, category=np.array([0, 0, category]), axles=np.array([4, 4, axles]))
-    with pytest.raises(PlantError, match=f"{words}.*there are Л with 4, Л with 8: tune a class"):
+    with pytest.raises(PlantError, match=f"{words}.*there are Л .L. with 4, 8 axles: tune a class"):
         position.passed(odd)

@@ -105,7 +105,7 @@ def test_figures_are_those_of_the_counts() -> None:
     assert told["catch_ups"].value == found.caught.sum() / 400 > 0.0
     assert told["catch_ups"].n == 400
     assert told["overspeed"].n == found.judged.sum()
-    classes = sum(told[f"overspeed_{name}"].value for name in ("to_1_5", "to_2", "above_2"))
+    classes = sum(told[f"overspeed_{name}"].value for name in ("slight", "rough", "harmful"))
     assert told["overspeed"].value == pytest.approx(classes)
     assert told["gap_per_cut"].value == pytest.approx(found.gap_m.sum() / found.judged.sum())
     p, effect = told["catch_ups"].value, share(found.caught.astype(float), found.cuts.astype(float))[3]

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from synth.aim.scene import COUPLING_SPEED_M_S
+from synth.aim.coupling_speed import COUPLING_SPEED_M_S
 from synth.hump.trains.hump_routes import OF_FIRST_AXLE, Mark
 from synth.hump.trains.outcomes import outcomes
 from synth.hump.trains.train_trace import AlarmKind, TracedCut, TrainTrace, train_trace

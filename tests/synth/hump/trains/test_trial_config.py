@@ -14,6 +14,8 @@ from synth.hump.configuration.trial_file import parse_trial_file, read_trial_fil
 from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.hump_file import hump_text
+from synth.hump.trains.forecast import SpeedRange
+from synth.hump.trains.position_roles import Fixed, Spacing
 from synth.hump.trains.resolved_trial import ResolvedTrial, load_trial, resolve_trial
 
 
@@ -35,7 +37,11 @@ def test_the_template_is_the_built_in_trial_to_the_last_origin() -> None:
     told, built_in = resolved(default_trial_toml()), load_trial(None)
     assert told.parameters == built_in.parameters
     assert told.sha256 == built_in.sha256
-    assert (told.trains, told.ranges_m_s, told.positions) == (built_in.trains, built_in.ranges_m_s, built_in.positions)
+    assert (told.trains, told.roles.exits, told.positions) == (
+        built_in.trains,
+        built_in.roles.exits,
+        built_in.positions,
+    )
     assert not built_in.warnings
 
 
@@ -57,7 +63,9 @@ def test_what_changes_no_train_changes_only_the_hash_of_the_figures() -> None:
         "[trains]\ncuts = 41",
         "[trains]\none_wind_a_train = true",
         "[trains]\ntrack_shares = { 1 = 1.0, 2 = 1.0 }",
+        "[trains]\nclosed_tracks = [1, 2]",
         "[trains]\ncategory_shares = { T = 1.0 }",
+        "[couplings]\nallowed_m_s = 1.2",
         "[cars]\nfollowing_share = 0.3",
         '[resistance]\nlaw = "tb-10062"',
         "[weather]\nhead_wind_mean_m_s = 1.0",
@@ -70,8 +78,11 @@ def test_what_changes_no_train_changes_only_the_hash_of_the_figures() -> None:
         "[hump_speed]\nslow_down_s = 0.0",
         "[exit_speeds]\nfeedback = false",
         '[exit_speeds]\nknowledge = "measured"',
-        "[exit_speeds]\nlowest_m_s = [4.0, 3.0]",
-        "[exit_speeds]\nmost_entry_m_s = [8.0, 7.0]",
+        "[[position]]\nnumber = 2\nlowest_m_s = 3.0",
+        "[[position]]\nnumber = 1\nmost_entry_m_s = 8.0",
+        "[[position]]\nnumber = 2\nexit_m_s = 4.5",
+        "[[position]]\nnumber = 2\nexit_m_s = { T = 4.5, all = 4.0 }",
+        '[[position]]\nnumber = 3\nrole = "spacing"',
         '[aim]\nknowledge = "measured"',
         "[aim]\np_overspeed = 0.05",
         "[[position]]\nnumber = 2\nexit_std_m_s = 0.35",
@@ -97,15 +108,17 @@ def test_the_same_hump_by_name_path_and_in_a_configuration(tmp_path: Path) -> No
 def test_the_built_in_trial_goes_on_every_hump_of_the_library(name: str) -> None:
     trial = load_trial(Path(name))
     assert len(trial.positions) == trial.routes.positions
-    assert len(trial.ranges_m_s) == len(trial.positions) - 1
+    assert trial.roles.aims[-1].all()  # park positions stand on one track each
+    assert trial.roles.not_of_all == tuple(range(len(trial.positions) - 1))
 
 
 def test_the_values_of_a_file_reach_the_trial() -> None:
     trial = resolved(
         'hump = "large-two-leads"\nlead = 202\n[resistance]\nlaw = "tb-10062"\n[weather]\ntemperature_c = -20.0\n'
         '[trains]\ncategory_shares = { "Л" = 3.0, T = 1.0 }\ntrack_shares = { 4 = 2.0, 5 = 1.0 }\ncars_mean = 1.3\n'
-        "[exit_speeds]\nlowest_m_s = [3.5, 3.0]\nhighest_m_s = [6.0, 6.5]\nmost_entry_m_s = [7.5, 7.0]\n"
         "[[position]]\nnumber = 3\nexit_std_m_s = 0.05\n[[position]]\nnumber = 1\nsupply_share = 0.7\n"
+        "lowest_m_s = 3.5\nhighest_m_s = 6.0\nmost_entry_m_s = 7.5\n"
+        "[[position]]\nnumber = 2\nexit_m_s = { T = 4.5, all = 4 }\n"
     )
     assert isinstance(trial.people.law, Tb10062Law)
     assert trial.people.weather.temperature_c == -20.0
@@ -113,7 +126,10 @@ def test_the_values_of_a_file_reach_the_trial() -> None:
     assert isinstance(trial.trains, TrainPopulation)
     assert (dict(trial.trains.category_shares), dict(trial.trains.track_shares)) == ({1: 3.0, 5: 1.0}, {4: 2.0, 5: 1.0})
     assert trial.trains.cars_mean == 1.3
-    assert trial.ranges_m_s == ((3.5, 6.0, 7.5), (3.0, 6.5, 7.0))
+    first, second, _ = trial.roles.exits
+    assert first == Spacing(SpeedRange(3.5, 6.0, 7, 7.5))
+    assert isinstance(second, Fixed)
+    assert second.speed_m_s.tolist() == [4.0, 4.0, 4.0, 4.0, 4.5]
     assert [(each.exit_std_m_s, each.supply_share) for each in trial.positions] == [
         (0.15, 0.7),
         (0.15, 1.0),
@@ -123,6 +139,7 @@ def test_the_values_of_a_file_reach_the_trial() -> None:
     assert values["position.3.exit_std_m_s"].source == "configuration"
     assert values["position.2.exit_std_m_s"].assumed
     assert values["trains.category_shares.L"].value == 3.0
+    assert (values["position.2.exit_m_s.T"].value, values["position.1.lowest_m_s"].assumed) == (4.5, False)
 
 
 def test_retarders_of_one_position_that_differ_need_a_word(tmp_path: Path) -> None:
@@ -199,7 +216,17 @@ def test_a_list_that_does_not_fit_is_refused_with_row_and_reason(row: str, said:
         ("[trains]\ncuts = 40.0", "trains.cuts is 40.0; it must be a whole number"),
         ("[trains]\nmost_cars = 30", "trains.most_cars is 30: such a cut is 441.9 m long; let go with its middle over"),
         ("[trains]\ntrack_shares = { 99 = 1.0 }", "trains.track_shares names '99'; signal 201 leads to tracks 1 to 32"),
-        ("[trains]\ntrack_shares = { 1 = 0.0 }", "trains.track_shares has no share above 0"),
+        ("[trains]\ntrack_shares = { 1 = 0.0 }", "trains.track_shares leaves no track to which cuts go: tracks that"),
+        ("[trains]\nclosed_tracks = [99]", "trains.closed_tracks names 99; signal 201 leads to tracks 1 to 32"),
+        (
+            "[acceptance]\ncatch_ups = 10",
+            "acceptance.catch_ups is 10; it must be from 0 to 1; this is a share: 0.1 for 10 %",
+        ),
+        ("[couplings]\nrough_m_s = 2.5", "couplings.allowed_m_s is 1.38889; it must be less than rough_m_s, 2.5, and"),
+        (
+            "[[position]]\nnumber = 1\nexit_speed_m_s = 4.8",
+            "position[0].exit_speed_m_s = 4.8 is an unknown key; did you mean exit_m_s?",
+        ),
         ("[trains]\ntrack_shares = { 1 = -1.0 }", "trains.track_shares.1 is -1.0; it must be from 0 to 1e+06"),
         (
             "[trains]\ncategory_shares = { X = 1.0 }",
@@ -217,14 +244,35 @@ def test_a_list_that_does_not_fit_is_refused_with_row_and_reason(row: str, said:
             "[hump_speed]\nuncoupling_m_s = 0.9",
             "hump_speed.lowest_m_s is 1; it must not be above highest_m_s, 3.4, nor",
         ),
-        ("[exit_speeds]\nlowest_m_s = [4.0, 0.1]", "exit_speeds.lowest_m_s[1] is 0.1; it must be from 0.3 to 12"),
-        (
-            "[exit_speeds]\nlowest_m_s = [4.0]",
-            "exit_speeds.lowest_m_s is [4.0]; positions of the hump ahead of the last",
-        ),
-        ("[exit_speeds]\nlowest_m_s = [8.0, 4.0]", "exit_speeds.lowest_m_s[0] is 8; it must be less than highest_m_s"),
-        ("[aim]\nhighest_m_s = 0.5", "aim.lowest_m_s is 0.5; it must be less than highest_m_s, 0.5"),
+        ("[[position]]\nnumber = 1\nlowest_m_s = 0.1", "position[0].lowest_m_s is 0.1; it must be from 0.3 to 12"),
+        ("[aim]\nhighest_m_s = 0.5\nlowest_m_s = 0.6", "aim.lowest_m_s is 0.6; it must not be above highest_m_s, 0.5"),
         ("[hump_speed]\nslow_down_s = 0.0\n[exit_speeds]\nfeedback = false", "hump_speed.slow_down_s is 0, but exit"),
+        (
+            "[[position]]\nnumber = 1\nlowest_m_s = 8.0\nhighest_m_s = 4.0",
+            "position[0].lowest_m_s is 8.0; it must not be above highest_m_s, 4.0",
+        ),
+        ('[[position]]\nnumber = 1\nrole = "fixed"', "position[0].role is 'fixed'; the speed is missing: add exit_m_s"),
+        ('[[position]]\nnumber = 1\nrole = "aim"', "position 1: role is 'aim', but on every route there is another"),
+        (
+            '[[position]]\nnumber = 1\nrole = "aim"\nexit_m_s = 4.0',
+            "position[0].exit_m_s fixes the exit speed, but role",
+        ),
+        ("[[position]]\nnumber = 1\nexit_m_s = 4.0\nlowest_m_s = 3.0", "position[0].lowest_m_s is 3.0; it is for a"),
+        (
+            "[[position]]\nnumber = 1\nexit_m_s = { L = 4.0 }",
+            "position 1: exit_m_s has no speed for LS, S, ST, T; add LS",
+        ),
+        (
+            "[[position]]\nnumber = 1\nexit_m_s = { L = 4.0, Q = 4.0 }",
+            "position 1: exit_m_s: weight category 'Q' is not",
+        ),
+        (
+            '[[position]]\nnumber = 1\nexit_m_s = { L = 1, "Л" = 2 }',
+            "position 1: exit_m_s: Л is there twice; leave one",
+        ),
+        ("[[position]]\nnumber = 3\nlowest_m_s = 1.0", "position 3: lowest_m_s is 1.0, but the position aims on every"),
+        ("[[position]]\nnumber = 1\nexit_m_s = 40", "position[0].exit_m_s.all is 40; it must be from 0.3 to 12"),
+        ('[[position]]\nnumber = 1\nexit_m_s = "4"', "position[0].exit_m_s is '4'; it must be a speed, or a table of"),
         ("[[position]]\nnumber = 4", "position[0].number is 4; the hump has the positions 1 to 3"),
         ("[[position]]\nnumber = 1\n[[position]]\nnumber = 1", "position[1].number is 1, which is there before"),
         ("[[position]]\nnumber = 1\nexit_std_m_s = 2.0", "position[0].exit_std_m_s is 2.0; it must be from 0 to 1"),

@@ -91,7 +91,8 @@ def test_cuts_that_roll_as_expected_pass_when_forecast(name: str) -> None:
     routes = trial.routes
     made, own, start, push = single_cuts(trial)
     speeds = tuple(Given(np.full(COUNT, 4.5 - 0.5 * q)) for q in range(routes.positions))
-    told = from_crest(routes, own, start, push, speeds).followed()
+    choices = trial.planner.roles.aimed(speeds, made.route, speeds[-1])
+    told = from_crest(routes, own, start, push, choices).followed()
     positions = tuple(NormalHumpPosition(0.0, GivenHead(9.0)) for _ in range(routes.positions))
     hump = Hump(routes, positions, rolling_on(trial.ways, made.population, expected(made), 1))
     control = AsTold(told.exit_m_s)
@@ -103,7 +104,7 @@ def test_cuts_that_roll_as_expected_pass_when_forecast(name: str) -> None:
         np.testing.assert_allclose(simulated[there], times[there], atol=1e-2)
         assert np.isnan(times[~there]).all()
     short = routes.positions_of[made.route] == 2
-    np.testing.assert_allclose(told.exit_m_s[short, 1], 3.5)  # by the aim, which is the last of the choices
+    np.testing.assert_allclose(told.exit_m_s[short, 1], 3.5)  # by the aim
 
 
 def two_positions(routes: HumpRoutes) -> HumpRoutes:
@@ -114,26 +115,27 @@ def two_positions(routes: HumpRoutes) -> HumpRoutes:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_short_routes_are_compared_as_on_a_hump_that_has_no_others(name: str) -> None:
-    """Each combination of choices has the margins of the same one among two positions, repeated."""
+    """Each choice has the margins of the same one among two positions."""
     tracks = SHORT_TRACKS if name == "bunch" else (OWN_TRACK,)
     trial = trial_on(name, Day(cuts=1, tracks=dict.fromkeys(tracks, 1.0)))
     routes, random = trial.routes, np.random.default_rng(3)
-    _, own, start, push = single_cuts(trial)
-    ranges = SpeedRange(3.0, 6.0, 3, 6.5, 1.0), SpeedRange(2.5, 5.0, 4)
+    made, own, start, push = single_cuts(trial)
+    ranges = SpeedRange(3.0, 6.0, 3, 6.5, 1.0), SpeedRange(2.5, 5.0, 4), SpeedRange(1.0, 1.0, 1)
     aim = Given(np.full(COUNT, 2.6), 6.0, 1.5)
     shape = COUNT, routes.elements
     times = random.uniform(0.0, 60.0, shape), random.uniform(20.0, 90.0, shape)
     pair = two_positions(routes)
     assert pair.even
     two = replace(own, braked_m2_s2=own.braked_m2_s2[:, :2])
-    found = from_crest(routes, own, start, push, (*ranges, aim)).compared(*times)
+    choices = trial.planner.roles.aimed(ranges, made.route, aim)
+    found = from_crest(routes, own, start, push, choices).compared(*times)
     plain = from_crest(pair, two, start, push, (ranges[0], aim)).compared(*times)
     for field in ("ahead_s", "behind_s", "able", "beyond_m_s", "arrival_s"):
-        np.testing.assert_array_equal(getattr(found, field), np.repeat(getattr(plain, field), 4, axis=1), err_msg=field)
+        np.testing.assert_array_equal(getattr(found, field), getattr(plain, field), err_msg=field)
     begin = Moving(start.head_m + 60.0, start.speed_m_s + 3.0, start.time_s)
-    last = from_entrance(routes, own, begin, 1, (ranges[1], aim)).compared(*times)
+    last = from_entrance(routes, own, begin, 1, choices[1:]).compared(*times)
     of_pair = from_entrance(pair, two, begin, 1, (aim,)).compared(*times)
-    np.testing.assert_array_equal(last.ahead_s, np.repeat(of_pair.ahead_s, 4, axis=1))
+    np.testing.assert_array_equal(last.ahead_s, of_pair.ahead_s)
     assert np.isfinite(found.arrival_s).mean() > 0.9
 
 
@@ -221,7 +223,10 @@ def test_tracks_without_any_position_are_humped(tmp_path: Path) -> None:
 def test_the_command_humps_them_and_tells_all(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "uneven.toml").write_text(UNEVEN[name](), encoding="utf-8")
     config, out = tmp_path / "trial.toml", tmp_path / "out"
-    config.write_text('hump = "uneven.toml"\n[trains]\nnumber = 3\ncuts = 8\nmost_cars = 3\n[aim]\ndesign_cuts = 200\n')
+    config.write_text(
+        'hump = "uneven.toml"\n[trains]\nnumber = 3\ncuts = 8\nmost_cars = 3\n[aim]\ndesign_cuts = 200\n'
+        '[acceptance]\ncatch_ups = 1\noverspeed = 1\n[[position]]\nnumber = 2\nrole = "aim"\n'
+    )
     assert main(["hump", "simulate", str(config), "-o", str(out)]) == 0
     summary = json.loads((out / "summary.json").read_text())
     short = list(SHORT_TRACKS) if name == "bunch" else [OWN_TRACK]

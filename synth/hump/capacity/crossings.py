@@ -7,11 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant_models.frozen_arrays import frozen_arrays
-from scripts.studies.aiming.trial import Value
+from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.trial import Floats
 
 REPLICATES = 2000
+
+FEWEST_EVENTS = 10.0
+"""Catch-ups that the trains must have at a limit; with fewer the bootstrap has nothing to draw from."""
 
 
 @frozen_arrays
@@ -68,10 +71,19 @@ def drawn_weights(trains: int, seed: int) -> Floats:
     return np.concatenate((np.ones((1, trains)), drawn.astype(float)))
 
 
-def decided(values: Floats) -> Value | None:
-    """The sample's own value (the first) with the percentile interval of the others, if all three are finite."""
+def enough_for(limit: float, cuts: int) -> bool:
+    """Whether so many cuts carry a share as small as this."""
+    return limit * cuts >= FEWEST_EVENTS
+
+
+def decided(values: Floats, trains: int) -> Interval | None:
+    """The value of the sample of `trains` (the first) with the percentile interval of its replicates (the others), if
+    all three are finite."""
     if not np.isfinite(values[0]):
         return None
     ordered = np.sort(values[1:])
     low, high = (float(ordered[int(q * (len(ordered) - 1))]) for q in (0.025, 0.975))
-    return Value(float(values[0]), (low, high)) if np.isfinite((low, high)).all() else None
+    value = float(values[0])
+    if not np.isfinite((low, high)).all():
+        return None
+    return Interval(value, min(low, value), max(high, value), trains)

@@ -1,0 +1,107 @@
+"""A curve of cars an hour against catch-ups, and where it meets the share that is allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+
+from synth.frame.interval import Interval
+from synth.hump.capacity.crossings import FEWEST_EVENTS, Sums, decided, drawn_weights, enough_for, sums_of
+from synth.hump.capacity.variants import Variant
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.train_figures import TrainFigure, train_figures
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What changes along a curve: the `key` of the trial, what people call it, its unit, its values, safest first."""
+
+    key: str
+    name: str
+    unit: str
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Point:
+    """One value of the axis, and what its trains came to."""
+
+    value: float
+    hump_speed_m_s: TrainFigure
+    cars_per_hour: TrainFigure
+    catch_ups: TrainFigure
+
+
+@dataclass(frozen=True)
+class AtLimit:
+    """Where a curve has the allowed share of catch-ups, by lines between its points, with bootstrap intervals of whole
+    trains; without them, `why` tells what the trains do not decide."""
+
+    hump_speed_m_s: Interval | None
+    cars_per_hour: Interval | None
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """The points of a variant; `more_cars_per_hour`: at the limit, than the first curve, on the same trains."""
+
+    variant: Variant
+    points: tuple[Point, ...]
+    at_limit: AtLimit
+    more_cars_per_hour: Interval | None
+
+
+def point_of(value: float, found: TrainOutcomes) -> Point:
+    """The figures of one trial."""
+    told = {figure.name: figure for figure in train_figures(found)}
+    return Point(value, told["hump_speed"], told["cars_per_hour"], told["catch_ups"])
+
+
+def curves(
+    variants: Sequence[Variant], axis: Axis, found: Sequence[Sequence[TrainOutcomes]], limit: float, seed: int
+) -> Iterator[Curve]:
+    """A curve each of `variants`, from the outcomes `found` of its points, all on the same trains; `seed`: of the
+    bootstrap, whose draws are common to all curves."""
+    trains, cuts = len(found[0][0]), int(found[0][0].cuts.sum())
+    weights = drawn_weights(trains, seed)
+    first: Sums | None = None
+    for variant, outcomes in zip(variants, found, strict=True):
+        sums = sums_of(list(outcomes), weights)
+        points = tuple(map(point_of, axis.values, outcomes))
+        more = None if first is None else difference(sums, first, limit, trains, cuts)
+        first = first or sums
+        yield Curve(variant, points, at_limit(sums, points, limit, trains, cuts), more)
+
+
+def at_limit(sums: Sums, points: Sequence[Point], limit: float, trains: int, cuts: int) -> AtLimit:
+    """Where a curve has the share `limit`, or why it is not told."""
+    if not enough_for(limit, cuts):
+        wanted = ceil(FEWEST_EVENTS / limit / (cuts / trains))
+        return AtLimit(None, None, f"{cuts} cuts are too few for so small a share; take {wanted} trains or more")
+    speed, cars = sums.crossing(limit)
+    told = AtLimit(decided(speed, trains), decided(cars, trains))
+    if told.cars_per_hour is not None:
+        return told
+    slowest, fastest = points[0], points[-1]
+    if np.isneginf(cars[0]):
+        return AtLimit(None, None, f"{cell(slowest)} pass it already; begin the curve with a safer point")
+    if np.isposinf(cars[0]):
+        return AtLimit(None, None, f"{cell(fastest)} still keep it; end the curve with a faster point")
+    return AtLimit(None, None, "the interval reaches beyond the ends of the curve; add points or trains")
+
+
+def cell(point: Point) -> str:
+    """'612 cars an hour'."""
+    return f"{point.cars_per_hour.value:.0f} cars an hour"
+
+
+def difference(sums: Sums, first: Sums, limit: float, trains: int, cuts: int) -> Interval | None:
+    """Cars an hour at the limit that one curve has more than another; None where the trains do not decide it."""
+    if not enough_for(limit, cuts):
+        return None
+    with np.errstate(invalid="ignore"):  # ∞ − ∞ decides nothing
+        return decided(sums.crossing(limit)[1] - first.crossing(limit)[1], trains)

@@ -1,0 +1,1 @@
+"""Runs of `hump simulate` side by side, on the same trains."""
