@@ -13,7 +13,7 @@ from plant_models.library.hump_entry import load_hump as load_of_library
 from plant_models.library.near_miss import near_miss
 from plant_models.library.type_file import HUMPS
 from synth.frame.input_error import InputError
-from synth.frame.settings.toml_file import read_text, toml_tree
+from synth.frame.settings.toml_file import Tree, mended_tree, read_text
 from synth.hump.railml.read import from_railml
 from synth.retarder.configuration.plant_fault import in_file
 
@@ -65,18 +65,46 @@ def hump_text(source: Path) -> str:
 
 
 def parse_hump(text: str, name: str, file: str) -> HumpEntry:
-    """The hump `name` written as TOML in `text`; `file`: what messages call it."""
-    with in_file(file):
-        return hump_from(toml_tree(text, file), text, name, file)
+    """The hump `name` written as TOML in `text`; `file`: what messages call it. `InputError` with all that is at fault:
+    what is no TOML, and where it is known what was meant there, what would be at fault then."""
+    tree, told = mended_tree(text, file)
+    if tree is not None:
+        require_hump_file(tree, file)
+        try:
+            with in_file(file):
+                hump = hump_from(tree, text, name, file)
+        except InputError as fault:
+            told += fault.sentences
+        else:
+            if not told:
+                return hump
+    raise InputError(*told)
+
+
+def require_hump_file(tree: Tree, file: str) -> None:
+    """`InputError` for a file of another kind, which tells the command that reads it."""
+    from synth.hump.configuration.settings import HumpTrialSettings
+    from synth.hump.making.short_hump import ShortHump
+
+    if "format" in tree or isinstance(tree.get("hump"), dict):
+        return
+    kinds = (("hump trial", HumpTrialSettings, "simulate"), ("short hump file", ShortHump, "make"))
+    shared = set(HumpTrialSettings.model_fields) & set(ShortHump.model_fields)
+    for kind, model, verb in kinds:
+        if (set(model.model_fields) - shared) & tree.keys():
+            raise InputError(f"{file}: this is a {kind}, not a hump file; use 'retarder-synth hump {verb} {file}'")
 
 
 def require_files(hump: HumpEntry, source: Path) -> None:
-    """`InputError` for a file that a retarder names and that is not there; paths begin at the folder of `source`."""
+    """`InputError` for files that retarders name and that are not there; paths begin at the folder of `source`."""
+    missing = []
     for retarder in hump.graph.retarders:
         books = [("book", retarder.book)] if retarder.book is not None else []
         for key, file in (*books, *(("aim_tables", file) for file in retarder.aim_tables)):
             if not (source.parent / file).is_file():
-                raise InputError(
+                missing.append(
                     f"{source}: retarder {retarder.number}: {key} names {file}, and there is no such file; make it, or "
                     "take it out"
                 )
+    if missing:
+        raise InputError(*missing)
