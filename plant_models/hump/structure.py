@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from plant_models.hump.element_number import SIGNALS, HumpError, HumpErrors, element_name, fault_of
+from plant_models.hump.element_number import SIGNALS, HumpError, HumpErrors, NumberGroup, element_name, fault_of
 from plant_models.hump.route import Vertex
 from plant_models.hump.switch import Switch
 from plant_models.hump.track_section import TrackSection
@@ -26,18 +26,21 @@ def structure_faults(
     vertices: Sequence[Vertex],
     leads: Sequence[int],
     unmade: Mapping[int, Sequence[int]],
+    unnumbered: Collection[NumberGroup] = (),
     unsure: bool = False,
 ) -> Iterator[HumpError]:
     """Everything for which `vertices` are no hump, but for what follows from another fault.
 
-    `unmade`: further elements, which have faults of their own: by number, where they lead. `unsure`: of some it is
-    not known which number they have, or where they lead.
+    `unmade`: further elements, which have faults of their own: by number, where they lead. `unnumbered`: groups
+    in which the number of an element is not known. `unsure`: of some element it is not known where it leads.
     """
     import networkx as nx
 
     by_number = {vertex.number: vertex for vertex in vertices}
     known = {*by_number, *unmade}
-    there = {*known, *leads, *(edge.to for vertex in vertices for edge in vertex.edges)} if unsure else known
+    unsure = unsure or len(unnumbered) > 0
+    named = {*leads, *(edge.to for vertex in vertices for edge in vertex.edges if edge.to is not None)}
+    there = known | {number for number in named for group in unnumbered if number in group}
     twice = list(repeated(vertices))
     first = [
         *twice,
@@ -76,7 +79,7 @@ def repeated(vertices: Sequence[Vertex]) -> Iterator[HumpError]:
         met.add(vertex.number)
 
 
-def lead_faults(known: Collection[int | None], leads: Sequence[int]) -> Iterator[HumpError]:
+def lead_faults(known: Collection[int], leads: Sequence[int]) -> Iterator[HumpError]:
     """Every lead must be a signal of the hump, and there must be one at least."""
     if not leads:
         yield HumpError("leads is empty; give the number of the signal at each crest")
@@ -93,7 +96,7 @@ def lead_faults(known: Collection[int | None], leads: Sequence[int]) -> Iterator
             yield HumpError(f"leads: signal {lead} is there twice; name each crest once", lead)
 
 
-def exit_faults(vertex: Vertex, known: Collection[int | None]) -> Iterator[HumpError]:
+def exit_faults(vertex: Vertex, known: Collection[int]) -> Iterator[HumpError]:
     """Every edge must lead to an element; only a section may be the last; a switch must have two exits."""
     number = vertex.number
     for edge in vertex.edges:

@@ -189,6 +189,7 @@ class TypeTables:
     origin: Origin
     found: FoundFaults
     used: set[str] = field(default_factory=set)
+    checked: dict[tuple[str, int], Cells] = field(default_factory=dict)
 
     def cells(self, name: object, schema: Schema, place: Place) -> Cells:
         """The cells of the type `name`, which is named at `place`."""
@@ -199,7 +200,11 @@ class TypeTables:
             self.used.add(close_name(word, self.tables) or "")
             return of_unknown_type(schema, place)
         self.used.add(known)
-        return checked_cells(self.tables[known], schema, ("type", known), self.origin, self, within_type=True)
+        key = known, id(schema)
+        if key not in self.checked:
+            origin, at = self.origin, ("type", known)
+            self.checked[key] = checked_cells(self.tables[known], schema, at, origin, self, within_type=True)
+        return self.checked[key]
 
 
 def checked_cells(

@@ -15,7 +15,7 @@ from plant_models.library.hump_rows import HumpRows
 from plant_models.library.library import BUILT_IN, Library
 from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import SourcedValue, Value
-from plant_models.library.toml_lines import Place, line_of
+from plant_models.library.toml_lines import Place, line_among, places_of
 from plant_models.library.type_file import HUMPS, TypeFileError
 
 FORMAT: Final = "hump"
@@ -66,8 +66,9 @@ def hump_from(tree: Mapping[str, Any], content: str, name: str, place: str) -> H
     entry = entry_from(dict(tree), name, found)
     if entry is not None and not found:
         return entry
+    lines = places_of(content)
     told = [
-        f"{place}, line {line_of(content, each.place)}: {label(tree, each.place)}{each}"
+        f"{place}, line {line_among(lines, each.place) or 1}: {label(tree, each.place)}{each}"
         for each in found.faults[:MOST_TOLD]
     ]
     more = len(found) - MOST_TOLD

@@ -46,12 +46,16 @@ class Row:
         return number
 
     @property
-    def is_placed(self) -> bool:
-        """Its number may be right, and where its edges lead is told."""
-        in_group = any(self.number in group for group in GROUPS if group.noun == self.kind and self.number is not None)
+    def is_numbered(self) -> bool:
+        """It has a number of its group."""
+        return self.number is not None and any(self.number in group for group in GROUPS if group.noun == self.kind)
+
+    @property
+    def leads_on(self) -> bool:
+        """Where its edges lead is told."""
         leads_on = [isinstance(edge.get("to"), Cell) and not is_faulty(edge, "to") for edge in self.edges]
         ends = self.kind == "section" and not any("to" in edge for edge in self.edges)
-        return in_group and (ends or (all(leads_on) and len(leads_on) == (2 if self.kind == "switch" else 1)))
+        return ends or (all(leads_on) and len(leads_on) == (2 if self.kind == "switch" else 1))
 
     @property
     def edges(self) -> tuple[Cells, ...]:
@@ -120,10 +124,11 @@ class HumpRows:
             for number, row in rows.items()
             if number not in made
         }
-        unsure = len(rows) < len(self.rows)
-        unsure = unsure or any(row.number not in made and not row.is_placed for row in self.rows)
+        unnumbered = {row.kind for row in self.rows if not row.is_numbered or rows.get(row.number) is not row}
+        groups = [group for group in GROUPS if group.noun in unnumbered]
+        unsure = any(row.number not in made and not row.leads_on for row in self.rows)
         if self.leads is not None:
-            yield from structure_faults(vertices, self.leads, unmade, unsure)
+            yield from structure_faults(vertices, self.leads, unmade, groups, unsure)
 
 
 def rows_in(hump: Mapping[str, Any], types: TypeTables, origin: Origin) -> Iterator[Row]:

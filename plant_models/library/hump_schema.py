@@ -10,6 +10,7 @@ from plant_models.library.data_file import number, number_or_pairs, pairs
 from plant_models.library.hump_cells import (
     CONTROLLERS,
     ELEMENTS,
+    PROFILE,
     Key,
     Schema,
     some_numbers,
@@ -73,6 +74,7 @@ def hump_schema() -> Json:
                 "required": ["leads"],
                 "properties": {
                     "leads": {"type": "array", "items": {"type": "integer"}, "minItems": 1},
+                    "profile_from_crest": cell_schema(PROFILE),
                     **{kind: {"type": "array", "items": element_schema(kind)} for kind in ELEMENTS},
                 },
             },
@@ -112,6 +114,8 @@ def table_schema(schema: Schema) -> Json:
 def cell_schema(key: Key) -> Json:
     """A value, or where it is a number, a table of it and its origin."""
     plain = FORMS[key.form]
+    if key.range is not None:
+        plain = {**plain, "minimum": key.range.low, "maximum": key.range.high}
     if not key.unit:
         return plain
     sourced = {

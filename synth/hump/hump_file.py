@@ -13,7 +13,7 @@ from plant_models.library.hump_entry import load_hump as load_of_library
 from plant_models.library.near_miss import near_miss
 from plant_models.library.type_file import HUMPS
 from synth.frame.input_error import InputError
-from synth.frame.settings.toml_file import Tree, mended_tree, read_text
+from synth.frame.settings.toml_file import Tree, read_text, read_toml
 from synth.hump.railml.read import from_railml
 from synth.retarder.configuration.plant_fault import in_file
 
@@ -67,12 +67,13 @@ def hump_text(source: Path) -> str:
 def parse_hump(text: str, name: str, file: str) -> HumpEntry:
     """The hump `name` written as TOML in `text`; `file`: what messages call it. `InputError` with all that is at fault:
     what is no TOML, and where it is known what was meant there, what would be at fault then."""
-    tree, told = mended_tree(text, file)
-    if tree is not None:
-        require_hump_file(tree, file)
+    read = read_toml(text, file)
+    told = read.faults
+    if read.tree is not None:
+        require_hump_file(read.tree, file)
         try:
             with in_file(file):
-                hump = hump_from(tree, text, name, file)
+                hump = hump_from(read.tree, read.text, name, file)
         except InputError as fault:
             told += fault.sentences
         else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import tomllib
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -50,26 +50,34 @@ def read_text(path: Path, template: str = "init") -> str:
 
 def toml_tree(text: str, file: str) -> Tree:
     """The tables in `text`; `file` is what messages call it. `InputError` for what is no TOML or beyond its limits."""
-    tree, faults = mended_tree(text, file)
-    if faults:
-        raise InputError(*faults)
-    assert tree is not None
-    return tree
+    read = read_toml(text, file)
+    if read.faults or read.tree is None:
+        raise InputError(*read.faults)
+    return read.tree
 
 
-def mended_tree(text: str, file: str) -> tuple[Tree | None, tuple[str, ...]]:
-    """The tables in `text` and what is no TOML in it, a sentence each; the tables are there where all of that has a
-    known remedy, as if it had been taken. `InputError` for what is beyond the limits."""
+@dataclass(frozen=True)
+class ReadToml:
+    """A text with a sentence for each of its `faults`; `text` is as it was meant, with its `tree`, None where nobody
+    knows that."""
+
+    text: str
+    tree: Tree | None
+    faults: tuple[str, ...]
+
+
+def read_toml(text: str, file: str) -> ReadToml:
+    """The tables in `text`, and what is no TOML in it; `file` is what messages call it. `InputError` for what is beyond
+    the limits."""
     try:
         found = syntax_faults(text, file)
-        tree = None if found.mended is None else tomllib.loads(found.mended)
     except RecursionError:
         raise InputError(f"{file}: its lists or tables are nested too deeply; at most {DEEPEST} are allowed") from None
     except ValueError:  # Python turns no longer text into a whole number
         raise InputError(f"{file}: a number in it has thousands of digits; whole numbers have at most 19") from None
-    if tree is not None:
-        require_bounded(tree, file)
-    return tree, found.sentences
+    if found.tree is not None:
+        require_bounded(found.tree, file)
+    return ReadToml(text if found.mended is None else found.mended, found.tree, found.sentences)
 
 
 def require_bounded(tree: Tree, file: str) -> None:

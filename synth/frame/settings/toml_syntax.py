@@ -7,7 +7,7 @@ import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from tuning_tables.excerpt import excerpt
 
@@ -43,11 +43,12 @@ Rule = Callable[[str, int, str], Mend | None]
 
 @dataclass(frozen=True)
 class SyntaxFaults:
-    """`sentences`, each behind the file and its line; `mended`: the text as it was meant, None where that is not
-    known."""
+    """`sentences`, each behind the file and its line; `mended`: the text as it was meant, and `tree`, its tables; both
+    None where that is not known."""
 
     sentences: tuple[str, ...]
-    mended: str | None
+    mended: str | None = None
+    tree: dict[str, Any] | None = None
 
 
 def syntax_faults(text: str, file: str) -> SyntaxFaults:
@@ -56,21 +57,21 @@ def syntax_faults(text: str, file: str) -> SyntaxFaults:
     told: list[str] = []
     while len(told) < MOST_FAULTS:
         try:
-            tomllib.loads(text)
+            tree = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
             at, message = place_of(text, str(error)), str(error)
             mend = next((mend for rule in RULES if (mend := rule(text, at, message)) is not None), None)
             if mend is None:
                 told.append(f"{file}: this is not valid TOML: {excerpt(message, 200)}; correct the file there")
-                return SyntaxFaults(tuple(told), None)
+                return SyntaxFaults(tuple(told))
             line = text.count("\n", 0, min(at, len(text) - 1)) + 1
             told.append(f"{file}, line {line}: {mend.sentence}")
             if mend.text is None or len(text) > LONGEST_MENDED:
-                return SyntaxFaults(tuple(told), None)
+                return SyntaxFaults(tuple(told))
             text = mend.text
         else:
-            return SyntaxFaults(tuple(told), text)
-    return SyntaxFaults(tuple(told), None)
+            return SyntaxFaults(tuple(told), text, tree)
+    return SyntaxFaults(tuple(told))
 
 
 def place_of(text: str, message: str) -> int:

@@ -162,7 +162,12 @@ def of_layout(hump: HumpEntry, rolled: Sequence[RolledRoute]) -> Iterator[HumpWa
 
 
 def of_retarders(hump: HumpEntry, rolled: Sequence[RolledRoute]) -> Iterator[HumpWarning]:
-    """Positions that the library does not have, and tables that have no effect."""
+    """Positions that the library does not have, or that are of another length; a hump without any."""
+    if not all(each.retarders for each in rolled):
+        tracks = ranges(sorted({each.route.track for each in rolled if not each.retarders}))
+        some = any(each.retarders for each in rolled)
+        told = "nothing brakes cuts there" if some else "nothing brakes cuts, and hump simulate needs a position"
+        yield HumpWarning("no-retarder", f"on the way to tracks {tracks} there is no retarder; {told}")
     unknown: dict[str, list[int]] = {}
     for each in hump.graph.retarders:
         if each.position not in BUILT_IN.names(POSITIONS):

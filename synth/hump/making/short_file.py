@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from plant_models.library.near_miss import close_name
 from synth.frame.input_error import InputError
 from synth.frame.settings.file_fault import faults_in
-from synth.frame.settings.toml_file import mended_tree
+from synth.frame.settings.toml_file import read_toml
 from synth.hump.making.short_hump import EXAMPLE, ShortHump
 from synth.hump.making.short_rules import RULES
 
@@ -18,9 +18,10 @@ KEYS: Final = tuple(ShortHump.model_fields)
 
 def read_short_hump(text: str, place: str) -> ShortHump:
     """The short hump that `text` describes; `place` is what messages call the file. `InputError`."""
-    tree, syntax = mended_tree(text, place)
+    read = read_toml(text, place)
+    tree = read.tree
     if tree is None:
-        raise InputError(*syntax)
+        raise InputError(*read.faults)
     wrong: set[str] = set()
     told: list[str] = []
     try:
@@ -33,8 +34,8 @@ def read_short_hump(text: str, place: str) -> ShortHump:
         wrong |= meant
         short = ShortHump.model_validate({**{key: getattr(EXAMPLE, key) for key in NEEDED}, **sound})
     told += [sentence for rule in RULES if not rule.keys & wrong for sentence in rule.check(short)]
-    if syntax or told:
-        raise InputError(*syntax, *(f"{place}: {sentence}" for sentence in told))
+    if read.faults or told:
+        raise InputError(*read.faults, *(f"{place}: {sentence}" for sentence in told))
     return short
 
 
