@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from plant_models.errors import PlantError
-from plant_models.hump import HumpGraph, Signal
+from plant_models.hump import HumpGraph, Signal, element_name
 from plant_models.library.hump_entry import HumpEntry
 from plant_models.library.sourced_value import SourcedValue
 from synth.frame.exhibits import Column, Exhibit, Sentence, Table
 from synth.frame.printed_numbers import decimals
-from synth.hump.checking.hump_warnings import HumpWarning, warnings_of
+from synth.hump.checking.hump_warnings import HumpWarning, of_grades, warnings_of
 from synth.hump.checking.places import Place, RolledRoute, places_of, rolled_routes
 from synth.hump.control.number_ranges import ranges
 from synth.hump.design_runners import HUMP_SPEED_M_S
@@ -48,19 +48,20 @@ class CheckedHump:
 def checked_hump(hump: HumpEntry) -> CheckedHump:
     """The hump with its warnings; `PlantError` where no car can roll over it."""
     rolled = rolled_routes(hump.graph)
-    require_rolling(rolled)
+    require_rolling(hump, rolled)
     return CheckedHump(hump, rolled, warnings_of(hump, rolled))
 
 
-def require_rolling(rolled: Sequence[RolledRoute]) -> None:
+def require_rolling(hump: HumpEntry, rolled: Sequence[RolledRoute]) -> None:
     """`PlantError` where the good runner stands ahead of the last switch or position of a route."""
     worst = min(rolled, key=lambda each: each.good.stop_m - each.last_m)
     if worst.good.stop_m < worst.last_m:
-        ahead = next(e for e in worst.route.elements if e.to_m > worst.good.stop_m)
+        ahead = next(element for element in worst.route.elements if element.to_m > worst.good.stop_m)
+        likely = next((each.sentence for each in of_grades(hump, rolled)), "give the track more fall")
         raise PlantError(
-            f"cuts stand before element {ahead.number}: the good runner, let go at {HUMP_SPEED_M_S:g} m/s and not "
-            f"braked, stands {worst.good.stop_m:.0f} m behind the crest on the way to track {worst.route.track}; a "
-            "grade is positive where the track falls: correct the grades"
+            f"cuts stand before {element_name(ahead.number)}: the good runner, let go at {HUMP_SPEED_M_S:g} m/s and "
+            f"not braked, stands {worst.good.stop_m:.0f} m behind the crest on the way to track {worst.route.track}; "
+            f"{likely}"
         )
 
 
