@@ -22,6 +22,7 @@ from plant_models.hump.ranges import (
 )
 from plant_models.library.data_file import form_name, number, number_or_pairs, pairs, shown, shown_key
 from plant_models.library.hump_faults import FoundFaults, HumpFileFault
+from plant_models.library.hump_forms import some_numbers, some_pairs, text, texts, triples, truth, whole
 from plant_models.library.near_miss import close_name, near_miss
 from plant_models.library.sourced_value import CONFIDENCES
 from plant_models.library.toml_lines import Place
@@ -70,51 +71,6 @@ Cells = dict[str, "Cell | Cells"]
 def faulty(place: Place) -> Cell:
     """What stands for a key at `place` whose value is at fault."""
     return Cell(None, place, "", Origin())
-
-
-def text(raw: object) -> str | None:
-    """A non-empty string of printable characters."""
-    return raw if isinstance(raw, str) and raw and raw.isprintable() else None
-
-
-def texts(raw: object) -> tuple[str, ...] | None:
-    """A list of non-empty strings of printable characters."""
-    items = [text(x) for x in raw] if isinstance(raw, list) else [None]
-    return tuple(x for x in items if x is not None) if None not in items else None
-
-
-def whole(raw: object) -> int | None:
-    """A whole number."""
-    return raw if isinstance(raw, int) and not isinstance(raw, bool) else None
-
-
-def wholes(raw: object) -> tuple[int, ...] | None:
-    """A list of whole numbers."""
-    items = [whole(x) for x in raw] if isinstance(raw, list) else [None]
-    return tuple(x for x in items if x is not None) if None not in items else None
-
-
-def truth(raw: object) -> bool | None:
-    """True or false."""
-    return raw if isinstance(raw, bool) else None
-
-
-def some_numbers(raw: object) -> tuple[float, ...] | None:
-    """A list of finite numbers."""
-    items = [number(x) for x in raw] if isinstance(raw, list) else [None]
-    return tuple(x for x in items if x is not None) if None not in items else None
-
-
-def triples(raw: object) -> tuple[tuple[float, float, float], ...] | None:
-    """A list of [from_m, to_m, turn_deg], each of three finite numbers."""
-    items = [some_numbers(x) for x in raw] if isinstance(raw, list) else [None]
-    rows = [(x[0], x[1], x[2]) for x in items if x is not None and len(x) == 3]
-    return tuple(rows) if len(rows) == len(items) else None
-
-
-def some_pairs(raw: object) -> tuple[tuple[float, float], ...] | None:
-    """A list of pairs of finite numbers."""
-    return () if raw == [] else pairs(raw)
 
 
 EDGE: Final[Schema] = {

@@ -9,8 +9,9 @@ from typing import Any, Final
 from plant_models.errors import PlantError
 from plant_models.hump import HumpGraph
 from plant_models.library.data_file import parse_toml, shown, shown_key
-from plant_models.library.hump_cells import SOURCED, Cell, Cells, Origin, TypeTables, origin_of, text, texts
+from plant_models.library.hump_cells import SOURCED, Cell, Cells, Origin, TypeTables, origin_of
 from plant_models.library.hump_faults import FoundFaults
+from plant_models.library.hump_forms import text, texts
 from plant_models.library.hump_rows import HumpRows
 from plant_models.library.library import BUILT_IN, Library
 from plant_models.library.near_miss import near_miss

@@ -3,34 +3,29 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
 
 from plant_models.hump.edge import SHORTEST_GRADE_M, Grades
 from plant_models.library.hump_cells import Cell, Cells, Origin
 from plant_models.library.hump_elements import given
-from plant_models.library.toml_lines import Place
+from plant_models.library.hump_faults import FoundFaults
+from plant_models.library.hump_row import Row
 
-if TYPE_CHECKING:
-    from plant_models.library.hump_rows import HumpRows
+GRADE: Final = "grade_permille"
 
-GRADE = "grade_permille"
-DIGITS = 6
+DIGITS: Final = 6
 """Of metres: grades of edges keep no noise of sums."""
 
 
-def with_grades(rows: HumpRows) -> Iterator[Cells]:
-    """The cells of each row; where the hump has a profile, with the grades that this gives to the edges of the row.
+def with_grades(rows: Sequence[Row], leads: Sequence[int], profile: Cell, found: FoundFaults) -> Iterator[Cells]:
+    """The cells of each row with the grades that `profile` gives to its edges.
 
-    What is at fault goes to what the types of `rows` have found: grades of an edge beside the profile, and an element
-    that does not lie as far from one crest as from another.
+    What is at fault goes to `found`: grades of an edge beside the profile, and an element that does not lie as far from
+    one of the crests `leads` as from another.
     """
-    if rows.profile is None:
-        yield from (row.cells for row in rows.rows)
-        return
-    found, profile = rows.types.found, rows.profile
-    places = places_from_crest(rows)
-    for row in rows.rows:
+    places = places_from_crest(rows, leads, found)
+    for row in rows:
         cells = dict(row.cells)
         for key in ("next", "left", "right"):
             edge = cells.get(key)
@@ -41,24 +36,26 @@ def with_grades(rows: HumpRows) -> Iterator[Cells]:
                 found.add(
                     own.place, f"{GRADE} is given, and profile_from_crest of the hump, too; take one of the two out"
                 )
-            length = given(edge, "length_m", None)
             at = places.get(row.number) if row.number is not None else None
-            grades: Grades | None = ((0.0, 0.0),)
-            if profile.faulty or not profile.value:
-                grades = None
-            elif at is not None and length is not None:
-                grades = piece(profile.value, at, length)
-            place: Place = profile.place
-            cells[key] = {**edge, GRADE: Cell(grades, place, "", Origin())}
+            grades = grades_of(profile, at, given(edge, "length_m", None))
+            cells[key] = {**edge, GRADE: Cell(grades, profile.place, "", Origin())}
         yield cells
 
 
-def places_from_crest(rows: HumpRows) -> Mapping[int, float]:
-    """Metres from the crest by number, of what is reached over edges with a length; `HumpRows` is told where two crests
+def grades_of(profile: Cell, at_m: float | None, length_m: float | None) -> Grades | None:
+    """Of an edge that begins `at_m` from the crest: None where the profile is at fault; level where its place is not
+    known, which is a fault of its own."""
+    if not profile.value:
+        return None
+    return ((0.0, 0.0),) if at_m is None or length_m is None else piece(profile.value, at_m, length_m)
+
+
+def places_from_crest(rows: Sequence[Row], leads: Sequence[int], found: FoundFaults) -> Mapping[int, float]:
+    """Metres from the crest by number, of what is reached over edges with a length; `found` is told where two crests
     disagree."""
-    by_number = {row.number: row for row in rows.rows if row.number is not None}
+    by_number = {row.number: row for row in rows if row.number is not None}
     places: dict[int, tuple[float, int]] = {}
-    for lead in rows.leads or ():
+    for lead in leads:
         here: set[int] = set()
         waiting = deque([(lead, 0.0)])
         while waiting:
@@ -69,7 +66,7 @@ def places_from_crest(rows: HumpRows) -> Mapping[int, float]:
             here.add(number)
             before = places.setdefault(number, (at, lead))
             if abs(before[0] - at) > SHORTEST_GRADE_M:
-                rows.types.found.add(
+                found.add(
                     row.place,
                     f"it lies {before[0]:g} m from signal {before[1]} and {at:g} m from signal {lead}, so that "
                     "profile_from_crest has two grades for it; take that out, and give each edge its grade_permille",

@@ -20,48 +20,16 @@ from plant_models.library.hump_cells import (
     TypeTables,
     checked_cell,
     checked_cells,
-    wholes,
 )
-from plant_models.library.hump_elements import ElementMaker, given, is_faulty
+from plant_models.library.hump_elements import ElementMaker, given
+from plant_models.library.hump_forms import wholes
 from plant_models.library.hump_profile import with_grades
+from plant_models.library.hump_row import Row
 from plant_models.library.near_miss import near_miss
 from plant_models.library.toml_lines import Place
 
 KNOWN = ("leads", "profile_from_crest", *ELEMENTS)
 """Keys of the table `[hump]`."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """A row by its `kind` (switch, signal, …), with its cells and its place in the file."""
-
-    kind: str
-    cells: Cells
-    place: Place
-
-    @property
-    def number(self) -> int | None:
-        """Of its element, if it has one."""
-        number: int | None = given(self.cells, "number", None)
-        return number
-
-    @property
-    def is_numbered(self) -> bool:
-        """It has a number of its group."""
-        return self.number is not None and any(self.number in group for group in GROUPS if group.noun == self.kind)
-
-    @property
-    def leads_on(self) -> bool:
-        """Where its edges lead is told."""
-        leads_on = [isinstance(edge.get("to"), Cell) and not is_faulty(edge, "to") for edge in self.edges]
-        ends = self.kind == "section" and not any("to" in edge for edge in self.edges)
-        return ends or (all(leads_on) and len(leads_on) == (2 if self.kind == "switch" else 1))
-
-    @property
-    def edges(self) -> tuple[Cells, ...]:
-        """The tables of its edges, as far as they are there."""
-        found = (self.cells.get(key) for key in ("next", "left", "right"))
-        return tuple(each for each in found if isinstance(each, dict))
 
 
 @dataclass(frozen=True)
@@ -102,7 +70,7 @@ class HumpRows:
         found = self.types.found
         rows = {row.number: row for row in reversed(self.rows) if row.number is not None}
         vertices: list[Vertex] = []
-        for row, cells in zip(self.rows, with_grades(self), strict=True):
+        for row, cells in zip(self.rows, self.cells_with_grades(), strict=True):
             first = rows.get(row.number) if row.number is not None else None
             if first is not None and first is not row:
                 told = f"{first.place[1]}[{first.place[2]}] has the number {row.number}, too; numbers must be unique"
@@ -116,6 +84,12 @@ class HumpRows:
             found.add(place, unnamed(error, str(place[1])))
         return HumpGraph(tuple(vertices), self.leads or ()) if not found else None
 
+    def cells_with_grades(self) -> Iterator[Cells]:
+        """The cells of each row, with the grades that follow from a profile of the hump."""
+        if self.profile is None:
+            return (row.cells for row in self.rows)
+        return with_grades(self.rows, self.leads or (), self.profile, self.types.found)
+
     def faults_of_structure(self, vertices: Sequence[Vertex], rows: Mapping[int, Row]) -> Iterator[HumpError]:
         """What needs more than one row; `rows` by number."""
         made = {vertex.number for vertex in vertices}
@@ -124,7 +98,11 @@ class HumpRows:
             for number, row in rows.items()
             if number not in made
         }
-        unnumbered = {row.kind for row in self.rows if not row.is_numbered or rows.get(row.number) is not row}
+        unnumbered = {
+            row.kind
+            for row in self.rows
+            if not row.is_numbered or row.number is None or rows.get(row.number) is not row
+        }
         groups = [group for group in GROUPS if group.noun in unnumbered]
         unsure = any(row.number not in made and not row.leads_on for row in self.rows)
         if self.leads is not None:

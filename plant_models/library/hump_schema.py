@@ -7,21 +7,9 @@ from typing import Any, Final
 
 from plant_models.hump import GROUPS
 from plant_models.library.data_file import number, number_or_pairs, pairs
-from plant_models.library.hump_cells import (
-    CONTROLLERS,
-    ELEMENTS,
-    PROFILE,
-    Key,
-    Schema,
-    some_numbers,
-    some_pairs,
-    text,
-    texts,
-    triples,
-    truth,
-    whole,
-)
+from plant_models.library.hump_cells import CONTROLLERS, ELEMENTS, PROFILE, Key, Schema
 from plant_models.library.hump_entry import FORMAT, VERSION
+from plant_models.library.hump_forms import some_numbers, some_pairs, text, texts, triples, truth, whole
 from plant_models.library.sourced_value import CONFIDENCES
 
 Json = dict[str, Any]

@@ -41,19 +41,21 @@ def swapped(old: str, new: str) -> Callable[[str], str]:
     return lambda text: text.replace(old, new)
 
 
-MEDIUM_GRADES = "length_m = 42.0\ngrade_permille = [[0.0, 45.0], [40.0, 22.0]]"
+FIRST = "length_m = 42.0\ngrade_permille = [[0.0, 45.0], [40.0, 22.0]]"
+TRACK = "length_m = 632.0, grade_permille = [[0.0, 0.8], [432.0, 0.0]]"
+PARK = 'position = "rnz-2m-park"'
 
 WARNED: list[tuple[Callable[[str], str], str, str]] = [
-    (swapped(MEDIUM_GRADES, "length_m = 42.0\ngrade_permille = 10"), "first-fall", "to switch 1 the track falls 0.42 m"),
-    (swapped(MEDIUM_GRADES, "length_m = 30.0\ngrade_permille = 45"), "first-switch", "switch 1 begins 24 m behind the"),
-    (swapped("[26.0, 8.0]]", "[26.0, -40.0]]"), "rise", "rises by 0.48 m from 138 m to 150 m, ahead of its last switch"),
-    (scaled(0.5), "height", "the bad runner (22 t, 4 N/kN, head wind 2 m/s), let go at 1.7 m/s and not braked, stands"),
+    (swapped(FIRST, "length_m = 42.0\ngrade_permille = 10"), "first-fall", "to switch 1 the track falls 0.42 m"),
+    (swapped(FIRST, "length_m = 30.0\ngrade_permille = 45"), "first-switch", "switch 1 begins 24 m behind the"),
+    (swapped("[26.0, 8.0]]", "[26.0, -40.0]]"), "rise", "rises by 0.48 m from 138 m to 150 m, ahead of its last"),
+    (scaled(0.4), "height", "the bad runner (22 t, 4 N/kN, head wind 2 m/s), let go at 1.7 m/s and not braked, stands"),
     (scaled(0.1), "grades", "is 4.5 permille; if the file has its grades in per cent, multiply them by 10"),
-    (swapped("value = [[0.0, 8.0], [28", "value = [[0.0, 3.0], [28"), "position-grade", "under retarders 411 to 414 is 3"),
-    (swapped('position = "rnz-2m-park"', 'position = "mine"\nzones_m = [[0, 9]]'), "position", "'mine' of retarders 421 to"),
-    (swapped("entry_joint_m = 2.0", "zones_m = [[0, 9]]\nentry_joint_m = 2.0"), "zones", "are 9 m long; hump simulate"),
-    (swapped("length_m = 632.0, grade_permille = [[0.0, 0.8], [432.0, 0.0]]", "length_m = 6.0, grade_permille = 0.8"),
-     "short-track", "on tracks 1 to 16 6 m are free; a cut of 8 cars, the most of a usual train, has 111 m"),
+    (swapped("= [[0.0, 8.0], [28", "= [[0.0, 3.0], [28"), "position-grade", "under retarders 411 to 414 is 3 permille"),
+    (swapped(PARK, 'position = "mine"\nzones_m = [[0, 9]]'), "position", "the position 'mine' of retarders 421 to"),
+    (swapped(PARK, f"{PARK}\nzones_m = [[0, 9]]"), "zones", "retarders 421 to 436 are 9 m long; hump simulate brakes"),
+    (swapped(TRACK, "length_m = 6.0, grade_permille = 0.8"), "short-track",
+     "on tracks 1 to 16 6 m are free; a cut of 8 cars, the most of a usual train, has 111 m"),
     (lambda text: re.sub(r'track = (\d+) \}', r"track = \1, standing_m = 5 }", text), "no-effect",
      "type.track.standing_m has no effect: every row that names the type has its own"),
 ]  # fmt: skip
