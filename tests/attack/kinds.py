@@ -23,6 +23,7 @@ from synth.frame.asked_file import asked_of
 from synth.frame.terminal.telling import say
 from synth.hump.configuration.template import default_trial_toml
 from synth.hump.hump_file import parse_hump
+from synth.hump.making.make_command import COMMAND as MAKE
 from synth.hump.railml.write import to_railml
 from synth.hump.trains.simulate_command import COMMAND as SIMULATE
 from synth.logs.loaded_passes import loaded_passes
@@ -35,6 +36,7 @@ from tests.attack.attempt import Kind, Reading
 from tests.attack.railml_attributes import attribute_kind
 from tests.attack.trains import trains_kind
 from tests.plant_models.hump.test_hump_file import SMALL
+from tests.synth.hump.making.test_hump_make import SHORT
 from tests.tuning_tables.pass_log.sample_logs import sample_log
 from tuning_tables.pass_log.log_files import write_log
 
@@ -93,6 +95,12 @@ def read_hump_file(folder: Path, name: str) -> str:
 def read_trial(folder: Path) -> str:
     """As `hump simulate`."""
     SIMULATE.resolve(asked_of(SIMULATE, SIMULATE.options(config=folder / "trial.toml"), "init --hump"))
+    return ""
+
+
+def read_short_hump(folder: Path) -> str:
+    """As `hump make`."""
+    MAKE.resolve(asked_of(MAKE, MAKE.options(config=folder / "short.toml"), "init --short-hump"))
     return ""
 
 
@@ -195,6 +203,7 @@ def mapping_kind() -> Kind:
 KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "hump": lambda: file_kind("hump.toml", SMALL.encode(), partial(read_hump_file, name="hump.toml")),
     "railml": lambda: file_kind("hump.railml", railml(), partial(read_hump_file, name="hump.railml")),
+    "short-hump": lambda: file_kind("short.toml", SHORT.encode(), read_short_hump),
     "trial": lambda: file_kind("trial.toml", plain(default_trial_toml()), read_trial),
     "aim": lambda: file_kind("aim.toml", plain(default_aim_toml()), read_aim),
     "computer": lambda: file_kind("computer.toml", plain(default_computer_toml()), read_computer),
