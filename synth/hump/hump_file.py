@@ -13,7 +13,8 @@ from plant_models.library.hump_entry import load_hump as load_of_library
 from plant_models.library.near_miss import near_miss
 from plant_models.library.type_file import HUMPS
 from synth.frame.input_error import InputError
-from synth.frame.settings.toml_file import Tree, read_text, read_toml
+from synth.frame.settings.toml_file import read_text, read_toml
+from synth.hump.file_kind import FileKind, require_kind
 from synth.hump.railml.read import from_railml
 from synth.retarder.configuration.plant_fault import in_file
 
@@ -70,7 +71,7 @@ def parse_hump(text: str, name: str, file: str) -> HumpEntry:
     read = read_toml(text, file)
     told = read.faults
     if read.tree is not None:
-        require_hump_file(read.tree, file)
+        require_kind(read.tree, file, FileKind.HUMP)
         try:
             with in_file(file):
                 hump = hump_from(read.tree, read.text, name, file)
@@ -80,20 +81,6 @@ def parse_hump(text: str, name: str, file: str) -> HumpEntry:
             if not told:
                 return hump
     raise InputError(*told)
-
-
-def require_hump_file(tree: Tree, file: str) -> None:
-    """`InputError` for a file of another kind, which tells the command that reads it."""
-    from synth.hump.configuration.settings import HumpTrialSettings
-    from synth.hump.making.short_hump import ShortHump
-
-    if "format" in tree or isinstance(tree.get("hump"), dict):
-        return
-    kinds = (("hump trial", HumpTrialSettings, "simulate"), ("short hump file", ShortHump, "make"))
-    shared = set(HumpTrialSettings.model_fields) & set(ShortHump.model_fields)
-    for kind, model, verb in kinds:
-        if (set(model.model_fields) - shared) & tree.keys():
-            raise InputError(f"{file}: this is a {kind}, not a hump file; use 'retarder-synth hump {verb} {file}'")
 
 
 def require_files(hump: HumpEntry, source: Path) -> None:

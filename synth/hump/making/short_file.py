@@ -10,6 +10,7 @@ from plant_models.library.near_miss import close_name
 from synth.frame.input_error import InputError
 from synth.frame.settings.file_fault import faults_in
 from synth.frame.settings.toml_file import read_toml
+from synth.hump.file_kind import FileKind, require_kind
 from synth.hump.making.short_hump import EXAMPLE, ShortHump
 from synth.hump.making.short_rules import RULES
 
@@ -22,6 +23,7 @@ def read_short_hump(text: str, place: str) -> ShortHump:
     tree = read.tree
     if tree is None:
         raise InputError(*read.faults)
+    require_kind(tree, place, FileKind.SHORT)
     wrong: set[str] = set()
     told: list[str] = []
     try:
