@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -63,11 +63,16 @@ def hump_from(tree: Mapping[str, Any], content: str, name: str, place: str) -> H
 
     `TypeFileError` with a sentence for every fault: file, line, element, value, what is allowed.
     """
+    return hump_at(tree, lambda: places_of(content), name, place)
+
+
+def hump_at(tree: Mapping[str, Any], lines_of: Callable[[], Mapping[Place, int]], name: str, place: str) -> HumpEntry:
+    """The same of a `tree` whose places stand on the lines that `lines_of` gives."""
     found = FoundFaults()
     entry = entry_from(dict(tree), name, found)
     if entry is not None and not found:
         return entry
-    lines = places_of(content)
+    lines = lines_of()
     told = [
         f"{place}, line {line_among(lines, each.place) or 1}: {label(tree, each.place)}{each}"
         for each in found.faults[:MOST_TOLD]
@@ -99,7 +104,7 @@ def entry_from(tree: dict[str, Any], name: str, found: FoundFaults) -> HumpEntry
     origin = origin_of(tree, (), Origin(), found)
     types = TypeTables(table_of(tree, "type", {}, found), origin, found)
     hump = table_of(tree, "hump", None, found)
-    if not hump:
+    if not isinstance(tree.get("hump"), dict):
         return None
     rows = HumpRows.read(hump, types, origin)
     graph = rows.graph()

@@ -96,19 +96,24 @@ def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -
 
 
 def export_command(source: Path, output: Path) -> int:
-    """Write the hump in `source` as railML into the file `output`."""
+    """Write the hump in `source` into the file `output`: railML, CSV or TOML, as its name ends."""
     from synth.frame.input_error import InputError
     from synth.frame.new_file import require_new
-    from synth.hump.hump_file import RAILML_SUFFIXES, read_hump
+    from synth.hump.forms.hump_csv import to_csv
+    from synth.hump.forms.hump_tree import tree_toml
+    from synth.hump.hump_file import CSV_SUFFIX, RAILML_SUFFIXES, read_hump
     from synth.hump.railml.write import to_railml
     from tuning_tables.atomic_file import write_atomically
 
-    if output.suffix not in RAILML_SUFFIXES:
+    texts = {CSV_SUFFIX: to_csv, ".toml": tree_toml}
+    if output.suffix not in (*RAILML_SUFFIXES, *texts):
         raise InputError(
-            f"--output is {output}; the name of a railML file must end with {' or '.join(RAILML_SUFFIXES)}"
+            f"--output is {output}; its name must end with {', '.join((*RAILML_SUFFIXES, CSV_SUFFIX))} or .toml"
         )
     require_new(output)
-    write_atomically(output, to_railml(read_hump(source).entry))
+    hump = read_hump(source).entry
+    railml = output.suffix in RAILML_SUFFIXES
+    write_atomically(output, to_railml(hump) if railml else texts[output.suffix](hump).encode())
     print(output)
     return OK
 

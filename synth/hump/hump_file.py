@@ -1,4 +1,4 @@
-"""A hump from the user's file or from the library: TOML or railML → `ReadHump`, every fault as one sentence."""
+"""A hump from the user's file or from the library: TOML, railML or CSV → `ReadHump`, every fault as one sentence."""
 
 from __future__ import annotations
 
@@ -15,10 +15,14 @@ from plant_models.library.type_file import HUMPS
 from synth.frame.input_error import InputError
 from synth.frame.settings.toml_file import read_text, read_toml
 from synth.hump.file_kind import FileKind, require_kind
+from synth.hump.forms.hump_csv import from_csv
 from synth.hump.railml.read import from_railml
 from synth.retarder.configuration.plant_fault import in_file
 
 RAILML_SUFFIXES: Final = (".railml", ".xml")
+CSV_SUFFIX: Final = ".csv"
+OTHER_SUFFIXES: Final = (*RAILML_SUFFIXES, CSV_SUFFIX)
+"""Of files of humps that are no TOML."""
 
 
 @dataclass(frozen=True)
@@ -53,9 +57,10 @@ def read_graph(source: Path) -> ReadHump:
         hint = near_miss(name, hump_names())
         raise InputError(f"{name}: there is no such file, and no such hump in the library; {hint}")
     text = read_text(source)
-    railml = source.suffix in RAILML_SUFFIXES
-    hump, ignored = from_railml(text, source.stem, name) if railml else (parse_hump(text, source.stem, name), ())
-    return ReadHump(hump, ignored)
+    if source.suffix in RAILML_SUFFIXES:
+        return ReadHump(*from_railml(text, source.stem, name))
+    read = from_csv if source.suffix == CSV_SUFFIX else parse_hump
+    return ReadHump(read(text, source.stem, name))
 
 
 def hump_text(source: Path) -> str:

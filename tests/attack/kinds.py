@@ -22,6 +22,7 @@ from synth.computer.template import default_computer_toml
 from synth.frame.asked_file import asked_of
 from synth.frame.terminal.telling import say
 from synth.hump.configuration.template import default_trial_toml
+from synth.hump.forms.hump_csv import to_csv
 from synth.hump.hump_file import parse_hump
 from synth.hump.making.make_command import COMMAND as MAKE
 from synth.hump.railml.write import to_railml
@@ -148,6 +149,11 @@ def railml() -> bytes:
     return to_railml(parse_hump(SMALL, "small", "small.toml"))
 
 
+def small_csv() -> bytes:
+    """The same hump as a table."""
+    return to_csv(parse_hump(SMALL, "small", "small.toml")).encode()
+
+
 def log_as(name: str) -> bytes:
     """A small log, as the commands write it to a file called `name`."""
     with tempfile.TemporaryDirectory() as folder:
@@ -203,6 +209,7 @@ def mapping_kind() -> Kind:
 KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "hump": lambda: file_kind("hump.toml", SMALL.encode(), partial(read_hump_file, name="hump.toml")),
     "railml": lambda: file_kind("hump.railml", railml(), partial(read_hump_file, name="hump.railml")),
+    "hump-csv": lambda: file_kind("hump.csv", small_csv(), partial(read_hump_file, name="hump.csv")),
     "short-hump": lambda: file_kind("short.toml", SHORT.encode(), read_short_hump),
     "trial": lambda: file_kind("trial.toml", plain(default_trial_toml()), read_trial),
     "aim": lambda: file_kind("aim.toml", plain(default_aim_toml()), read_aim),

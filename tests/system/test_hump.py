@@ -76,13 +76,19 @@ def test_draw(command: Command, file: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "none").exists()
 
 
-def test_export_as_railml_and_read_it(command: Command, file: Path, tmp_path: Path) -> None:
+def test_export_in_another_form_and_read_it(command: Command, file: Path, tmp_path: Path) -> None:
     target = tmp_path / "small.railml"
     assert command("hump", "export", file, "-o", target).code == 0
     assert command("hump", "routes", target).out == command("hump", "routes", file).out
     target.write_text(target.read_text().replace("<signalsIS>", "<speeds/><signalsIS>"))
     assert "read over: speeds (1)" in command("hump", "check", target).out
-    assert "must end with .railml" in command("hump", "export", file, "-o", tmp_path / "small.txt").sentence
+    for name in ("small.csv", "again.toml"):
+        assert command("hump", "export", file, "-o", tmp_path / name).code == 0
+        assert command("hump", "routes", tmp_path / name).out == command("hump", "routes", file).out
+    assert (
+        "must end with .railml, .xml, .csv or .toml"
+        in command("hump", "export", file, "-o", tmp_path / "small.txt").sentence
+    )
 
 
 def test_the_schema_is_printed(command: Command) -> None:
