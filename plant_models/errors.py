@@ -3,10 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 
 class PlantError(ValueError):
     """A physical value is outside what the models mean; the message is one sentence for the user."""
+
+
+class Faults(PlantError):
+    """All that is at fault in one thing, a sentence each; at least one."""
+
+    def __init__(self, *sentences: str) -> None:
+        super().__init__("; ".join(sentences))
+        self.sentences = sentences
+
+
+def require_none(sentences: Iterable[str]) -> None:
+    """Raise `Faults` unless there are no `sentences`, each of which tells a fault."""
+    found = tuple(sentences)
+    if found:
+        raise Faults(*found)
 
 
 def require(holds: bool, sentence: str) -> None:

@@ -8,6 +8,7 @@ from plant_models.hump.element_number import (
     SIGNALS,
     SWITCHES,
     HumpError,
+    HumpErrors,
     NumberGroup,
     element_name,
 )
@@ -30,6 +31,7 @@ __all__ = [
     "Curve",
     "Edge",
     "HumpError",
+    "HumpErrors",
     "HumpGraph",
     "NumberGroup",
     "PointSensor",

@@ -2,15 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Final
 
-from plant_models.errors import require, require_between
+from plant_models.errors import require, require_none
+from plant_models.hump.ranges import CURVE_DEG, GRADE_PERMILLE, LENGTH_M, PLACE_M
 
-LONGEST_EDGE_M = 5000.0
-STEEPEST_PERMILLE = 60.0
-SHORTEST_GRADE_M = 0.1
-"""Shortest element of a profile; metres from the crest still tell shorter ones apart, but nobody builds them."""
+SHORTEST_GRADE_M: Final = 0.001
+"""Shortest piece of a profile: metres from the crest still tell its ends apart."""
+
+Grades = tuple[tuple[float, float], ...]
+"""(from_m, permille) of each piece of a profile, downhill positive."""
+
+
+def grade_faults(grades: Sequence[tuple[float, float]], ends_m: float) -> Iterator[str]:
+    """A sentence for each fault of `grades` on a track that ends at `ends_m`; the first must begin at 0 m."""
+    if not grades:
+        yield "grades: there is none; there must be at least one, from 0 m on"
+        return
+    starts = [start for start, _ in grades]
+    if starts[0] != 0.0:
+        yield f"grades: the first begins at {starts[0]:g} m; it must begin at 0"
+    for ahead, behind in pairwise((*starts, ends_m)):
+        if not behind - ahead >= SHORTEST_GRADE_M:
+            yield (
+                f"grades: the one from {ahead:g} m ends at {behind:g} m; each must be at least {SHORTEST_GRADE_M:g} m "
+                f"long, in order, and begin on the track, which ends at {ends_m:g} m"
+            )
+    for _, grade in grades:
+        yield from GRADE_PERMILLE.faults("grades: a grade", grade)
 
 
 @dataclass(frozen=True)
@@ -22,10 +44,10 @@ class Curve:
     turn_deg: float
 
     def __post_init__(self) -> None:
-        require_between("curve: from_m", self.from_m, 0.0, LONGEST_EDGE_M)
-        require_between("curve: to_m", self.to_m, 0.0, LONGEST_EDGE_M)
+        PLACE_M.require("curve: from_m", self.from_m)
+        PLACE_M.require("curve: to_m", self.to_m)
         require(self.to_m > self.from_m, f"curve: to_m is {self.to_m:g}; it must be more than from_m, {self.from_m:g}")
-        require_between("curve: turn_deg", self.turn_deg, -180.0, 180.0)
+        CURVE_DEG.require("curve: turn_deg", self.turn_deg)
         require(self.turn_deg != 0.0, "curve: turn_deg is 0; a curve must turn the track")
 
 
@@ -36,7 +58,7 @@ class PointSensor:
     at_m: float
 
     def __post_init__(self) -> None:
-        require_between("point sensor: at_m", self.at_m, 0.0, LONGEST_EDGE_M)
+        PLACE_M.require("point sensor: at_m", self.at_m)
 
 
 @dataclass(frozen=True)
@@ -47,8 +69,8 @@ class Radar:
     to_m: float
 
     def __post_init__(self) -> None:
-        require_between("radar: from_m", self.from_m, 0.0, LONGEST_EDGE_M)
-        require_between("radar: to_m", self.to_m, 0.0, LONGEST_EDGE_M)
+        PLACE_M.require("radar: from_m", self.from_m)
+        PLACE_M.require("radar: to_m", self.to_m)
         require(self.to_m > self.from_m, f"radar: to_m is {self.to_m:g}; it must be more than from_m, {self.from_m:g}")
 
 
@@ -63,38 +85,25 @@ class Edge:
 
     to: int | None
     length_m: float
-    grades: tuple[tuple[float, float], ...]
+    grades: Grades
     curves: tuple[Curve, ...] = ()
     point_sensors: tuple[PointSensor, ...] = ()
     radars: tuple[Radar, ...] = ()
 
     def __post_init__(self) -> None:
-        require_between("length_m", self.length_m, 0.1, LONGEST_EDGE_M)
-        require(len(self.grades) > 0, "grades: there is none; an edge must have at least one, from 0 m on")
-        starts = [start for start, _ in self.grades]
-        require(starts[0] == 0.0, f"grades: the first begins at {starts[0]:g} m; it must begin at 0")
-        for ahead, behind in pairwise((*starts, self.length_m)):
-            require(
-                behind - ahead >= SHORTEST_GRADE_M,
-                f"grades: the one from {ahead:g} m ends at {behind:g} m; each must be at least {SHORTEST_GRADE_M:g} m "
-                f"long, in order, and begin on the edge, which ends at {self.length_m:g} m",
-            )
-        for _, grade in self.grades:
-            require_between("grades: a grade", grade, -STEEPEST_PERMILLE, STEEPEST_PERMILLE)
-        for first, second in pairwise(self.curves):
-            require(
-                second.from_m >= first.to_m,
-                f"curves: one begins at {second.from_m:g} m, before the one ahead of it ends at {first.to_m:g} m",
-            )
-        for curve in self.curves:
-            self._require_on_edge("curves: one ends at", curve.to_m)
-        for sensor in self.point_sensors:
-            self._require_on_edge("point_sensors: one is at", sensor.at_m)
-        for radar in self.radars:
-            self._require_on_edge("radars: one ends at", radar.to_m)
+        LENGTH_M.require("length_m", self.length_m)
+        require_none(self._faults())
 
-    def _require_on_edge(self, words: str, place_m: float) -> None:
-        require(
-            place_m <= self.length_m,
-            f"{words} {place_m:g} m; it must not be beyond the end of the edge, {self.length_m:g} m",
-        )
+    def _faults(self) -> Iterator[str]:
+        yield from grade_faults(self.grades, self.length_m)
+        for first, second in pairwise(self.curves):
+            if not second.from_m >= first.to_m:
+                yield f"curves: one begins at {second.from_m:g} m, before the one ahead of it ends at {first.to_m:g} m"
+        places = [
+            *(("curves: one ends at", curve.to_m) for curve in self.curves),
+            *(("point_sensors: one is at", sensor.at_m) for sensor in self.point_sensors),
+            *(("radars: one ends at", radar.to_m) for radar in self.radars),
+        ]
+        for words, place_m in places:
+            if not place_m <= self.length_m:
+                yield f"{words} {place_m:g} m; it must not be beyond the end of the edge, {self.length_m:g} m"

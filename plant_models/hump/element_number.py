@@ -16,6 +16,14 @@ class HumpError(PlantError):
         self.element = element
 
 
+class HumpErrors(HumpError):
+    """All `errors` of a hump, at least one; `element` is that of the first."""
+
+    def __init__(self, *errors: HumpError) -> None:
+        super().__init__("; ".join(map(str, errors)), errors[0].element)
+        self.errors = errors
+
+
 @dataclass(frozen=True)
 class NumberGroup:
     """The numbers `first` to `last` of one kind of elements, which messages call `noun`."""
@@ -51,7 +59,6 @@ def element_name(number: int) -> str:
     return f"{noun} {number}"
 
 
-def demand(holds: bool, element: int, sentence: str) -> None:
-    """Raise `HumpError` for `element`, its name before `sentence`, unless `holds`."""
-    if not holds:
-        raise HumpError(f"{element_name(element)}: {sentence}", element)
+def fault_of(element: int, sentence: str) -> HumpError:
+    """The fault `sentence` of an element, whose name is put before it."""
+    return HumpError(f"{element_name(element)}: {sentence}", element)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
-from plant_models.errors import require, require_between
+from plant_models.errors import require_none
 from plant_models.hump.edge import Edge
 from plant_models.hump.element_number import RETARDERS
+from plant_models.hump.ranges import ENTRY_JOINT_M, EXIT_STD_M_S, RETARDER_EXIT_JOINT_M, ZONE_M
 
 
 @dataclass(frozen=True)
@@ -34,35 +36,38 @@ class Retarder:
 
     def __post_init__(self) -> None:
         RETARDERS.checked(self.number)
-        require(len(self.zones_m) > 0, "zones_m: there is none; a retarder must have at least one braking zone")
-        for begin, end in self.zones_m:
-            require_between("zones_m: a begin", begin, 0.0, 200.0)
-            require_between("zones_m: an end", end, 0.0, 200.0)
-            require(end > begin, f"zones_m: a zone ends at {end:g} m; it must end behind its begin, {begin:g} m")
-        for ahead, behind in pairwise(self.zones_m):
-            require(
-                behind[0] >= ahead[1],
-                f"zones_m: a zone begins at {behind[0]:g} m, before the one ahead of it ends at {ahead[1]:g} m",
-            )
-        require_between("entry_joint_m", self.entry_joint_m, 0.0, 100.0)
-        require_between("exit_joint_m", self.exit_joint_m, 0.0, 300.0)
-        require(
-            self.exit_joint_m >= self.zones_m[-1][1],
-            f"exit_joint_m is {self.exit_joint_m:g}; it must not be before the end of the last zone, "
-            f"{self.zones_m[-1][1]:g} m",
-        )
+        require_none(self._faults())
 
-        require(
-            self.book is not None or self.exit_std_m_s is not None,
-            "nothing controls it; give book, the file of its tables, or exit_std_m_s, the standard deviation of its "
-            "exit speeds, 0 to 1",
-        )
-        require(
-            self.book is None or self.exit_std_m_s is None,
-            "book and exit_std_m_s are both given; give the one that tells what controls it",
-        )
+    def _faults(self) -> Iterator[str]:
+        yield from self._faults_of_zones()
+        yield from ENTRY_JOINT_M.faults("entry_joint_m", self.entry_joint_m)
+        yield from RETARDER_EXIT_JOINT_M.faults("exit_joint_m", self.exit_joint_m)
+        if self.zones_m and not self.exit_joint_m >= self.exit_m:
+            yield (
+                f"exit_joint_m is {self.exit_joint_m:g}; it must not be before the end of the last zone, "
+                f"{self.exit_m:g} m"
+            )
+        if self.book is None and self.exit_std_m_s is None:
+            yield (
+                "nothing controls it; give book, the file of its tables, or exit_std_m_s, the standard deviation of "
+                "its exit speeds, 0 to 1"
+            )
+        if self.book is not None and self.exit_std_m_s is not None:
+            yield "book and exit_std_m_s are both given; give the one that tells what controls it"
         if self.exit_std_m_s is not None:
-            require_between("exit_std_m_s", self.exit_std_m_s, 0.0, 1.0)
+            yield from EXIT_STD_M_S.faults("exit_std_m_s", self.exit_std_m_s)
+
+    def _faults_of_zones(self) -> Iterator[str]:
+        if not self.zones_m:
+            yield "zones_m: there is none; a retarder must have at least one braking zone"
+        for begin, end in self.zones_m:
+            yield from ZONE_M.faults("zones_m: a begin", begin)
+            yield from ZONE_M.faults("zones_m: an end", end)
+            if not end > begin:
+                yield f"zones_m: a zone ends at {end:g} m; it must end behind its begin, {begin:g} m"
+        for ahead, behind in pairwise(self.zones_m):
+            if not behind[0] >= ahead[1]:
+                yield (f"zones_m: a zone begins at {behind[0]:g} m, before the one ahead of it ends at {ahead[1]:g} m")
 
     @property
     def exit_m(self) -> float:

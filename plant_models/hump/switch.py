@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from plant_models.errors import require_between
+from plant_models.errors import require_none
 from plant_models.hump.edge import Edge
 from plant_models.hump.element_number import SWITCHES
+from plant_models.hump.ranges import ENTRY_JOINT_M, FOULING_M, RELAY_S, SWITCH_EXIT_JOINT_M, THROW_S, TURN_DEG
 
 LEFT: Final = 0
 RIGHT: Final = 1
@@ -26,8 +27,7 @@ class Branch:
     fouling_m: float
 
     def __post_init__(self) -> None:
-        require_between("turn_deg", self.turn_deg, 0.0, 30.0)
-        require_between("fouling_m", self.fouling_m, 0.1, 300.0)
+        require_none((*TURN_DEG.faults("turn_deg", self.turn_deg), *FOULING_M.faults("fouling_m", self.fouling_m)))
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,14 @@ class Switch:
 
     def __post_init__(self) -> None:
         SWITCHES.checked(self.number)
-        require_between("entry_joint_m", self.entry_joint_m, 0.0, 100.0)
-        require_between("exit_joint_m", self.exit_joint_m, 0.1, 100.0)
-        require_between("throw_s", self.throw_s, 0.05, 10.0)
-        require_between("relay_s", self.relay_s, 0.0, 5.0)
+        require_none(
+            (
+                *ENTRY_JOINT_M.faults("entry_joint_m", self.entry_joint_m),
+                *SWITCH_EXIT_JOINT_M.faults("exit_joint_m", self.exit_joint_m),
+                *THROW_S.faults("throw_s", self.throw_s),
+                *RELAY_S.faults("relay_s", self.relay_s),
+            )
+        )
 
     @property
     def branches(self) -> tuple[Branch, Branch]:

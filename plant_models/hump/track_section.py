@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from plant_models.errors import require, require_between
-from plant_models.hump.edge import LONGEST_EDGE_M, Edge
+from plant_models.errors import require
+from plant_models.hump.edge import Edge
 from plant_models.hump.element_number import SECTIONS
-
-MOST_TRACKS = 199
+from plant_models.hump.ranges import LENGTH_M, STANDING_M, TRACK
 
 
 @dataclass(frozen=True)
@@ -28,12 +27,10 @@ class TrackSection:
 
     def __post_init__(self) -> None:
         SECTIONS.checked(self.number)
-        require_between("length_m", self.length_m, 0.1, LONGEST_EDGE_M)
-        require(
-            self.track is None or 1 <= self.track <= MOST_TRACKS,
-            f"track is {self.track}; it must be from 1 to {MOST_TRACKS}",
-        )
-        require_between("standing_m", self.standing_m, 0.0, LONGEST_EDGE_M)
+        LENGTH_M.require("length_m", self.length_m)
+        if self.track is not None:
+            TRACK.require("track", self.track)
+        STANDING_M.require("standing_m", self.standing_m)
         if not self.is_last:
             require(self.standing_m == 0.0, "standing_m is given; cars stand in the last section of a track alone")
             return

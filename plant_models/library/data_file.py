@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Final
 
-from plant_models.errors import PlantError, require
+from plant_models.errors import Faults, PlantError, require
 from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import CONFIDENCES, SourcedTable, SourcedValue, Value
 from plant_models.library.toml_lines import line_around
@@ -38,14 +38,6 @@ class Quantity:
 
 KEY: Final = re.compile(r"(?:unknown key |key )?([\w.-]+)")
 """The key that a sentence is about."""
-
-
-class Faults(PlantError):
-    """All that is at fault in the numbers of a file, a sentence each."""
-
-    def __init__(self, *sentences: str) -> None:
-        super().__init__("; ".join(sentences))
-        self.sentences = sentences
 
 
 @contextmanager

@@ -2,38 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 from plant_models.errors import PlantError
-from plant_models.hump import HumpError, HumpGraph, Vertex
+from plant_models.hump import HumpGraph
 from plant_models.library.data_file import parse_toml, shown, shown_key
 from plant_models.library.hump_cars import ForCars, for_cars
-from plant_models.library.hump_cells import (
-    ELEMENTS,
-    Cell,
-    Cells,
-    HumpFileFault,
-    HumpFileFaults,
-    Origin,
-    TypeTables,
-    checked_cells,
-    origin_of,
-    text,
-    texts,
-    wholes,
-)
-from plant_models.library.hump_elements import ElementFault, element_from
+from plant_models.library.hump_cells import SOURCED, Cell, Cells, Origin, TypeTables, origin_of
+from plant_models.library.hump_faults import FoundFaults
+from plant_models.library.hump_forms import text, texts
+from plant_models.library.hump_rows import HumpRows
 from plant_models.library.library import BUILT_IN, Library
 from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import SourcedValue, Value
-from plant_models.library.toml_lines import Place, line_of
+from plant_models.library.toml_lines import Place, line_among, places_of
 from plant_models.library.type_file import HUMPS, TypeFileError
 
 FORMAT: Final = "hump"
 VERSION: Final = 1
-MOST_TOLD: Final = 20
+MOST_TOLD: Final = 50
 """Faults that are told at once; one mistake may stand in hundreds of rows."""
 
 TOP: Final = ("format", "version", "title", "notes", "source", "confidence", "for_cars", "type", "hump")
@@ -44,7 +33,7 @@ class HumpEntry:
     """A hump by name and `title`; `provenance`: every number of its file, under its key there, with origin.
 
     A value of several numbers is told as they stand in the file, one after the other. `cars`: those that it is for,
-    None where the file does not say.
+    None where the file does not say; `remarks`: a sentence for each key of the file that has no effect.
     """
 
     name: str
@@ -53,6 +42,7 @@ class HumpEntry:
     graph: HumpGraph
     provenance: tuple[SourcedValue, ...] = ()
     cars: ForCars | None = None
+    remarks: tuple[str, ...] = ()
 
 
 def load_hump(name: str, library: Library = BUILT_IN) -> HumpEntry:
@@ -73,129 +63,100 @@ def hump_names(library: Library = BUILT_IN) -> tuple[str, ...]:
 def hump_from(tree: Mapping[str, Any], content: str, name: str, place: str) -> HumpEntry:
     """The hump that the TOML `content` of the file `place` describes, parsed into `tree`.
 
-    `TypeFileError`, of its rows with a sentence for each fault: file, line, element, value, what is allowed.
+    `TypeFileError` with a sentence for every fault: file, line, element, value, what is allowed.
     """
-    try:
-        return entry_from(dict(tree), name)
-    except HumpFileFault as fault:
-        faults: tuple[HumpFileFault, ...] = (fault,)
-    except HumpFileFaults as found:
-        faults = found.faults
+    return hump_at(tree, lambda: places_of(content), name, place)
+
+
+def hump_at(tree: Mapping[str, Any], lines_of: Callable[[], Mapping[Place, int]], name: str, place: str) -> HumpEntry:
+    """The same of a `tree` whose places stand on the lines that `lines_of` gives."""
+    found = FoundFaults()
+    entry = entry_from(dict(tree), name, found)
+    if entry is not None and not found:
+        return entry
+    lines = lines_of()
     told = [
-        f"{place}, line {line_of(content, each.place)}: {label(tree, each.place)}{each}" for each in faults[:MOST_TOLD]
+        f"{place}, line {line_among(lines, each.place) or 1}: {label(tree, each.place)}{each}"
+        for each in found.faults[:MOST_TOLD]
     ]
-    more = len(faults) - MOST_TOLD
+    more = len(found) - MOST_TOLD
     raise TypeFileError(*told, *([f"{place}: {more} more faults"] if more > 0 else []))
 
 
-def entry_from(tree: dict[str, Any], name: str) -> HumpEntry:
-    """The hump in `tree`; `HumpFileFault`."""
+def entry_from(tree: dict[str, Any], name: str, found: FoundFaults) -> HumpEntry | None:
+    """The hump in `tree`; what is at fault goes to `found`, and then there may be none."""
+    if not {"format", "version", "hump"} & tree.keys():
+        found.add((), f'key format is missing; a hump file has format = "{FORMAT}"')
+        return None
     for key in tree:
         if key not in TOP:
-            raise HumpFileFault((key,), f"unknown key {shown_key(key)}; {near_miss(key[:40], TOP)}")
+            found.add((key,), f"unknown key {shown_key(key)}; {near_miss(key[:40], TOP)}")
     for key, wanted in (("format", FORMAT), ("version", VERSION)):
         if key not in tree:
-            raise HumpFileFault((), f"key {key} is missing; a hump file has {key} = {wanted!r}".replace("'", '"'))
-        if tree[key] != wanted or type(tree[key]) is not type(wanted):
+            found.add((), f"key {key} is missing; a hump file has {key} = {wanted!r}".replace("'", '"'))
+        elif tree[key] != wanted or type(tree[key]) is not type(wanted):
             told = f"{key} is {shown(tree[key])}; this program reads hump files of {key} {wanted!r}"
-            raise HumpFileFault((key,), told.replace("'", '"'))
+            found.add((key,), told.replace("'", '"'))
     title = text(tree.get("title"))
     if title is None:
-        raise HumpFileFault(("title",), "title must be a non-empty string of printable characters")
+        found.add(("title",), "title must be a non-empty string of printable characters")
     notes = texts(tree.get("notes", []))
     if notes is None:
-        raise HumpFileFault(("notes",), "notes must be a list of non-empty strings of printable characters")
+        found.add(("notes",), "notes must be a list of non-empty strings of printable characters")
+    cars: ForCars | None = None
     try:
         cars = for_cars(tree["for_cars"]) if "for_cars" in tree else None
     except ValueError as error:
-        raise HumpFileFault(("for_cars",), str(error)) from None
-    origin = origin_of(tree, (), Origin())
-    types = TypeTables(table_of(tree, "type", {}), origin, set())
-    hump = table_of(tree, "hump", None)
-    graph, cells = graph_from(hump, types, origin)
-    unused = next((key for key in types.tables if key not in types.used), None)
-    if unused is not None:
-        raise HumpFileFault(("type", unused), f"no element names the type {shown_key(unused)}; take it out")
-    return HumpEntry(name, title, notes, graph, tuple(provenance(cells)), cars)
+        found.add(("for_cars",), str(error))
+    origin = origin_of(tree, (), Origin(), found)
+    types = TypeTables(table_of(tree, "type", {}, found), origin, found)
+    hump = table_of(tree, "hump", None, found)
+    if not isinstance(tree.get("hump"), dict):
+        return None
+    rows = HumpRows.read(hump, types, origin)
+    graph = rows.graph()
+    for key in types.tables:
+        if key not in types.used:
+            found.add(("type", key), f"no element names the type {shown_key(key)}; take it out")
+    if graph is None:
+        return None
+    remarks = tuple(without_effect(rows, types))
+    return HumpEntry(name, title or "", notes or (), graph, tuple(provenance(rows.cells)), cars, remarks)
 
 
-def table_of(tree: Mapping[str, Any], key: str, absent: dict[str, Any] | None) -> dict[str, Any]:
-    """The table under `key`."""
+def table_of(
+    tree: Mapping[str, Any], key: str, absent: dict[str, Any] | None, faults: FoundFaults
+) -> Mapping[str, Any]:
+    """The table under `key`; an empty one where it is at fault."""
     found = tree.get(key, absent)
+    if isinstance(found, dict):
+        return found
     if found is None:
-        raise HumpFileFault((), f"the table [{key}] is missing")
-    if not isinstance(found, dict):
-        raise HumpFileFault((key,), f"{key} is {shown(found)}; it must be a table")
-    return found
+        faults.add((), f"the table [{key}] is missing")
+    else:
+        faults.add((key,), f"{key} is {shown(found)}; it must be a table")
+    return {}
 
 
-def graph_from(hump: Mapping[str, Any], types: TypeTables, origin: Origin) -> tuple[HumpGraph, list[Cells]]:
-    """The graph that the table `[hump]` describes, and the cells of its rows."""
-    known = ("leads", *ELEMENTS)
-    for key in hump:
-        if key not in known:
-            raise HumpFileFault(("hump", key), f"unknown key {shown_key(key)}; {near_miss(key[:40], known)}")
-    leads = wholes(hump.get("leads"))
-    if leads is None:
-        raise HumpFileFault(("hump", "leads"), "leads must be a list of whole numbers, the signal at each crest")
-    rows: dict[int, Row] = {}
-    faults: dict[tuple[Place, str], HumpFileFault] = {}  # that of a type is told once, however many rows name it
-    for kind in ELEMENTS:
-        listed = hump.get(kind, [])
-        if not isinstance(listed, list):
-            raise HumpFileFault(("hump", kind), f"{kind} is {shown(listed)}; it must be a list of tables")
-        for number, raw in enumerate(listed):
-            try:
-                row = row_from(raw, ("hump", kind, number), origin, types)
-                require_new(row, rows)
-                rows[row.vertex.number] = row
-            except HumpFileFault as fault:
-                faults.setdefault((fault.place, str(fault)), fault)
-    if faults:
-        raise HumpFileFaults(*faults.values())
-    try:
-        return HumpGraph(tuple(row.vertex for row in rows.values()), leads), [row.cells for row in rows.values()]
-    except HumpError as error:
-        of_row = None if error.element is None else rows.get(error.element)
-        at = ("hump", "leads") if of_row is None else of_row.place
-        raise HumpFileFault(at, unnamed(error, str(at[1]))) from None
+def without_effect(rows: HumpRows, types: TypeTables) -> Iterator[str]:
+    """A sentence for each key of a type that counts in no row."""
+    counted = {cell.place for cells in rows.cells for cell in leaves(cells)}
+    for name in sorted(types.used):
+        for place in places_in(types.tables[name], ("type", name)):
+            if not any(each[: len(place)] == place or place[: len(each)] == each for each in counted):
+                key = ".".join(map(str, place))
+                yield f"{key} has no effect: every row that names the type has its own"
 
 
-@dataclass(frozen=True)
-class Row:
-    """A row of the table `[hump]`: the element, its cells, and the place of the row in the file."""
-
-    vertex: Vertex
-    cells: Cells
-    place: Place
-
-
-def row_from(raw: object, place: Place, origin: Origin, types: TypeTables) -> Row:
-    """The row `raw` at `place`; `HumpFileFault`."""
-    kind = str(place[1])
-    cells = checked_cells(raw, ELEMENTS[kind], place, origin, types)
-    try:
-        return Row(element_from(kind, cells), cells, place)
-    except ElementFault as fault:
-        raise HumpFileFault(fault.place or place, str(fault)) from None
-    except HumpError as error:  # a number out of its group, whose sentence names the element itself
-        raise HumpFileFault((*place, "number"), unnamed(error, kind)) from None
-
-
-def require_new(row: Row, rows: Mapping[int, Row]) -> None:
-    """`HumpFileFault` where one of the `rows` before has the number of `row`."""
-    same = rows.get(row.vertex.number)
-    if same is not None:
-        raise HumpFileFault(
-            (*row.place, "number"),
-            f"{same.place[1]}[{same.place[2]}] has the number {row.vertex.number}, too; numbers must be unique",
-        )
-
-
-def unnamed(error: HumpError, kind: str) -> str:
-    """The sentence of `error` without the element at its beginning, which the place tells."""
-    named = f"{kind} {error.element}: "
-    return str(error).removeprefix(named)
+def places_in(table: Mapping[str, Any], place: Place) -> Iterator[Place]:
+    """The place of each value in nested tables, but for origins; a number with its origin is one value."""
+    for key, value in table.items():
+        if key in SOURCED[1:]:
+            continue
+        if isinstance(value, dict) and "value" not in value:
+            yield from places_in(value, (*place, key))
+        else:
+            yield (*place, key)
 
 
 def label(tree: Mapping[str, Any], place: Place) -> str:
@@ -204,7 +165,8 @@ def label(tree: Mapping[str, Any], place: Place) -> str:
         return ": ".join((f"type.{shown_key(str(place[1]))}", *(str(key) for key in place[2:-1]), ""))
     if place[:1] == ("hump",) and len(place) > 2:
         kind, row = place[1], place[2]
-        raw = tree["hump"][kind][row]
+        listed = tree["hump"][kind]
+        raw = listed[row] if isinstance(listed, list) and isinstance(row, int) else None
         given = raw.get("number") if isinstance(raw, dict) else None
         usable = isinstance(given, int) and not isinstance(given, bool)
         name = f"{kind} {given}" if usable else f"{kind}[{row}]"

@@ -7,20 +7,9 @@ from typing import Any, Final
 
 from plant_models.hump import GROUPS
 from plant_models.library.data_file import number, number_or_pairs, pairs
-from plant_models.library.hump_cells import (
-    CONTROLLERS,
-    ELEMENTS,
-    Key,
-    Schema,
-    some_numbers,
-    some_pairs,
-    text,
-    texts,
-    triples,
-    truth,
-    whole,
-)
+from plant_models.library.hump_cells import CONTROLLERS, ELEMENTS, PROFILE, Key, Schema
 from plant_models.library.hump_entry import FORMAT, VERSION
+from plant_models.library.hump_forms import some_numbers, some_pairs, text, texts, triples, truth, whole
 from plant_models.library.sourced_value import CONFIDENCES
 
 Json = dict[str, Any]
@@ -82,6 +71,7 @@ def hump_schema() -> Json:
                 "required": ["leads"],
                 "properties": {
                     "leads": {"type": "array", "items": {"type": "integer"}, "minItems": 1},
+                    "profile_from_crest": cell_schema(PROFILE),
                     **{kind: {"type": "array", "items": element_schema(kind)} for kind in ELEMENTS},
                 },
             },
@@ -121,6 +111,8 @@ def table_schema(schema: Schema) -> Json:
 def cell_schema(key: Key) -> Json:
     """A value, or where it is a number, a table of it and its origin."""
     plain = FORMS[key.form]
+    if key.range is not None:
+        plain = {**plain, "minimum": key.range.low, "maximum": key.range.high}
     if not key.unit:
         return plain
     sourced = {

@@ -30,7 +30,11 @@ def line_of(text: str, place: Sequence[str | int]) -> int:
 
 def line_around(text: str, place: Sequence[str | int]) -> int | None:
     """The same, None where nothing around it stands on a line."""
-    lines = places_of(text)
+    return line_among(places_of(text), place)
+
+
+def line_among(lines: Mapping[Place, int], place: Sequence[str | int]) -> int | None:
+    """The same, of a text with these `lines`."""
     wanted = tuple(place)
     while wanted and wanted not in lines:
         wanted = wanted[:-1]

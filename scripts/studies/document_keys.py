@@ -21,12 +21,15 @@ from synth.frame.settings.told import Told, Usual, told_key, told_numbers, words
 from synth.frame.settings.toml_text import value_text
 from synth.hump.configuration.settings import HumpTrialSettings
 from synth.hump.configuration.template import usual_trial
+from synth.hump.making.short_file import NEEDED
+from synth.hump.making.short_hump import EXAMPLE
 from synth.retarder.configuration.point_sensors.settings import DEFAULT_WHEEL_SENSOR, PointSensorSettings
 
 DECLARED: Final[dict[str, Callable[[], tuple[Section, Usual]]]] = {
     "aim": lambda: (AimFileSettings(), usual_aim()),
     "computer": lambda: (ComputerSettings(), NOTHING),
     "hump": lambda: (HumpTrialSettings(), usual_trial()),
+    "short-hump": lambda: (EXAMPLE.model_copy(update=dict.fromkeys((*NEEDED, "tracks", "position"))), NOTHING),
     "sensors": lambda: (
         PointSensorSettings.model_construct(path_m=()),
         told_numbers(load_wheel_sensor(DEFAULT_WHEEL_SENSOR).provenance),

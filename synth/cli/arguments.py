@@ -20,7 +20,7 @@ Config = Annotated[
 
 NAME_OPTIONS = (
     "--retarder", "--position", "--car", "--sensor", "--wheel-sensor", "--sensors", "--weight-categories", "--aim",
-    "--hump", "--computer", "--sweep",
+    "--hump", "--short-hump", "--computer", "--sweep",
 )  # fmt: skip
 """Options of init whose value may be left out."""
 

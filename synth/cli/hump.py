@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from synth.frame.terminal.printed_page import print_page
 from synth.frame.terminal.telling import OK
@@ -20,52 +19,29 @@ MOST_TOLD = 30
 
 
 def check_command(source: Path, as_json: bool) -> int:
-    """Tell what the hump in `source` has, and what its file leaves open; `InputError` for the first fault of it."""
-    from synth.hump.control.hump_document import checked_document
+    """Tell what the hump in `source` has, where everything stands, and what is likely a mistake; `InputError` with all
+    faults of it."""
+    from synth.frame.summary import figures_of, plain, tables_of
+    from synth.frame.terminal.told_print import brief_exhibits
+    from synth.hump.checking.checked_hump import checked_hump
     from synth.hump.hump_file import read_hump
+    from synth.retarder.configuration.plant_fault import in_file
 
     read = read_hump(source)
-    found = checked_document(read.entry)
+    with in_file(str(source)):
+        checked = checked_hump(read.entry)
+    found = checked.exhibits()
     if as_json:
-        print(json.dumps({"path": str(source), **found, "ignored": read.ignored}, indent=1, ensure_ascii=False))
+        document = {"path": str(source), **figures_of(found), **tables_of(found), "ignored": read.ignored}
+        print(json.dumps(plain(document), indent=1, ensure_ascii=False))
         return OK
-    page = check_words(found)
+    page = [*brief_exhibits(found, "--json"), *(f"warning: {each.sentence}" for each in checked.warnings)]
     if read.ignored:
         more = len(read.ignored) - MOST_TOLD
         rest = f" and {more} more" if more > 0 else ""
         page.append(f"  read over: {', '.join(read.ignored[:MOST_TOLD])}{rest}")
     print_page(*page)
     return OK
-
-
-def check_words(found: dict[str, Any]) -> list[str]:
-    """What was found, a line a fact."""
-    numbers = found["numbers"]
-    return [
-        f"{found['title']}: a hump without faults",
-        f"  tracks: {found['tracks']}; switches: {found['switches']}; retarder positions: {found['retarders']}; "
-        f"sections of track: {found['sections']}; signals: {found['signals']}",
-        f"  elements with axle counters at their joints: {found['axle_counters']}; point sensors: "
-        f"{found['point_sensors']}; radars: {found['radars']}",
-        f"  routes from signal {' and '.join(map(str, found['leads']))}: {found['routes']}; "
-        f"{span(found['route_length_m'], ' m')}, {span(found['switches_on_a_route'], ' switches')} each",
-        f"  numbers of the file: {numbers['cited']} cited, {numbers['assumed']} assumed, {numbers['without_source']} "
-        "without a source"
-        if any(numbers.values())
-        else "  the file does not tell where its numbers are from",
-        f"  retarders with a book of controller tables: {ranges(found['retarders_with_book']) or 'none'}",
-        *(
-            f"  retarders without a book, standard deviation of their exit speeds {std} m/s: {ranges(numbers)}"
-            for std, numbers in found["retarders_by_exit_std_m_s"].items()
-        ),
-        f"  retarders without aim tables: {ranges(found['retarders_without_aim_tables']) or 'none'}",
-    ]
-
-
-def span(ends: Sequence[float], unit: str) -> str:
-    """'5 switches', or '3 to 5 switches'."""
-    low, high = ends
-    return f"{low:g}{unit}" if low == high else f"{low:g} to {high:g}{unit}"
 
 
 def routes_command(source: Path, as_json: bool) -> int:
@@ -120,19 +96,24 @@ def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -
 
 
 def export_command(source: Path, output: Path) -> int:
-    """Write the hump in `source` as railML into the file `output`."""
+    """Write the hump in `source` into the file `output`: railML, CSV or TOML, as its name ends."""
     from synth.frame.input_error import InputError
     from synth.frame.new_file import require_new
-    from synth.hump.hump_file import RAILML_SUFFIXES, read_hump
+    from synth.hump.forms.hump_csv import to_csv
+    from synth.hump.forms.hump_tree import tree_toml
+    from synth.hump.hump_file import CSV_SUFFIX, RAILML_SUFFIXES, read_hump
     from synth.hump.railml.write import to_railml
     from tuning_tables.atomic_file import write_atomically
 
-    if output.suffix not in RAILML_SUFFIXES:
+    texts = {CSV_SUFFIX: to_csv, ".toml": tree_toml}
+    if output.suffix not in (*RAILML_SUFFIXES, *texts):
         raise InputError(
-            f"--output is {output}; the name of a railML file must end with {' or '.join(RAILML_SUFFIXES)}"
+            f"--output is {output}; its name must end with {', '.join((*RAILML_SUFFIXES, CSV_SUFFIX))} or .toml"
         )
     require_new(output)
-    write_atomically(output, to_railml(read_hump(source).entry))
+    hump = read_hump(source).entry
+    railml = output.suffix in RAILML_SUFFIXES
+    write_atomically(output, to_railml(hump) if railml else texts[output.suffix](hump).encode())
     print(output)
     return OK
 

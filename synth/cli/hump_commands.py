@@ -15,7 +15,7 @@ from synth.frame.command_line import add_listed, listed_group
 app = typer.Typer(cls=listed_group(HUMP), help="Check, list and draw a hump; hump whole trains over it.")
 
 Hump = Annotated[
-    Path, typer.Argument(metavar="FILE|NAME", help="A hump file (.toml, .railml), or a hump of the library.")
+    Path, typer.Argument(metavar="FILE|NAME", help="A hump file (.toml, .railml, .csv), or a hump of the library.")
 ]
 
 
@@ -60,9 +60,11 @@ def draw(
 @app.command()
 def export(
     source: Hump,
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE.railml", help="The railML file.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE", help="The new file: .railml, .csv or .toml.")
+    ],
 ) -> int:
-    """Write a hump as railML 3; retarders and the like in a namespace of their own."""
+    """Write a hump as railML 3, as a table for spreadsheets with a row an element, or as TOML."""
     from synth.cli.hump import export_command
 
     return export_command(source, output)

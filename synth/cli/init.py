@@ -45,6 +45,11 @@ CONFIGURATIONS: Final = {
         "synth.hump.configuration.settings:HumpTrialSettings",
         "synth.hump.configuration.template:default_trial_toml",
     ),
+    "short hump": Printed(
+        "Short hump file",
+        "synth.hump.making.short_hump:ShortHump",
+        "synth.hump.making.template:example_short_toml",
+    ),
     "computer": Printed(
         "Configuration of a control computer",
         "synth.computer.settings:ComputerSettings",
@@ -64,8 +69,9 @@ def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -
 
     `types`: by folder of the library, the type that is asked for; '' for a usual one, None for none. A position under
     "retarders" asks for a configuration with it. Under "aim" '' asks for an aim configuration, a name for the file of a
-    track or a car mix; under "hump" '' for a hump trial configuration, a name for the file of a hump; under "computer"
-    and "sweep" '' for theirs; under "point sensors" '' or the name of a position for one with point sensors.
+    track or a car mix; under "hump" '' for a hump trial configuration, a name for the file of a hump; under "short
+    hump", "computer" and "sweep" '' for theirs; under "point sensors" '' or the name of a position for one with point
+    sensors.
     """
     if show_list:
         return print_list(as_json)
@@ -83,7 +89,7 @@ def schema_command(types: dict[str, str | None]) -> int:
     if len(asked) > 1 or (asked and (asked[0] not in CONFIGURATIONS or types[asked[0]])):
         raise InputError(
             "init --schema: there are schemas of configurations; give it alone, or with --sensors, --aim, --hump, "
-            "--computer or --sweep"
+            "--short-hump, --computer or --sweep"
         )
     asked_of = CONFIGURATIONS[asked[0] if asked else ""]
     print(schema_of(resolve_name(asked_of.model), f"{asked_of.title} of retarder-synth"), end="")
@@ -164,6 +170,7 @@ NAMED: Final[Mapping[str, Callable[[str], tuple[str, str]]]] = {
     "aim": aim_type,
     "hump": hump_type,
     "computer": partial(no_types, "--computer", "control computers"),
+    "short hump": partial(no_types, "--short-hump", "short humps"),
     "point sensors": sensors_file,
     "sweep": partial(no_types, "--sweep", "sweeps"),
 }

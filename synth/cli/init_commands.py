@@ -21,6 +21,7 @@ FILES = {
     "weight_categories": ("weight_categories", "File of a set of weight categories."),
     "aim": ("aim", "Aim configuration. With the name of a track or car mix: its file."),
     "hump": ("hump", "Hump trial configuration. With the name of a hump: its file."),
+    "short_hump": ("short hump", "Short file that hump make turns into a hump file."),
     "computer": ("computer", "Configuration of a control computer."),
     "sweep": ("sweep", "Table [sweep] of a configuration: what a sweep is over."),
 }

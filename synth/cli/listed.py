@@ -136,6 +136,13 @@ SWEEP: Final = (
 
 HUMP: Final = (
     Listed(
+        "hump make",
+        "synth.hump.making.make_command:COMMAND",
+        "synth.hump.making.make_options:MakeOptions",
+        "init --short-hump",
+        "Make a hump file, and its picture, from a short file: tracks, profile, places of switches and positions.",
+    ),
+    Listed(
         "hump simulate",
         "synth.hump.trains.simulate_command:COMMAND",
         "synth.hump.trains.simulate_options:SimulateOptions",

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from enum import Enum
 from importlib.metadata import version
 from typing import Any, Final
 
 from synth.frame.command import Head
-from synth.frame.exhibits import Sentence, Table, exhibits_of
+from synth.frame.exhibits import Exhibit, Sentence, Table, exhibits_of
 from synth.frame.interval import Interval
 from synth.frame.told import Told
 from tuning_tables.canonical import LARGEST_EXACT_INTEGER, canonical_json
@@ -31,10 +31,8 @@ def summary_of(told: Told, hashes: Mapping[str, str]) -> bytes:
         **summary_head(told.command, told.head, told.created),
         "accepted": told.verdict.accepted,
         "limits": [asdict(limit) for limit in told.verdict.limits],
-        "figures": {
-            name: figure for each in exhibits if isinstance(each, Sentence) for name, figure in each.figures.items()
-        },
-        "tables": {each.name: rows_of(each) for each in exhibits if isinstance(each, Table)},
+        "figures": figures_of(exhibits),
+        "tables": tables_of(exhibits),
         "files": dict(hashes),
     }
     return canonical_json(plain(document)) + b"\n"
@@ -53,6 +51,16 @@ def summary_head(command: str, head: Head, created: str) -> dict[str, Any]:
         "warnings": head.warnings,
         "parameters_assumed": [value.key for value in head.parameters if value.assumed],
     }
+
+
+def figures_of(exhibits: Iterable[Exhibit]) -> dict[str, Any]:
+    """The figures of all sentences by name."""
+    return {name: figure for each in exhibits if isinstance(each, Sentence) for name, figure in each.figures.items()}
+
+
+def tables_of(exhibits: Iterable[Exhibit]) -> dict[str, list[dict[str, Any]]]:
+    """The rows of all tables by name."""
+    return {each.name: rows_of(each) for each in exhibits if isinstance(each, Table)}
 
 
 def rows_of(table: Table) -> list[dict[str, Any]]:

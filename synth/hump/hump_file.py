@@ -1,4 +1,4 @@
-"""A hump from the user's file or from the library: TOML or railML → `ReadHump`, every fault as one sentence."""
+"""A hump from the user's file or from the library: TOML, railML or CSV → `ReadHump`, every fault as one sentence."""
 
 from __future__ import annotations
 
@@ -13,11 +13,16 @@ from plant_models.library.hump_entry import load_hump as load_of_library
 from plant_models.library.near_miss import near_miss
 from plant_models.library.type_file import HUMPS
 from synth.frame.input_error import InputError
-from synth.frame.settings.toml_file import read_text, toml_tree
+from synth.frame.settings.toml_file import read_text, read_toml
+from synth.hump.file_kind import FileKind, require_kind
+from synth.hump.forms.hump_csv import from_csv
 from synth.hump.railml.read import from_railml
 from synth.retarder.configuration.plant_fault import in_file
 
 RAILML_SUFFIXES: Final = (".railml", ".xml")
+CSV_SUFFIX: Final = ".csv"
+OTHER_SUFFIXES: Final = (*RAILML_SUFFIXES, CSV_SUFFIX)
+"""Of files of humps that are no TOML."""
 
 
 @dataclass(frozen=True)
@@ -52,9 +57,10 @@ def read_graph(source: Path) -> ReadHump:
         hint = near_miss(name, hump_names())
         raise InputError(f"{name}: there is no such file, and no such hump in the library; {hint}")
     text = read_text(source)
-    railml = source.suffix in RAILML_SUFFIXES
-    hump, ignored = from_railml(text, source.stem, name) if railml else (parse_hump(text, source.stem, name), ())
-    return ReadHump(hump, ignored)
+    if source.suffix in RAILML_SUFFIXES:
+        return ReadHump(*from_railml(text, source.stem, name))
+    read = from_csv if source.suffix == CSV_SUFFIX else parse_hump
+    return ReadHump(read(text, source.stem, name))
 
 
 def hump_text(source: Path) -> str:
@@ -65,18 +71,33 @@ def hump_text(source: Path) -> str:
 
 
 def parse_hump(text: str, name: str, file: str) -> HumpEntry:
-    """The hump `name` written as TOML in `text`; `file`: what messages call it."""
-    with in_file(file):
-        return hump_from(toml_tree(text, file), text, name, file)
+    """The hump `name` written as TOML in `text`; `file`: what messages call it. `InputError` with all that is at fault:
+    what is no TOML, and where it is known what was meant there, what would be at fault then."""
+    read = read_toml(text, file)
+    told = read.faults
+    if read.tree is not None:
+        require_kind(read.tree, file, FileKind.HUMP)
+        try:
+            with in_file(file):
+                hump = hump_from(read.tree, read.text, name, file)
+        except InputError as fault:
+            told += fault.sentences
+        else:
+            if not told:
+                return hump
+    raise InputError(*told)
 
 
 def require_files(hump: HumpEntry, source: Path) -> None:
-    """`InputError` for a file that a retarder names and that is not there; paths begin at the folder of `source`."""
+    """`InputError` for files that retarders name and that are not there; paths begin at the folder of `source`."""
+    missing = []
     for retarder in hump.graph.retarders:
         books = [("book", retarder.book)] if retarder.book is not None else []
         for key, file in (*books, *(("aim_tables", file) for file in retarder.aim_tables)):
             if not (source.parent / file).is_file():
-                raise InputError(
+                missing.append(
                     f"{source}: retarder {retarder.number}: {key} names {file}, and there is no such file; make it, or "
                     "take it out"
                 )
+    if missing:
+        raise InputError(*missing)

@@ -22,7 +22,9 @@ from synth.computer.template import default_computer_toml
 from synth.frame.asked_file import asked_of
 from synth.frame.terminal.telling import say
 from synth.hump.configuration.template import default_trial_toml
+from synth.hump.forms.hump_csv import to_csv
 from synth.hump.hump_file import parse_hump
+from synth.hump.making.make_command import COMMAND as MAKE
 from synth.hump.railml.write import to_railml
 from synth.hump.trains.simulate_command import COMMAND as SIMULATE
 from synth.logs.loaded_passes import loaded_passes
@@ -35,6 +37,7 @@ from tests.attack.attempt import Kind, Reading
 from tests.attack.railml_attributes import attribute_kind
 from tests.attack.trains import trains_kind
 from tests.plant_models.hump.test_hump_file import SMALL
+from tests.synth.hump.making.test_hump_make import SHORT
 from tests.tuning_tables.pass_log.sample_logs import sample_log
 from tuning_tables.pass_log.log_files import write_log
 
@@ -96,6 +99,12 @@ def read_trial(folder: Path) -> str:
     return ""
 
 
+def read_short_hump(folder: Path) -> str:
+    """As `hump make`."""
+    MAKE.resolve(asked_of(MAKE, MAKE.options(config=folder / "short.toml"), "init --short-hump"))
+    return ""
+
+
 def read_aim(folder: Path) -> str:
     """As `aim`."""
     AIM.resolve(asked_of(AIM, AIM.options(config=folder / "aim.toml"), "init --aim"))
@@ -138,6 +147,11 @@ def plain(text: str) -> bytes:
 def railml() -> bytes:
     """The same hump as railML: grades, curves and a radar."""
     return to_railml(parse_hump(SMALL, "small", "small.toml"))
+
+
+def small_csv() -> bytes:
+    """The same hump as a table."""
+    return to_csv(parse_hump(SMALL, "small", "small.toml")).encode()
 
 
 def log_as(name: str) -> bytes:
@@ -195,6 +209,8 @@ def mapping_kind() -> Kind:
 KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "hump": lambda: file_kind("hump.toml", SMALL.encode(), partial(read_hump_file, name="hump.toml")),
     "railml": lambda: file_kind("hump.railml", railml(), partial(read_hump_file, name="hump.railml")),
+    "hump-csv": lambda: file_kind("hump.csv", small_csv(), partial(read_hump_file, name="hump.csv")),
+    "short-hump": lambda: file_kind("short.toml", SHORT.encode(), read_short_hump),
     "trial": lambda: file_kind("trial.toml", plain(default_trial_toml()), read_trial),
     "aim": lambda: file_kind("aim.toml", plain(default_aim_toml()), read_aim),
     "computer": lambda: file_kind("computer.toml", plain(default_computer_toml()), read_computer),

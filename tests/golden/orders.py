@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from tests.sweep.conftest import MEASURED as MEASURED_SPEED
 from tests.sweep.conftest import PLANT, SWEEP
+from tests.synth.hump.making.test_hump_make import SMALL as SHORT
 from tests.system.conftest import CLASS, SECOND_CLASS
 from tests.system.test_aim import SMALL as AIM
 from tests.system.test_computer import FEW as COMPUTER
@@ -26,6 +27,7 @@ INPUTS: Mapping[str, str] = {
     "sensors.toml": DUMPER + SENSORS,
     "sweep.toml": PLANT + SWEEP,
     "aim.toml": AIM,
+    "short.toml": SHORT,
     "trial.toml": TRIAL,
     "computer.toml": COMPUTER,
 }
@@ -55,6 +57,7 @@ KINDS = (
     "weight-categories",
     "aim",
     "hump",
+    "short-hump",
     "computer",
     "sweep",
 )
@@ -96,6 +99,7 @@ ORDERS: tuple[Order, ...] = (
     Order(f"export {PASSAGES} --format st", "export-passages-st"),
     Order("sensors plan dumper.toml --sensors 4-5 --workers 1", "planned"),
     Order("aim aim.toml", "aimed"),
+    Order("hump make short.toml", "made"),
     Order("hump check medium"),
     Order("hump routes medium"),
     Order("hump draw medium", "drawn"),

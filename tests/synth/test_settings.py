@@ -246,11 +246,6 @@ def test_every_fault_is_told_in_a_line_of_its_own() -> None:
     ]  # fmt: skip
 
 
-def test_bad_syntax_names_the_line() -> None:
-    with pytest.raises(InputError, match=r"my.toml: this is not valid TOML: .*line 2.*; correct the file there"):
-        parse_config("[grid]\npath_step_m = = 2\n", "my.toml")
-
-
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"nowhere.toml: there is no such file; write one with 'retarder-synth init"):
         load_config(tmp_path / "nowhere.toml")

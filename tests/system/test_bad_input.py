@@ -29,7 +29,7 @@ CONFIGURATIONS = {
     "not a number": (
         changed(CLASS, ("mass_t = 22", "mass_t = nan")), "cut[0].mass_t is nan; it must be a finite number"
     ),
-    "no TOML": (CLASS + "[grid\n", "not valid TOML"),
+    "no TOML": (CLASS + "[other\n", "not valid TOML"),
     "too fine a grid": (
         changed(
             CLASS,

@@ -20,6 +20,7 @@ from synth.cli import main
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import results_directory
 from synth.hump.hump_file import hump_text
+from synth.hump.making.template import example_short_toml
 from tests.system.conftest import CLASS, SECOND_CLASS, Command, changed
 
 SENSORS = """\
@@ -38,6 +39,7 @@ LIBRARY = 'library = ["types/"]\n'
 TABLE = "gondola-4-22t-to-1.5-m-s"
 INPUTS = (
     "yard.toml", "points.toml", "own.toml", "sweep.toml", "aim.toml", "computer.toml", "trial.toml", "hump.toml",
+    "short.toml",
     "train.csv", "book.h5", "table.json", "log.csv", "log.h5", "mapping.toml",
 )  # fmt: skip
 READ_BY = {"own.toml": OWN_CAR, "sweep.toml": OWN_CAR, "trial.toml": "hump.toml"}
@@ -86,6 +88,7 @@ DIRECTORIES = (
     Writing(("hump", "simulate", "trial.toml", "--list", "train.csv"), "inputs/config.toml"),
     Writing(("hump", "speed", "trial.toml"), "sheets/program.csv"),
     Writing(("hump", "draw", "hump.toml"), "hump-hump.svg"),
+    Writing(("hump", "make", "short.toml"), "report.html"),
     Writing(("identify", "log.csv", "--config", "own.toml", "--mapping", "mapping.toml"), "config.toml"),
     Writing(("watch", "log.csv", "--config", "yard.toml", "--reference", "log.h5"), "sheets/passes.csv"),
     Writing(("retune", "log.csv", "--config", "yard.toml", "--table", "book.h5"), "book.h5"),
@@ -119,6 +122,7 @@ def inputs(tuned_once: tuple[Path, int], tmp_path_factory: pytest.TempPathFactor
         "computer.toml": "[uncertainty]\ndraws = 200\nsobol_points = 16\n",
         "trial.toml": 'hump = "hump.toml"\n[trains]\nnumber = 2\n[aim]\ndesign_cuts = 200\n',
         "hump.toml": hump_text(Path("medium")),
+        "short.toml": example_short_toml(),
         "train.csv": "cut,cars,axles,mass_t,category,track\n1,1,4,22,Л,1\n2,1,4,22,Л,2\n",
         "mapping.toml": '[columns]\ncut_id = "cut_id"\n',
     }

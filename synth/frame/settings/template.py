@@ -19,18 +19,27 @@ from synth.frame.settings.told import Told, Usual, told_key, whole, words_of
 from synth.frame.settings.toml_text import value_text
 
 HEAD = """\
-# {title} (retarder-synth {command}). Every line shows its default and may be left out.
+# {title} (retarder-synth {command}). {lines}
 # A comment says: meaning; then unit; limits, or of a number of the library its sensible range; origin. Sources stand
 # at the end. ASSUMED: no citable source stands behind the number; replace it by that of your yard."""
+
+DEFAULTS: Final = "Every line shows its default and may be left out."
 
 NOTHING: Final[Usual] = MappingProxyType({})
 
 
-def template(section: Section, title: str, command: str, usual: Usual = NOTHING, notes: Iterable[str] = ()) -> str:
+def template(
+    section: Section,
+    title: str,
+    command: str,
+    usual: Usual = NOTHING,
+    notes: Iterable[str] = (),
+    lines: str = DEFAULTS,
+) -> str:
     """The file; `title`: of what it is a configuration, `command`: what reads it, `usual`: what the library has in
-    place of keys that are left out, `notes`: on what it has."""
+    place of keys that are left out, `notes`: on what it has, `lines`: what its values are."""
     noted = (f"# Note: {note}" for note in notes)
-    text = (HEAD.format(title=title, command=command), *noted, *section_lines(section, "", usual))
+    text = (HEAD.format(title=title, command=command, lines=lines), *noted, *section_lines(section, "", usual))
     return "\n".join((*text, *source_lines(text))) + "\n"
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from synth.frame.input_error import InputError
 from synth.frame.machine_fault import MACHINE_FAULTS
+from synth.frame.settings.toml_syntax import syntax_faults
 from tuning_tables import DamagedTable
 from tuning_tables.excerpt import excerpt
 from tuning_tables.regular_file import read_regular_file
@@ -28,7 +29,7 @@ def read_text(path: Path, template: str = "init") -> str:
     `template`: the command that prints such a file.
     """
     try:
-        return read_regular_file(path, LARGEST_FILE_BYTES).decode("utf-8")
+        return read_regular_file(path, LARGEST_FILE_BYTES).decode("utf-8-sig")
     except FileNotFoundError:
         raise InputError(
             f"{path}: there is no such file; write one with 'retarder-synth {template} > {path.name}'"
@@ -49,18 +50,34 @@ def read_text(path: Path, template: str = "init") -> str:
 
 def toml_tree(text: str, file: str) -> Tree:
     """The tables in `text`; `file` is what messages call it. `InputError` for what is no TOML or beyond its limits."""
+    read = read_toml(text, file)
+    if read.faults or read.tree is None:
+        raise InputError(*read.faults)
+    return read.tree
+
+
+@dataclass(frozen=True)
+class ReadToml:
+    """A text with a sentence for each of its `faults`; `text` is as it was meant, with its `tree`, None where nobody
+    knows that."""
+
+    text: str
+    tree: Tree | None
+    faults: tuple[str, ...]
+
+
+def read_toml(text: str, file: str) -> ReadToml:
+    """The tables in `text`, and what is no TOML in it; `file` is what messages call it. `InputError` for what is beyond
+    the limits."""
     try:
-        tree = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(
-            f"{file}: this is not valid TOML: {excerpt(str(error), 200)}; correct the file there"
-        ) from None
+        found = syntax_faults(text, file)
     except RecursionError:
         raise InputError(f"{file}: its lists or tables are nested too deeply; at most {DEEPEST} are allowed") from None
     except ValueError:  # Python turns no longer text into a whole number
         raise InputError(f"{file}: a number in it has thousands of digits; whole numbers have at most 19") from None
-    require_bounded(tree, file)
-    return tree
+    if found.tree is not None:
+        require_bounded(found.tree, file)
+    return ReadToml(text if found.mended is None else found.mended, found.tree, found.sentences)
 
 
 def require_bounded(tree: Tree, file: str) -> None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
 from synth.frame.exhibits import Column, Row, Sentence, Table, exhibits_of
+from synth.frame.exhibits import Exhibit as Shown
 from synth.frame.terminal.printed_page import Exhibit, Verdict, print_page
 from synth.frame.terminal.printed_table import Column as PrintedColumn
 from synth.frame.terminal.printed_table import PrintedTable
@@ -20,18 +21,19 @@ def print_told(told: Told, directory: Path, files: Sequence[str]) -> None:
 
 def printed(told: Told) -> Iterator[Exhibit]:
     """The brief exhibits in their order, then the verdict."""
-    for each in exhibits_of(told.chapters):
+    yield from brief_exhibits(exhibits_of(told.chapters), "summary.json")
+    if told.verdict.limits:
+        yield Verdict(told.verdict.kept, told.verdict.sentence)
+
+
+def brief_exhibits(exhibits: Iterable[Shown], elsewhere: str) -> Iterator[Exhibit]:
+    """Those that a terminal shows; `elsewhere` names the place of what it has no room for."""
+    for each in exhibits:
         if isinstance(each, Sentence) and each.brief:
             yield each.text
         if isinstance(each, Table) and each.brief:
-            yield PrintedTable(
-                tuple(printed_column(column) for column in each.seen if not column.detail),
-                each.rows,
-                "summary.json",
-                each.title,
-            )
-    if told.verdict.limits:
-        yield Verdict(told.verdict.kept, told.verdict.sentence)
+            columns = tuple(printed_column(column) for column in each.seen if not column.detail)
+            yield PrintedTable(columns, each.rows, elsewhere, each.title)
 
 
 def printed_column(column: Column) -> PrintedColumn[Row]:

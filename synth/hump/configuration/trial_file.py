@@ -15,7 +15,7 @@ from synth.frame.settings.settings_file import BUILT_IN, settings_in
 from synth.frame.settings.toml_file import read_text, toml_tree
 from synth.frame.settings.toml_text import toml_text
 from synth.hump.configuration.settings import HumpTrialSettings
-from synth.hump.hump_file import RAILML_SUFFIXES, read_graph
+from synth.hump.hump_file import OTHER_SUFFIXES, read_graph
 from synth.retarder.configuration.own_types import with_own_types
 
 HUMP_FORMAT = "hump"
@@ -57,7 +57,7 @@ def trial_text(source: Path, template: str = "init --hump") -> str:
     """
     if str(source) in hump_names() and not source.exists():
         return toml_text({"hump": str(source)})
-    if source.suffix in RAILML_SUFFIXES or not (source.suffix or source.exists()):
+    if source.suffix in OTHER_SUFFIXES or not (source.suffix or source.exists()):
         return text_on(source)
     text = read_text(source, template)
     return text_on(source) if toml_tree(text, str(source)).get("format") == HUMP_FORMAT else text

@@ -13,6 +13,7 @@ from plant_models.hump import (
     Branch,
     Curve,
     Edge,
+    HumpErrors,
     HumpGraph,
     PointSensor,
     Radar,
@@ -48,8 +49,8 @@ def from_railml(text: str, name: str, file: str) -> tuple[HumpEntry, tuple[str, 
     vertices = tuple(vertices_of(tree))
     try:
         graph = HumpGraph(vertices, tuple(map(int, leads)))
-    except PlantError as error:
-        raise InputError(f"{file}: {error}") from None
+    except HumpErrors as faults:
+        raise InputError(*(f"{file}: {error}" for error in faults.errors)) from None
     hump = HumpEntry(name, title, notes, graph)
     return hump, (*tree.ignored, *require_agreement(tree, hump, edge_names(tree, graph)))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import random
+import re
 import tomllib
 from collections.abc import Iterator
 from typing import Any
@@ -291,6 +292,49 @@ def test_lines_of_places() -> None:
     assert line_of(LINES, ("unknown",)) == 1
 
 
+GRADES = re.compile(r"(?:, |\n)?grade_permille = (?:\{[^}]*\}|\[\[.*?\]\]|-?[\d.]+)")
+PROFILE = "[[0,45],[40,22],[66,12],[98,10],[138,8],[178,1.5],[338,0.8],[770,0]]"
+
+
+def with_profile(text: str, profile: str) -> str:
+    """A hump file with one profile in place of the grades of its edges."""
+    return GRADES.sub("", text).replace("[hump]\n", f"[hump]\nprofile_from_crest = {profile}\n")
+
+
+@pytest.mark.parametrize("name", ["large", "large-two-leads"])
+def test_one_profile_from_the_crest_gives_the_grades_of_all_edges(name: str) -> None:
+    hump = read(with_profile(BUILT_IN.file(HUMPS, name).text, PROFILE))
+    assert hump.graph == load_hump(name).graph
+    (told,) = (value for value in hump.provenance if value.unit == "m, permille")
+    assert told.key == "hump.profile_from_crest"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            SMALL.replace("[hump]\n", "[hump]\nprofile_from_crest = [[0, 45]]\n"),
+            "line 12: type.turnout: left: grade_permille is given",
+        ),
+        (with_profile(SMALL, "[[4, 45]]"), "profile_from_crest: the first begins at 4 m; it must begin at 0"),
+        (
+            with_profile(SMALL, "45"),
+            "profile_from_crest is 45; it must be a list of at least one pair of finite numbers",
+        ),
+        (
+            with_profile(SMALL, "[[0, 45]]")
+            .replace("leads = [201]", "leads = [201, 202]")
+            .replace("signal = [", "signal = [{ number = 202, next = { to = 1, length_m = 44 } }, "),
+            "switch 1: it lies 42 m from signal 201 and 44 m from signal 202",
+        ),
+    ],
+)
+def test_what_a_profile_may_not_be(text: str, words: str) -> None:
+    with pytest.raises(TypeFileError) as caught:
+        read(text)
+    assert any(words in sentence for sentence in caught.value.sentences)
+
+
 TREES = sized(500, 2000)
 
 
@@ -375,9 +419,9 @@ def test_all_rows_at_fault_are_told_each_with_its_line() -> None:
 
 
 def test_a_mistake_of_many_rows_does_not_fill_the_screen() -> None:
-    rows = "".join(f"[[hump.retarder]]\nnumber = {number}\n" for number in range(402, 442))
+    rows = "".join(f"[[hump.retarder]]\nnumber = {number}\n" for number in range(402, 472))
     with pytest.raises(TypeFileError) as caught:
         read(SMALL + rows)
     *told, last = caught.value.sentences
-    assert len(told) == 20
-    assert last.endswith(": 20 more faults")
+    assert len(told) == 50
+    assert last.endswith(" more faults")

@@ -219,7 +219,7 @@ def test_sections_of_a_track_belong_to_it() -> None:
         (lambda: Edge(1, 30.0, ((0.0, 60.5),)), "from -60 to 60"),
         (lambda: Edge(1, 30.0, ()), "there is none"),
         (lambda: Edge(1, 30.0, ((1.0, 1.0),)), "must begin at 0"),
-        (lambda: Edge(1, 30.0, ((0.0, 1.0), (30.0, 2.0))), "at least 0.1 m long"),
+        (lambda: Edge(1, 30.0, ((0.0, 1.0), (30.0, 2.0))), "at least 0.001 m long"),
         (lambda: Edge(1, 30.0, ((0.0, 1.0),), (Curve(0.0, 31.0, 2.0),)), "must not be beyond the end"),
         (lambda: Edge(1, 30.0, ((0.0, 1.0),), (Curve(0.0, 9.0, 2.0), Curve(8.0, 10.0, 2.0))), "before the one ahead"),
         (lambda: Edge(1, 30.0, ((0.0, 1.0),), (), (PointSensor(31.0),)), "must not be beyond the end"),

@@ -1,0 +1,1 @@
+"""What a hump file says, and what is likely wrong in it though nothing forbids it."""

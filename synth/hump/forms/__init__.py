@@ -1,0 +1,1 @@
+"""A hump in other forms than the file that it came from: rows of a table, TOML."""

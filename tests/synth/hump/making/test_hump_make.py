@@ -1,0 +1,171 @@
+"""`hump make`: the short file of a hump of the library gives that hump; any other is refused in sentences or made."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from plant_models.hump import Retarder, Route
+from plant_models.library.hump_entry import load_hump
+from synth.cli import main
+from synth.frame.input_error import InputError
+from synth.hump.checking.checked_hump import checked_hump
+from synth.hump.hump_file import parse_hump
+from synth.hump.making.hump_toml import hump_toml
+from synth.hump.making.short_file import read_short_hump
+from synth.hump.making.short_hump import EXAMPLE
+from synth.hump.making.template import example_short_toml
+from synth.hump.making.track_tree import Fork, Tree, levels_needed, track_tree
+from tests.effort import sized
+from tests.synth.hump.making.random_shorts import random_short
+
+SHORT = """\
+bunches = [5, 6, 5]
+profile_from_crest = [[0, 42], [32, 24], [58, 11], [92, 9], [130, 7], [170, 1.5], [290, 1.0]]
+switches_m = [44, 100, 176, 206, 240]
+throw_s = 0.8
+tracks_from_m = 310
+track_length_m = 600
+[[position]]
+type = "knp-5-bunch"
+from_m = 60
+to_m = 86
+[[position]]
+type = "knp-5-bunch"
+from_m = 136
+"""
+
+
+def turned_deg(route: Route) -> float:
+    return sum(bend.turn_deg for bend in route.roll_track.bends)
+
+
+def test_the_short_file_of_medium_gives_medium() -> None:
+    short = read_short_hump(example_short_toml(), "medium.toml")
+    assert short == EXAMPLE
+    made, known = parse_hump(hump_toml(short, "medium.toml"), "made", "made.toml"), load_hump("medium")
+    assert made.graph.tracks == known.graph.tracks
+    for track in known.graph.tracks:
+        ours, theirs = made.graph.route(201, track), known.graph.route(201, track)
+        assert [(e.number, e.at_m, e.position) for e in ours.elements] == [
+            (e.number, e.at_m, e.position) for e in theirs.elements
+        ]
+        assert ours.roll_track.profile == theirs.roll_track.profile
+        assert turned_deg(ours) == pytest.approx(turned_deg(theirs))
+        assert ours.length_m == theirs.length_m
+        assert ours.yard_from_m == pytest.approx(theirs.yard_from_m)
+    throw = next(value for value in made.provenance if value.key == "type.turnout.throw_s")
+    assert throw.assumed  # the tool's own number, though the short file repeats it
+
+
+def test_unequal_bunches_part_first_and_no_way_is_longer_than_it_must_be() -> None:
+    hump = parse_hump(hump_toml(read_short_hump(SHORT, "s.toml"), "s.toml"), "s", "s.toml")
+    routes = hump.graph.routes(201)
+    assert {tuple(route.positions)[:1] for route in routes.values()} == {(1,)}
+    bunch = {track: route.code[: 2 if track <= 11 else 1] for track, route in routes.items()}
+    assert [bunch[track] for track in range(1, 17)] == ["00"] * 5 + ["01"] * 6 + ["1"] * 5
+    places = {element.at_m for route in routes.values() for element in route.elements if element.position is not None}
+    assert places == {44.0, 100.0, 176.0, 206.0, 240.0}
+    of_position = [e.number for e in routes[16].elements if isinstance(e.vertex, Retarder)]
+    assert of_position == [402, 413]
+
+
+def leaves(tree: Tree, level: int) -> Iterator[int]:
+    """Tracks from the left; levels must increase."""
+    if isinstance(tree, Fork):
+        assert tree.level >= level
+        yield from leaves(tree.left, tree.level + 1)
+        yield from leaves(tree.right, tree.level + 1)
+    else:
+        yield tree.track
+
+
+@pytest.mark.parametrize("bunches", [[1], [2], [16], [5, 6, 5], [1, 9], [3] * 7, [199]])
+def test_tracks_stand_in_order_behind_as_few_switches_as_may_be(bunches: list[int]) -> None:
+    assert list(leaves(track_tree(bunches), 0)) == list(range(1, sum(bunches) + 1))
+    assert 2 ** levels_needed([sum(bunches)]) < 2 * max(sum(bunches), 1)
+
+
+def test_all_faults_of_a_short_file_are_told_at_once() -> None:
+    wrong = (
+        SHORT.replace("bunches = [5, 6, 5]", "tracks = 17\nbunches = [5, 6, 5]")
+        .replace("44, 100, 176, 206, 240", "44, 100, 176, 206")
+        .replace("[[0, 42], [32, 24]", "[[4, 42], [32, 84]")
+        .replace("throw_s = 0.8", "throw_s = 0,8\nrelay = 0.1\nfouling_m = 400")
+        .replace("from_m = 60\nto_m = 86", "from_m = 60\nto_m = 102")
+    )
+    with pytest.raises(InputError) as caught:
+        read_short_hump(wrong, "s.toml")
+    for words in (
+        "s.toml, line 5: 0,8 is no number of TOML; write 0.8",
+        "s.toml: relay = 0.1 is an unknown key; did you mean relay_s?",
+        "s.toml: fouling_m is 400; it must be from 0.1 to 300",
+        "s.toml: tracks is 17; the bunches have 16 tracks together: correct one of the two",
+        "s.toml: switches_m has 4 places; bunches of [5, 6, 5] tracks need 5",
+        "s.toml: profile_from_crest: the first begins at 4 m; it must begin at 0",
+        "s.toml: profile_from_crest: a grade is 84.0; it must be a finite number from -60 to 60",
+        "s.toml: position[0]: its section ends at 103 m, and that of the switch at 100 m begins at 94 m",
+    ):
+        assert sum(words in sentence for sentence in caught.value.sentences) == 1, words
+    assert len(caught.value.sentences) == 8
+
+
+def test_a_random_short_file_is_refused_in_sentences_or_made_without_fault() -> None:
+    told: list[str] = []
+    refused, made = 0, 0
+    for seed in range(sized(60, 3000)):
+        text = random_short(seed)
+        try:
+            short = read_short_hump(text, "s.toml")
+        except InputError as fault:
+            told += fault.sentences
+            refused += 1
+            continue
+        hump = parse_hump(hump_toml(short, "s.toml"), "hump", "hump.toml")
+        assert hump.graph.tracks == tuple(range(1, sum(short.of_bunches) + 1))
+        profile = dict(tomllib.loads(text)["profile_from_crest"])
+        assert set(hump.graph.route(201, 1).roll_track.profile.grades_permille) <= set(profile.values())
+        made += 1
+    assert min(refused, made) > 0.1 * (refused + made)
+    assert all(sentence.startswith("s.toml: ") and sentence.isprintable() for sentence in told)
+
+
+SMALL = """\
+tracks = 2
+profile_from_crest = [[0, 42], [32, 24], [58, 11], [80, 1.5]]
+switches_m = [44]
+tracks_from_m = 100
+track_length_m = 300
+[[position]]
+type = "rnz-2m-park"
+from_m = 80
+[output]
+report = false
+"""
+
+
+def test_a_made_hump_is_checked_and_trains_run_over_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    short = tmp_path / "my.toml"
+    short.write_text(SMALL)
+    assert main(["hump", "make", str(short), "-o", str(tmp_path / "out"), "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["figures"]["tracks"] == 2
+    assert {"hump.toml", "plots/plan-and-profile.svg"} <= summary["files"].keys()
+    hump = tmp_path / "out" / "hump.toml"
+    assert main(["hump", "check", str(hump)]) == 0
+    assert "to position 1 2.21 m" in capsys.readouterr().out
+    trial = tmp_path / "trial.toml"
+    trial.write_text(
+        f'hump = "{hump.relative_to(tmp_path)}"\n[trains]\nnumber = 2\ncuts = 8\n[aim]\ndesign_cuts = 200\n'
+        "[output]\nplots = false\nreport = false\n"
+    )
+    assert main(["hump", "simulate", str(trial), "-o", str(tmp_path / "sim"), "--json"]) == 0
+
+
+def test_what_a_made_hump_warns_of_is_what_check_warns_of() -> None:
+    hump = parse_hump(hump_toml(EXAMPLE, "s.toml"), "hump", "hump.toml")
+    assert checked_hump(hump).warnings == ()
