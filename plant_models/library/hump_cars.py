@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from plant_models.library.data_file import shown
-from plant_models.library.hump_cells import texts, whole
+from plant_models.library.hump_forms import texts, whole
 
 CATEGORIES: Final = "categories"
 MOST_CARS: Final = "most_cars"
@@ -20,6 +20,13 @@ class ForCars:
 
     categories: tuple[str, ...] | None
     most_cars: int | None
+
+    @property
+    def table(self) -> dict[str, Any]:
+        """As a hump file has it."""
+        names = None if self.categories is None else list(self.categories)
+        told = {CATEGORIES: names, MOST_CARS: self.most_cars}
+        return {key: value for key, value in told.items() if value is not None}
 
 
 def for_cars(raw: object) -> ForCars:

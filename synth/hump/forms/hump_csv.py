@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from plant_models.library.data_file import shown, shown_key
+from plant_models.library.hump_cars import for_cars
 from plant_models.library.hump_cells import ELEMENTS, PROFILE, Key, Schema
 from plant_models.library.hump_entry import FORMAT, VERSION, HumpEntry, hump_at
 from plant_models.library.hump_forms import text, texts, wholes
@@ -24,7 +25,12 @@ from synth.retarder.configuration.plant_fault import in_file
 KIND: Final = "kind"
 HUMP: Final = "hump"
 OF_HUMP: Final[Mapping[str, Key]] = {"leads": Key("", wholes), "profile_from_crest": PROFILE}
-HEAD: Final[Mapping[str, Key]] = {"title": Key("", text), "notes": Key("", texts), **OF_HUMP}
+HEAD: Final[Mapping[str, Key]] = {
+    "title": Key("", text),
+    "notes": Key("", texts),
+    "for_cars": Key("", for_cars),
+    **OF_HUMP,
+}
 """Columns of the row of the kind `hump`; of these, keys of its table in a hump file."""
 
 NUMBER: Final = re.compile(r"[-+]?\d+,\d+")
@@ -50,7 +56,7 @@ COLUMNS: Final[Mapping[str, Key]] = {
 def to_csv(hump: HumpEntry) -> str:
     """The table; only columns in which something stands."""
     tree = hump_tree(hump)
-    head = {KIND: HUMP, "title": tree["title"], "notes": tree.get("notes"), "leads": tree["hump"]["leads"]}
+    head = {KIND: HUMP, **{name: (tree["hump"] if name in OF_HUMP else tree).get(name) for name in HEAD}}
     rows = [head, *({KIND: kind, **flat(row, "")} for kind in ELEMENTS for row in tree["hump"].get(kind, []))]
     columns = [KIND, *(name for name in COLUMNS if any(row.get(name) is not None for row in rows))]
     written = io.StringIO()

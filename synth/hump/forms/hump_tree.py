@@ -24,7 +24,8 @@ def hump_tree(hump: HumpEntry) -> Tree:
         rows[KINDS[type(vertex)]].append(row_of(vertex))
     notes = {"notes": list(hump.notes)} if hump.notes else {}
     found = {kind: listed for kind, listed in rows.items() if listed}
-    head = {"format": FORMAT, "version": VERSION, "title": hump.title, **notes}
+    cars = {} if hump.cars is None else {"for_cars": hump.cars.table}
+    head = {"format": FORMAT, "version": VERSION, "title": hump.title, **notes, **cars}
     return {**head, "hump": {"leads": list(hump.graph.leads), **found}}
 
 

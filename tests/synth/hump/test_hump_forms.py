@@ -42,7 +42,12 @@ def test_a_hump_stays_the_same_in_every_form() -> None:
             from_csv(for_excel(table), hump.name, "x.csv"),
             parse_hump(tree_toml(hump), hump.name, "x.toml"),
         ):
-            assert (again.graph, again.title, again.notes) == (hump.graph, hump.title, hump.notes)
+            assert (again.graph, again.title, again.notes, again.cars) == (
+                hump.graph,
+                hump.title,
+                hump.notes,
+                hump.cars,
+            )
 
 
 def test_all_faults_of_a_table_are_told_each_with_its_line() -> None:

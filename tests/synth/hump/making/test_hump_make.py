@@ -161,7 +161,7 @@ def test_a_made_hump_is_checked_and_trains_run_over_it(tmp_path: Path, capsys: p
     trial = tmp_path / "trial.toml"
     trial.write_text(
         f'hump = "{hump.relative_to(tmp_path)}"\n[trains]\nnumber = 2\ncuts = 8\n[aim]\ndesign_cuts = 200\n'
-        "[output]\nplots = false\nreport = false\n"
+        "[acceptance]\ncatch_ups = 1\noverspeed = 1\n[output]\nplots = false\nreport = false\n"
     )
     assert main(["hump", "simulate", str(trial), "-o", str(tmp_path / "sim"), "--json"]) == 0
 
