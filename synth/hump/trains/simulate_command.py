@@ -117,7 +117,7 @@ def show(result: HumpedTrial) -> Iterator[Chapter]:
     shown = guarded(one_train, result.trial, number)
     traced = traced_once(shown)
     yield Chapter(f"Train {number + 1}", tuple(one_train_exhibits(result, shown, traced)))
-    program = program_exhibits(guarded(speed_program, result.trial, number), brief=False)
+    program = program_exhibits(guarded(speed_program, result.trial, number, shown.plan), brief=False)
     yield Chapter("Hump speed", (*program, pushed_chart(number, traced)))
 
 

@@ -54,9 +54,10 @@ class SpeedProgram:
         return 3600.0 * cars / self.rows[-1].time_s
 
 
-def speed_program(trial: HumpTrial, number: int) -> SpeedProgram:
-    """The program of train `number` of `trial`; nothing is humped."""
-    trains, _, known, plan = trial.planned(number, 1)
+def speed_program(trial: HumpTrial, number: int, plan: TrainPlan | None = None) -> SpeedProgram:
+    """The program of train `number` of `trial`, whose `plan` may be known already; nothing is humped."""
+    trains, _, known = trial.prepared(number, 1)
+    plan = trial.program.plan(trial.planner, known) if plan is None else plan
     exits = planned_m_s(trains, plan, known.aim.speed_m_s, trial.planner.roles)
     return program_of(number, trains, plan, exits, trial.routes)
 

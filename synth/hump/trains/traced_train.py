@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from synth.hump.trains.controlled_train import ControlledTrain, controlled_train
@@ -10,16 +11,18 @@ from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_passages import train_passages
+from synth.hump.trains.train_plan import TrainPlan
 from synth.hump.trains.train_trace import TrainTrace, train_trace
 from synth.hump.trains.trial import HumpTrial
 
 
 @dataclass(frozen=True)
 class OneTrain:
-    """A train of `trial`, alone in `trains`, and what happened to it."""
+    """A train of `trial`, alone in `trains`, its plan, and what happened to it."""
 
     trial: HumpTrial
     trains: TrainCuts
+    plan: TrainPlan
     memory: TrainMemory
 
     def traced(self) -> TrainTrace:
@@ -39,7 +42,16 @@ class OneTrain:
         return sum(not way for way in train_passages(self.trial.routes, self.trains, self.memory, 0).ways)
 
 
+def early_traces(trial: HumpTrial, numbers: Sequence[int]) -> tuple[TrainTrace, ...]:
+    """The trains `numbers`, from 0, humped together: all trains up to the last of them are."""
+    if not numbers:
+        return ()
+    trains, _, memory = trial.humped(0, max(numbers) + 1)
+    hump = Hump(trial.routes, trial.positions, rolling_on(trial.ways, trains.population, trains.drawn, trial.threads))
+    return tuple(train_trace(hump, trains, memory, number, trial.couplings.allowed_m_s) for number in numbers)
+
+
 def one_train(trial: HumpTrial, number: int) -> OneTrain:
     """The train `number`, from 0, of `trial`: the same as in every batch."""
-    trains, _, memory = trial.humped(number, 1)
-    return OneTrain(trial, trains, memory)
+    trains, plan, memory = trial.humped(number, 1)
+    return OneTrain(trial, trains, plan, memory)

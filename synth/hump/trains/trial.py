@@ -181,10 +181,14 @@ class HumpTrial:
 
     def planned(self, first: int, count: int) -> tuple[TrainCuts, Floats, KnownCuts, TrainPlan]:
         """The same trains before they are humped: with their free tracks, what is known of them, and their plan."""
+        trains, free_m, known = self.prepared(first, count)
+        return trains, free_m, known, self.program.plan(self.planner, known)
+
+    def prepared(self, first: int, count: int) -> tuple[TrainCuts, Floats, KnownCuts]:
+        """The same before they are planned."""
         trains = self.source.trains(first, count)
         free_m = with_room(self.routes, trains, self.free.free_m(self.routes, trains.seed, first, count))
-        known = self.known(trains, free_m)
-        return trains, free_m, known, self.program.plan(self.planner, known)
+        return trains, free_m, self.known(trains, free_m)
 
     def known(self, trains: TrainCuts, free_m: Floats) -> KnownCuts:
         """What is known of trains before they are humped, and how they will be aimed if tracks stay as they are."""

@@ -11,7 +11,7 @@ from synth.hump.control.event_log import to_log_csv
 from synth.hump.trains.chosen_trains import chosen_trains
 from synth.hump.trains.hump_page.hump_page import hump_page
 from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.traced_train import OneTrain, one_train
+from synth.hump.trains.traced_train import OneTrain, early_traces
 from synth.hump.trains.train_trace import TrainTrace
 
 PLAYER, LOG = "hump.html", "events.csv"
@@ -38,9 +38,8 @@ def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Traced) -> 
     yield from standing_cuts(result, shown)
     if result.config.settings.output.report:
         first, *others = chosen_trains(result.found)
-        traces = {first.title: traced()} | {
-            each.title: one_train(result.trial, each.number).traced() for each in others
-        }
+        more = early_traces(result.trial, [each.number for each in others])
+        traces = {first.title: traced()} | {each.title: trace for each, trace in zip(others, more, strict=True)}
         page = hump_page(result.config.hump, traces, result.category_names)
         yield File(PLAYER, page.encode(), f"Play on the plan: {'; '.join(traces)}")
     control = shown.controlled()
