@@ -15,10 +15,9 @@ from synth.frame.settings.settings_file import BUILT_IN, settings_in
 from synth.frame.settings.toml_file import read_text, toml_tree
 from synth.frame.settings.toml_text import toml_text
 from synth.hump.configuration.settings import HumpTrialSettings
+from synth.hump.file_kind import FileKind, kind_of, require_kind
 from synth.hump.hump_file import OTHER_SUFFIXES, read_graph
 from synth.retarder.configuration.own_types import with_own_types
-
-HUMP_FORMAT = "hump"
 
 INPUTS = "inputs"
 """Folder of copies of all that a trial was read from, in the directory of its results."""
@@ -60,7 +59,11 @@ def trial_text(source: Path, template: str = "init --hump") -> str:
     if source.suffix in OTHER_SUFFIXES or not (source.suffix or source.exists()):
         return text_on(source)
     text = read_text(source, template)
-    return text_on(source) if toml_tree(text, str(source)).get("format") == HUMP_FORMAT else text
+    tree = toml_tree(text, str(source))
+    if kind_of(tree) is FileKind.HUMP:
+        return text_on(source)
+    require_kind(tree, str(source), FileKind.TRIAL)
+    return text
 
 
 def text_on(hump: Path) -> str:

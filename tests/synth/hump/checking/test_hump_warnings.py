@@ -15,6 +15,7 @@ from plant_models.library.type_file import HUMPS
 from synth.frame.input_error import InputError
 from synth.hump.checking.checked_hump import checked_hump
 from synth.hump.checking.places import places_of, rolled_routes
+from synth.hump.configuration.trial_file import trial_text
 from synth.hump.hump_file import hump_text, parse_hump, read_hump
 from synth.hump.making.short_file import read_short_hump
 
@@ -136,3 +137,9 @@ def test_a_file_of_another_kind_is_called_by_its_name(tmp_path: Path, text: str,
     assert len(caught.value.sentences) == 1
     with pytest.raises(InputError, match="this is a hump file, not a short hump file; use 'retarder-synth hump check"):
         read_short_hump(hump_text(Path("medium")), "x.toml")
+
+
+def test_a_trial_that_is_a_short_hump_file_is_told_which_command_reads_it(tmp_path: Path) -> None:
+    (tmp_path / "short.toml").write_text("tracks = 2\nswitches_m = [40]\n", encoding="utf-8")
+    with pytest.raises(InputError, match="this is a short hump file, not a hump trial; use 'retarder-synth hump make"):
+        trial_text(tmp_path / "short.toml")
