@@ -11,8 +11,9 @@ from synth.frame.workers.engine_options import EngineOptions
 from synth.hump.configuration.counted_trains import CountedTrains
 from synth.hump.trains.trial_options import TrialOptions
 
-USUAL_LEAST_S = (2.5, 1.5, 0.5, -0.5, -1.5)
-"""Least intervals of the programs of a curve: 0.5 s is that of a trial; below 0 cuts are expected to meet."""
+USUAL_LEAST_S = (2.0, 1.0, 0.5, 0.0, -0.5)
+"""Least intervals of the programs of a curve: 0.5 s is that of a trial; below 0 cuts are expected to meet, and some of
+100 catch up."""
 
 MOST_POINTS = 20
 

@@ -85,7 +85,7 @@ def test_a_run_goes_on_from_what_is_stored_and_gives_the_same_bytes(humped: Path
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--set", "weather.head_wind=1"), "with weather.head_wind 1, hump_speed.least_s 2.5: "),
+        (("--set", "weather.head_wind=1"), "with weather.head_wind 1, hump_speed.least_s 2: "),
         (("--set", "weather.head_wind_mean_m_s=99"), "head_wind_mean_m_s is 99"),
         (("--speeds", "2"), "a curve needs 2 to 20 that differ"),
         (("--speeds", "2,nine"), "--speeds is '2,nine'; it must be"),
