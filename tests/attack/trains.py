@@ -15,7 +15,7 @@ import numpy as np
 
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.outcome_file import TrialTrains, to_npz
+from synth.hump.trains.outcome_file import to_npz, trains_of
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.resolved_trial import resolve_trial
 from synth.hump.trains.stored_trains import stored_trains
@@ -50,7 +50,7 @@ def trains_kind() -> Kind:
     config = resolve_trial(parse_trial_file(CONFIG, "trial.toml"))
     content = to_npz(
         made_trial(config).batch(0, NUMBER),
-        TrialTrains(config.routes, config.trains_sha256, len(config.categories.members)),
+        trains_of(config),
     )
     return Kind(
         name="trains",

@@ -20,7 +20,7 @@ from synth.frame.workers.local_workers import LocalWorkers
 from synth.frame.workers.stored_results import missing_of
 from synth.hump.trains.batch import BatchOrder, answer_batch, orders_of
 from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
+from synth.hump.trains.outcome_file import from_npz, to_npz, trains_of
 from synth.hump.trains.outcomes import joined
 from synth.hump.trains.resolved_trial import load_trial
 from synth.hump.trains.train_run import TrialRun, run_of, run_trials
@@ -54,7 +54,7 @@ def test_batches_of_any_size_are_the_same_trains(trial: Path, humped: Path) -> N
     """As one batch, one by one, and in uneven parts: the arrays of the file that the command wrote."""
     config = load_trial(trial)
     made = made_trial(config)
-    of_trial = TrialTrains(config.routes, config.trains_sha256, len(config.categories.members))
+    of_trial = trains_of(config)
     written = batch_file(humped, next(iter(orders_of(made, config.trains_sha256, BATCH))).key)
     first = from_npz(written.read_bytes(), str(written), of_trial, BATCH)
     some = joined([made.batch(0, 1), made.batch(1, 6), made.batch(7, BATCH - 7)])

@@ -20,13 +20,16 @@ MOST_CURVES: Final = 50
 LEAST: Final = Axis("hump_speed.least_s", "least interval of the program", "s", ())
 CONSTANT: Final = Axis("hump_speed.constant_m_s", "hump speed", "m/s", ())
 
+TYPED: Final = {"trains.number": "--trains", "trains.seed": "--seed", "trains.list": "--list"}
+"""Keys that all curves have in common, and what tells them."""
+
 ABOUT: Final = (0.7, 0.85, 1.0, 1.15, 1.3)
 """Speeds of a curve where the trial has one constant speed, as shares of it."""
 
 
 @dataclass(frozen=True)
 class AskedCapacity:
-    """`base`: the trial as it is; `points` of each of `variants` along `axis`, all with the same trains."""
+    """`base`: the trial as it is; `points` of each of `variants` along `axis`, as many trains each."""
 
     base: AskedTrial
     variants: tuple[Variant, ...]
@@ -51,7 +54,9 @@ def asked_capacity(asked: Asked[TrialFile, CapacityOptions]) -> AskedCapacity:
     options.require_one("hump capacity")
     base = asked_trial(asked.settings, options, options.trains)
     axis = axis_of(options, base)
-    chosen = variants(tuple(key_values_of(options, base)))
+    values = key_values_of(options, base)
+    require_other_keys(values)
+    chosen = variants(values)
     if len(chosen) > MOST_CURVES:
         raise InputError(f"hump capacity: --set and --exit-std ask for {len(chosen)} curves; at most {MOST_CURVES}")
 
@@ -66,6 +71,18 @@ def asked_capacity(asked: Asked[TrialFile, CapacityOptions]) -> AskedCapacity:
 
     points = tuple(tuple(trial_at(variant, value) for value in axis.values) for variant in chosen)
     return AskedCapacity(base, chosen, axis, points, options)
+
+
+def require_other_keys(values: Sequence[KeyValues]) -> None:
+    """`InputError` for a key that changes along each curve, that all curves have in common, or that is given twice."""
+    taken = {**TYPED, LEAST.key: "--least", CONSTANT.key: "--speeds"}
+    known: set[str] = set()
+    for key in (key for each in values for key in each.keys):
+        if key in taken:
+            raise InputError(f"--set {key}: all curves have it in common; give it by {taken[key]}")
+        if key in known:
+            raise InputError(f"--set {key}: its values are given twice; give each key once")
+        known.add(key)
 
 
 def axis_of(options: CapacityOptions, base: AskedTrial) -> Axis:

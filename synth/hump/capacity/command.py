@@ -12,6 +12,7 @@ from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.hump.capacity.options import CapacityOptions
 from synth.hump.configuration.trial_file import TrialFile, parse_trial_file, trial_text
+from synth.hump.limits_of_use import MODEL_ONLY, NO_SAFETY
 
 if TYPE_CHECKING:
     from synth.hump.capacity.asked_capacity import AskedCapacity
@@ -21,11 +22,11 @@ if TYPE_CHECKING:
     from synth.hump.trains.trial import HumpTrial
 
 LIMITS_OF_USE = (
-    "All figures are those of a model with the parameters listed here, not of a hump. Assumed parameters are guesses.",
+    MODEL_ONLY,
     "Between two points of a curve a straight line is taken. Intervals cover the chance of these trains, neither that "
     "line nor the parameters nor the model.",
     "Cars an hour are those over the crest while a train is humped. What the yard can bring and take away is not told.",
-    "The tool claims no safety integrity: no figure here proves that a hump is safe.",
+    NO_SAFETY,
 )
 
 
@@ -73,7 +74,7 @@ def compute(asked: AskedCapacity, work: Work) -> FoundCapacity:
     count, seed = len(asked.axis.values), asked.base.config.settings.trains.seed
     by_curve = [outcomes[place : place + count] for place in range(0, len(outcomes), count)]
     found = curves(asked.variants, asked.axis, by_curve, asked.options.catch_ups, seed)
-    return FoundCapacity(asked, tuple(found), int(outcomes[0].cuts.sum()))
+    return FoundCapacity(asked, tuple(found))
 
 
 def trials_of(points: Sequence[AskedTrial]) -> tuple[list[ResolvedTrial], list[HumpTrial]]:

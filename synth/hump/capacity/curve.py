@@ -11,7 +11,7 @@ import numpy as np
 from synth.frame.interval import Interval
 from synth.hump.capacity.crossings import FEWEST_EVENTS, Sums, decided, drawn_weights, enough_for, sums_of
 from synth.hump.capacity.variants import Variant
-from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.outcomes import TrainOutcomes, same_trains
 from synth.hump.trains.train_figures import TrainFigure, train_figures
 
 
@@ -47,7 +47,8 @@ class AtLimit:
 
 @dataclass(frozen=True)
 class Curve:
-    """The points of a variant; `more_cars_per_hour`: at the limit, than the first curve, on the same trains."""
+    """The points of a variant; `more_cars_per_hour`: at the limit, than the first curve, where both hump the same
+    trains."""
 
     variant: Variant
     points: tuple[Point, ...]
@@ -64,16 +65,17 @@ def point_of(value: float, found: TrainOutcomes) -> Point:
 def curves(
     variants: Sequence[Variant], axis: Axis, found: Sequence[Sequence[TrainOutcomes]], limit: float, seed: int
 ) -> Iterator[Curve]:
-    """A curve each of `variants`, from the outcomes `found` of its points, all on the same trains; `seed`: of the
+    """A curve each of `variants`, from the outcomes `found` of its points, as many trains each; `seed`: of the
     bootstrap, whose draws are common to all curves."""
-    trains, cuts = len(found[0][0]), int(found[0][0].cuts.sum())
+    first, trains = found[0][0], len(found[0][0])
     weights = drawn_weights(trains, seed)
-    first: Sums | None = None
-    for variant, outcomes in zip(variants, found, strict=True):
-        sums = sums_of(list(outcomes), weights)
+    first_sums = sums_of(list(found[0]), weights)
+    for place, (variant, outcomes) in enumerate(zip(variants, found, strict=True)):
+        cuts, sums = int(outcomes[0].cuts.sum()), sums_of(list(outcomes), weights)
         points = tuple(map(point_of, axis.values, outcomes))
-        more = None if first is None else difference(sums, first, limit, trains, cuts)
-        first = first or sums
+        more = None
+        if place > 0 and same_trains(first, outcomes[0]):
+            more = difference(sums, first_sums, limit, trains, cuts)
         yield Curve(variant, points, at_limit(sums, points, limit, trains, cuts), more)
 
 

@@ -10,8 +10,7 @@ from synth.hump.capacity.curve import Curve
 
 @dataclass(frozen=True)
 class FoundCapacity:
-    """The curves that were asked for; `cuts`: of each point."""
+    """The curves that were asked for."""
 
     asked: AskedCapacity
     curves: tuple[Curve, ...]
-    cuts: int

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 HOW_TO_READ: Final = (
     "Between its points a curve is a straight line, which is bent in the picture, as its axis is logarithmic. Where it "
     "meets the allowed share of catch-ups, cars an hour are read. Brackets: 95 % intervals. Those of a point take a "
-    "train as what is drawn; those at the limit come from 2000 samples of whole trains. All curves hump the same "
-    "trains, so a difference is known better than its two ends: the column 'more than the first' tells it. A catch-up "
-    "is a cut that was misrouted behind the one ahead or ran into it."
+    "train as what is drawn; those at the limit come from 2000 samples of whole trains. Where curves hump the same "
+    "trains, a difference is known better than its two ends: the column 'more than the first' tells it. A catch-up is "
+    "a cut that was misrouted behind the one ahead or ran into it."
 )
 
 NAME: Final = Column("curve", "curve", words=True)
@@ -43,8 +43,8 @@ def at_limit(found: FoundCapacity) -> Iterator[Exhibit]:
     yield Chart(
         "capacity",
         "Catch-ups over cars an hour",
-        f"Every point is {found.asked.number} trains of {found.cuts / found.asked.number:g} cuts, the same for all "
-        "curves; bars are 95 % intervals. A triangle that points down: no cut caught up, and the share is below it. "
+        f"Every point is {found.asked.number} trains, the same for each curve unless a changed key makes others; "
+        "bars are 95 % intervals. A triangle that points down: no cut caught up, and the share is below it. "
         f"Dashed: the {allowed} that are allowed.",
         lambda: picture(found),
     )

@@ -11,13 +11,14 @@ from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.settings.toml_file import read_text
 from synth.hump.comparison.options import CompareOptions
+from synth.hump.limits_of_use import CHANCE_ONLY, MODEL_ONLY
 
 if TYPE_CHECKING:
     from synth.hump.comparison.compared_runs import HumpedRun
 
 LIMITS_OF_USE = (
-    "All figures are those of a model with the parameters of the runs, not of a hump. Assumed parameters are guesses.",
-    "Intervals cover the chance of these trains only, neither the parameters nor the model.",
+    MODEL_ONLY,
+    CHANCE_ONLY,
     "Several differences are told at once: of twenty that are none, one is outside its interval.",
 )
 

@@ -11,7 +11,7 @@ import numpy as np
 from synth.frame.input_error import InputError
 from synth.frame.results_directory import SUMMARY
 from synth.hump.configuration.trial_file import INPUTS
-from synth.hump.trains.outcome_file import TRAINS, TrialTrains, from_npz
+from synth.hump.trains.outcome_file import TRAINS, from_npz, trains_of
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.resolved_trial import ResolvedTrial, load_trial
 from synth.hump.trains.trial_inputs import CONFIG
@@ -62,7 +62,7 @@ def config_in(folder: Path) -> Path:
 def run_in(folder: Path, name: str) -> HumpedRun:
     """The run in one directory."""
     config = load_trial(config_in(folder))
-    trial = TrialTrains(config.routes, config.trains_sha256, len(config.categories.members))
+    trial = trains_of(config)
     path = folder / TRAINS
     found = from_npz(path.read_bytes(), str(path), trial, config.settings.trains.number)
     return HumpedRun(name, config, found)

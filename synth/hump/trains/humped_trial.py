@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from synth.hump.trains.outcome_file import TrialTrains
+from synth.hump.trains.outcome_file import TrialTrains, trains_of
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.train_figures import TrainFigure, train_figures
@@ -23,7 +23,7 @@ class HumpedTrial:
     @property
     def of_trial(self) -> TrialTrains:
         """Of which trial the trains are, for their file."""
-        return TrialTrains(self.config.routes, self.config.trains_sha256, len(self.config.categories.members))
+        return trains_of(self.config)
 
     @property
     def category_names(self) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ import zipfile
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,9 @@ from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.outcomes import GAP_BINS_M, SPEED_BINS_M_S, USUAL_COUPLINGS, TrainOutcomes
 from tuning_tables import DamagedTable
 from tuning_tables.seal import seal_of, unsealed
+
+if TYPE_CHECKING:
+    from synth.hump.trains.resolved_trial import ResolvedTrial
 
 TRAINS = "trains.npz"
 """The file of all trains of a trial, in its directory."""
@@ -60,6 +63,11 @@ class TrialTrains:
             "gap_bins": (count, len(GAP_BINS_M) - 1),
         }
         return {field.name: wide.get(field.name, (count,)) for field in fields(TrainOutcomes)}
+
+
+def trains_of(config: ResolvedTrial) -> TrialTrains:
+    """Those of a trial."""
+    return TrialTrains(config.routes, config.trains_sha256, len(config.categories.members))
 
 
 def to_npz(found: TrainOutcomes, trial: TrialTrains) -> bytes:

@@ -85,6 +85,11 @@ class TrainOutcomes:
         return len(self.train)
 
 
+def same_trains(one: TrainOutcomes, other: TrainOutcomes) -> bool:
+    """Whether both are of trains that have as many cuts and cars, each."""
+    return np.array_equal(one.cuts, other.cuts) and np.array_equal(one.cars, other.cars)
+
+
 def joined(parts: Sequence[TrainOutcomes]) -> TrainOutcomes:
     """Trains of several batches, in order."""
     return TrainOutcomes(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(TrainOutcomes)))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.hump.configuration.trial_file import INPUTS, TrialFile, parse_trial_file, trial_text
+from synth.hump.limits_of_use import CHANCE_ONLY, MODEL_ONLY, NO_SAFETY
 from synth.hump.trains.simulate_options import SimulateOptions
 
 if TYPE_CHECKING:
@@ -20,11 +21,11 @@ if TYPE_CHECKING:
     from synth.hump.trains.trial import HumpTrial
 
 LIMITS_OF_USE = (
-    "All figures are those of a model with the parameters listed here, not of a hump. Assumed parameters are guesses.",
-    "Intervals cover the chance of these trains only, neither the parameters nor the model.",
+    MODEL_ONLY,
+    CHANCE_ONLY,
     "A figure of 0 does not mean never: the upper end of its interval is what these trains show.",
     "Cuts that were misrouted, in contact, or stopped count as such; their couplings and gaps are not counted.",
-    "The tool claims no safety integrity: no figure here proves that a hump is safe.",
+    NO_SAFETY,
 )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.hump.configuration.trial_file import TrialFile, parse_trial_file, trial_text
+from synth.hump.limits_of_use import MODEL_ONLY, NO_SAFETY
 from synth.hump.trains.trial_options import SpeedOptions
 from tuning_tables.canonical import canonical_json
 
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 LIMITS_OF_USE = (
     "A plan expects of each cut what is usual of its weight category, and brakes each position evenly along the path; "
     "how such trains fare is told by hump simulate.",
-    "All figures are those of a model with the parameters listed here, not of a hump. Assumed parameters are guesses.",
-    "The tool claims no safety integrity: no figure here proves that a hump is safe.",
+    MODEL_ONLY,
+    NO_SAFETY,
 )
 
 

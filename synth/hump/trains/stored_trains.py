@@ -8,7 +8,7 @@ from typing import Final
 
 from synth.frame.input_error import InputError
 from synth.hump.configuration.trial_file import INPUTS
-from synth.hump.trains.outcome_file import TRAINS, TrialTrains, from_npz
+from synth.hump.trains.outcome_file import TRAINS, from_npz, trains_of
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.resolved_trial import ResolvedTrial, load_trial
 
@@ -33,7 +33,7 @@ def stored_trains(directory: Path, said: str) -> StoredTrains:
     config = load_trial(directory / CONFIG)
     content = (directory / TRAINS).read_bytes()
     trial, count = (
-        TrialTrains(config.routes, config.trains_sha256, len(config.categories.members)),
+        trains_of(config),
         config.settings.trains.number,
     )
     return StoredTrains(config, from_npz(content, str(directory / TRAINS), trial, count), content)

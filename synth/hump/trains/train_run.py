@@ -13,7 +13,7 @@ from synth.frame.results_directory import ResultsDirectory
 from synth.frame.workers.engine import Engine, Watcher
 from synth.frame.workers.stored_results import missing_of
 from synth.hump.trains.batch import BatchOrder, orders_of
-from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
+from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz, trains_of
 from synth.hump.trains.outcomes import TrainOutcomes, joined
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.trial import HumpTrial
@@ -70,7 +70,7 @@ def run_of(
     config: ResolvedTrial, trial: HumpTrial, number: int, directory: ResultsDirectory, name: str = ""
 ) -> TrialRun:
     """The first `number` trains of `trial`, which was made of `config`."""
-    files = BatchFiles(directory, TrialTrains(config.routes, config.trains_sha256, len(config.categories.members)))
+    files = BatchFiles(directory, trains_of(config))
     return TrialRun(name, files, tuple(orders_of(trial, config.trains_sha256, number)))
 
 

@@ -87,6 +87,9 @@ def test_a_run_goes_on_from_what_is_stored_and_gives_the_same_bytes(humped: Path
     [
         (("--set", "weather.head_wind=1"), "with weather.head_wind 1, hump_speed.least_s 2: "),
         (("--set", "weather.head_wind_mean_m_s=99"), "head_wind_mean_m_s is 99"),
+        (("--set", "hump_speed.least_s=1,2"), "all curves have it in common; give it by --least"),
+        (("--set", "trains.seed=1,2"), "give it by --seed"),
+        (("--set", "trains.cuts=5,6", "--set", "trains.cuts=7,8"), "given twice"),
         (("--speeds", "2"), "a curve needs 2 to 20 that differ"),
         (("--speeds", "2,nine"), "--speeds is '2,nine'; it must be"),
         (("--exit-std", "0.1", "--workers", "1", "--scheduler", "x"), "--workers and --scheduler"),
@@ -105,3 +108,11 @@ def test_too_few_cuts_decide_nothing(humped: Path, tmp_path: Path, capsys: pytes
     words = ["--speeds", "2.5,3.2", "--catch-ups", "0.002", "--workers", "1", "-o", str(tmp_path / "out")]
     assert main(["hump", "capacity", str(humped / "trial.toml"), *words]) == 0
     assert "not decidable with these trains: 144 cuts are too few" in " ".join(capsys.readouterr().out.split())
+
+
+def test_curves_of_other_trains_have_no_difference(humped: Path, tmp_path: Path) -> None:
+    words = ["--speeds", "2.5,3.2", "--catch-ups", "0.1", "--workers", "1", "--set", "trains.cuts=12,11"]
+    assert main(["hump", "capacity", str(humped / "trial.toml"), "-o", str(tmp_path / "out"), *words]) == 0
+    tables = summary_of(tmp_path / "out")
+    assert [row["more_cars_per_hour"] for row in tables["capacity"]] == [None, None]
+    assert [row["cuts"] for row in tables["points"]] == [144, 144, 132, 132]
