@@ -15,6 +15,7 @@ from synth.frame.settings.output import OutputSettings
 from synth.frame.settings.section import Section, choice, many, optional, setting
 from synth.hump.configuration.counted_trains import CountedTrains
 from synth.hump.configuration.coupling_limits import CouplingLimits
+from synth.hump.configuration.design_settings import DesignSettings
 from synth.hump.configuration.position_settings import HumpPositionSettings
 from synth.retarder.configuration.top_keys import TopKeys
 
@@ -240,6 +241,7 @@ class HumpTrialSettings(TopKeys):
         example=(HumpPositionSettings(number=2, exit_m_s={"all": 4.8}, supply_share=0.8),),
     )
     acceptance: TrialAcceptanceSettings = TrialAcceptanceSettings()
+    design: DesignSettings = DesignSettings()
     output: OutputSettings = OutputSettings()
 
     @model_validator(mode="after")
