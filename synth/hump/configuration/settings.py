@@ -68,7 +68,7 @@ class TrainSettings(CountedTrains):
 
 
 class TracksSettings(Section):
-    """Where cars stand before each train."""
+    """Where cars stand before each train, and what holds cuts ahead of them."""
 
     standing: Literal["drawn", "file"] = choice(
         "drawn", "drawn anew for each train, or as the hump file tells (standing_m)"
@@ -80,6 +80,11 @@ class TracksSettings(Section):
     free_high: float = setting(
         0.9, "1", 0.0, 1.0, "largest free share; all between are equally frequent",
         f"{JUDGEMENT}: nothing was found on how full tracks are",
+    )  # fmt: skip
+    skates_share: float = setting(
+        0.0, "1", 0.0, 0.99,
+        "of the energy of a cut, what skates take ahead of the standing cars of a track on which no position aims",
+        f"{JUDGEMENT}: no skates",
     )  # fmt: skip
 
     @model_validator(mode="after")
