@@ -8,11 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from plant_models.library.hump_entry import load_hump
 from synth.frame.exhibits import Table
 from synth.frame.input_error import InputError
 from synth.frame.results_directory import results_directory
 from synth.frame.sheet import to_csv
 from synth.hump.configuration.trial_file import parse_trial_file
+from synth.hump.forms.hump_csv import to_csv, to_xlsx
 from synth.hump.hump_file import hump_text
 from synth.hump.trains.hump_position import Arrivals
 from synth.hump.trains.hump_speed import PairByPair
@@ -145,6 +147,18 @@ def test_a_position_with_a_book_runs_its_tables(tmp_path: Path) -> None:
     again = load_trial(tmp_path / "out" / "inputs" / "config.toml")
     assert (again.sha256, again.trains_sha256) == (config.sha256, config.trains_sha256)
     np.testing.assert_array_equal(made_trial(again).batch(0, 4).strokes, found.strokes)
+
+
+@pytest.mark.parametrize("form", ["csv", "xlsx"])
+def test_a_hump_in_a_spreadsheet_can_be_repeated_from_the_inputs(tmp_path: Path, form: str) -> None:
+    hump, sheet = load_hump("dumper"), tmp_path / f"my.{form}"
+    sheet.write_bytes(to_xlsx(hump) if form == "xlsx" else to_csv(hump).encode())
+    file = parse_trial_file(f'hump = "{sheet.name}"', str(tmp_path / "trial.toml"))
+    config = resolve_trial(file)
+    with results_directory(tmp_path / "out", "hump simulate") as out:
+        write_inputs(file, config, out)
+    sheet.unlink()
+    assert load_trial(tmp_path / "out" / "inputs" / "config.toml").trains_sha256 == config.trains_sha256
 
 
 def test_books_that_lack_a_class_or_targets_are_refused(tmp_path: Path) -> None:
