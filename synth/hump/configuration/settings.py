@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -161,6 +161,8 @@ class TrialAimSettings(Section):
     Tables given here count before those of the hump file.
     """
 
+    MEANT: ClassVar = {"coupling_speed_m_s": "couplings.allowed_m_s"}
+
     knowledge: KNOWN = choice(
         "category", "what they are chosen by beside the free distance: weight category, or resistance as it is measured"
     )
@@ -221,6 +223,8 @@ class TrialAcceptanceSettings(Section):
 
 class HumpTrialSettings(TopKeys):
     """A whole hump trial configuration; an empty one is the built-in default."""
+
+    MEANT: ClassVar = dict.fromkeys(("exit_speed_m_s", "exit_m_s", "exit_speed"), "position.exit_m_s")
 
     hump: str = choice(
         DEFAULT_HUMP, f"the hump; one of {', '.join(hump_names())}, or the path of your own file (docs/hump-file.md)"
