@@ -53,7 +53,7 @@ def read_graph(source: Path) -> ReadHump:
     """The hump in the file `source`, or the one of that name in the library, whatever files it names."""
     name = str(source)
     there = os.path.exists(source)  # pathlib would raise for a name that is too long to ask for
-    if name in hump_names() and not there:
+    if name in hump_names() and not source.is_file():
         with in_file(name):
             return ReadHump(load_of_library(name))
     if not there:
@@ -70,7 +70,7 @@ def read_graph(source: Path) -> ReadHump:
 
 def hump_text(source: Path) -> str:
     """The text of the file `source`, or of the hump of that name in the library."""
-    if str(source) in hump_names() and not source.exists():
+    if str(source) in hump_names() and not source.is_file():
         return BUILT_IN.file(HUMPS, str(source)).text
     return read_text(source)
 
