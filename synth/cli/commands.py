@@ -15,6 +15,7 @@ from synth.cli.arguments import (
     SourceOrDirectory,
     with_names,
 )
+from synth.cli.guide import TOP
 from synth.cli.init_commands import add_init_command
 from synth.cli.listed import COMMANDS
 from synth.frame.arguments import Json, directory, whole_number
@@ -22,7 +23,7 @@ from synth.frame.command_line import add_listed, listed_group
 
 app = typer.Typer(
     name="retarder-synth",
-    cls=listed_group(COMMANDS),
+    cls=listed_group(COMMANDS, TOP),
     help="Designs the controller of a hump-yard car retarder: switching lines, controller tables, and their proof.",
     add_completion=False,
     rich_markup_mode=None,

@@ -8,11 +8,14 @@ from typing import Annotated
 
 import typer
 
+from synth.cli.guide import GUIDES
 from synth.cli.listed import HUMP
 from synth.frame.arguments import Json, directory, whole_number
 from synth.frame.command_line import add_listed, listed_group
 
-app = typer.Typer(cls=listed_group(HUMP), help="Check, list and draw a hump; hump whole trains over it.")
+app = typer.Typer(
+    cls=listed_group(HUMP, GUIDES["hump"]), help="Check, list and draw a hump; hump whole trains over it."
+)
 
 Hump = Annotated[
     Path, typer.Argument(metavar="FILE|NAME", help="A hump file (.toml, .railml, .csv, .xlsx), or one of the library.")

@@ -5,11 +5,12 @@ Annotations are not postponed here: typer would compile every one of them anew a
 
 import typer
 
+from synth.cli.guide import GUIDES
 from synth.cli.listed import SENSORS
 from synth.frame.command_line import add_listed, listed_group
 
 app = typer.Typer(
-    cls=listed_group(SENSORS),
+    cls=listed_group(SENSORS, GUIDES["sensors"]),
     help="Point sensors along a retarder position: where they should stand, and tables for them.",
 )
 

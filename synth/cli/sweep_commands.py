@@ -8,12 +8,14 @@ from typing import Annotated
 
 import typer
 
+from synth.cli.guide import GUIDES
 from synth.cli.listed import SWEEP
 from synth.frame.arguments import Json
 from synth.frame.command_line import add_listed, listed_group
 
 app = typer.Typer(
-    cls=listed_group(SWEEP), help="Make books over a grid of cut classes, targets and conditions; how far it is."
+    cls=listed_group(SWEEP, GUIDES["sweep"]),
+    help="Make books over a grid of cut classes, targets and conditions; how far it is.",
 )
 
 Swept = Annotated[Path, typer.Argument(metavar="DIR", help="The directory of a sweep.")]

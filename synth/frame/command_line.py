@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
     from synth.frame.command import Command
+    from synth.frame.command_guide import CommandGuide
     from synth.frame.settings.options import Options, Words
 
 
@@ -59,18 +60,32 @@ class Listed:
         return Path(self.folder) if self.folder else Path("out") / self.words.replace(" ", "-")
 
 
-def listed_group(listed: Sequence[Listed]) -> type[TyperGroup]:
-    """A group of commands that has these among its own: with their options as soon as one of them is called."""
+def listed_group(listed: Sequence[Listed], guide: CommandGuide) -> type[TyperGroup]:
+    """A group of commands that has these among its own: with their options as soon as one of them is called. Its help
+    shows the sections of `guide`, and that of each command its example."""
     by_name = {each.name: each for each in listed}
 
     class ListedGroup(TyperGroup):
         """Commands of the frame, loaded when they are called."""
 
         def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
-            name, command, rest = super().resolve_command(ctx, args)
-            return name, loaded(by_name[name]) if name in by_name else command, rest
+            name, found, rest = super().resolve_command(ctx, args)
+            command = loaded(by_name[name]) if name in by_name else found
+            if command is not None and name is not None and name in guide.shown:
+                command.epilog = guide.shown[name].epilog
+            return name, command, rest
+
+        def format_commands(self, ctx: Any, formatter: Any) -> None:
+            for title, names in guide.sections.items():
+                with formatter.section(title):
+                    formatter.write_dl([(name, first_sentence(self.commands[name].help or "")) for name in names])
 
     return ListedGroup
+
+
+def first_sentence(text: str) -> str:
+    """What a command does, in one sentence."""
+    return " ".join(text.strip().partition("\n\n")[0].split())
 
 
 def add_listed(app: typer.Typer, listed: Sequence[Listed]) -> None:

@@ -18,6 +18,7 @@ from typer.testing import CliRunner
 from plant_models import PlantError
 from synth.frame.asked_file import asked_of
 from synth.frame.command import Verdict
+from synth.frame.command_guide import CommandGuide, Shown
 from synth.frame.command_line import Listed, add_listed, listed_group
 from synth.frame.exhibits import Chapter, Column, Table, brief_value
 from synth.frame.input_error import InputError
@@ -40,11 +41,14 @@ LISTED = Listed(
 )
 
 
+GUIDE = CommandGuide("throw", {"All": ("coins", "other")}, {"coins": Shown("throw coins", "coins.md")})
+
+
 @pytest.fixture
 def app(monkeypatch: pytest.MonkeyPatch) -> typer.Typer:
     """A program with this command."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    made = typer.Typer(cls=listed_group([LISTED]))
+    made = typer.Typer(cls=listed_group([LISTED], GUIDE))
     made.command("other")(lambda: 0)
     add_listed(made, [LISTED])
     return made

@@ -1,0 +1,82 @@
+"""The guide to the command line: which commands belong together, an example of each, and the page that tells of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from synth.frame.command_guide import CommandGuide, Shown
+
+TOP: Final = CommandGuide(
+    "",
+    {
+        "Design tables": ("init", "tune", "aim", "sensors", "sweep"),
+        "Check and understand them": ("inspect", "plot", "validate", "verify", "loop", "sensitivity", "permissions"),
+        "The whole hump": ("hump", "computer"),
+        "From measured passes": ("identify", "retune", "watch", "replay"),
+        "For controllers": ("export",),
+        "The project itself": ("study",),
+    },
+    {
+        "tune": Shown("tune my.toml -o out", "results.md"),
+        "aim": Shown("aim my-aim.toml -o out/aim", "aim.md"),
+        "validate": Shown("validate out --passes 50000 --seed 7", "limits.md"),
+        "sensitivity": Shown("sensitivity my.toml -o out/sensitivity", "sensitivity.md"),
+        "permissions": Shown("permissions my.toml -o out/permissions", "any-time.md"),
+        "computer": Shown("computer my-computer.toml -o out/computer", "control-computer.md"),
+        "watch": Shown("watch log.csv --config my.toml -o out/watch", "watch.md"),
+        "identify": Shown("identify log.csv --config my.toml -o out/identify", "identify.md"),
+        "replay": Shown("replay log.csv --table out/book.h5 -o out/replay", "pass-log.md"),
+        "retune": Shown("retune log.csv --config my.toml -o out/retune", "retune.md"),
+        "verify": Shown("verify out", "verification.md"),
+        "plot": Shown("plot out -o out/pictures", "method.md"),
+        "loop": Shown("loop out -o out/loops", "loop.md"),
+        "inspect": Shown("inspect out", "table-format.md"),
+        "export": Shown("export out --format st -o out/st", "controllers.md"),
+        "init": Shown("init --hump > my-trial.toml", "own-types.md"),
+        "study": Shown("study --list", "studies.md"),
+    },
+)
+
+HUMP: Final = CommandGuide(
+    "hump",
+    {
+        "The hump": ("make", "check", "routes", "draw", "export", "schema", "design"),
+        "Trains over it": ("simulate", "speed", "capacity", "compare"),
+    },
+    {
+        "make": Shown("hump make my-short.toml -o out/my", "hump-file.md"),
+        "check": Shown("hump check my-hump.toml", "hump-file.md"),
+        "routes": Shown("hump routes my-hump.toml", "hump-file.md"),
+        "draw": Shown("hump draw my-hump.toml -o out/hump --track 7", "hump-file.md"),
+        "export": Shown("hump export my-hump.toml -o my-hump.xlsx", "hump-file.md"),
+        "schema": Shown("hump schema > hump.schema.json", "hump-file.md"),
+        "design": Shown("hump design my-hump.toml --speed 1.4", "hump-trials.md"),
+        "simulate": Shown("hump simulate my-trial.toml --trains 1000 -o out/mine", "hump-trials.md"),
+        "speed": Shown("hump speed my-trial.toml --train 3", "hump-trials.md"),
+        "capacity": Shown("hump capacity my-trial.toml --exit-std 0.35,0.2,0.05", "hump-trials.md"),
+        "compare": Shown("hump compare out/today out/new -o out/compared", "hump-trials.md"),
+    },
+)
+
+SENSORS: Final = CommandGuide(
+    "sensors",
+    {"Commands": ("plan", "tune")},
+    {
+        "plan": Shown("sensors plan my.toml --sensors 3-6", "point-sensors.md"),
+        "tune": Shown("sensors tune my-sensors.toml -o out/sensors", "point-sensors.md"),
+    },
+)
+
+SWEEP: Final = CommandGuide(
+    "sweep",
+    {"Commands": ("run", "status", "failed")},
+    {
+        "run": Shown("sweep run my-sweep.toml -o out/sweep", "sweep.md"),
+        "status": Shown("sweep status out/sweep", "sweep.md"),
+        "failed": Shown("sweep failed out/sweep", "sweep.md"),
+    },
+)
+
+GUIDES: Final[Mapping[str, CommandGuide]] = {guide.words: guide for guide in (TOP, HUMP, SENSORS, SWEEP)}
+"""By the words of the group."""

@@ -1,0 +1,55 @@
+"""The guide to the command line: it leaves no command out, its examples can be typed, and its help is not cut off."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer.main
+
+from synth.cli.arguments import with_names
+from synth.cli.commands import app
+from synth.cli.guide import GUIDES
+from synth.frame.command_guide import PAGES, CommandGuide
+
+ROOT = Path(__file__).parents[2]
+
+
+def group_of(guide: CommandGuide) -> Any:
+    """The commands of a guide."""
+    top: Any = typer.main.get_command(app)
+    return top.commands[guide.words] if guide.words else top
+
+
+@pytest.mark.parametrize("guide", GUIDES.values(), ids=lambda guide: guide.words or "top")
+def test_every_command_has_its_section_and_its_example(guide: CommandGuide) -> None:
+    listed = [name for names in guide.sections.values() for name in names]
+    assert sorted(listed) == sorted(group_of(guide).commands)
+    assert set(listed) - set(guide.shown) == (set(GUIDES) - {""} if guide.words == "" else set())
+    for name, shown in guide.shown.items():
+        assert shown.example.startswith(f"{guide.words} {name}".lstrip())
+        assert (ROOT / PAGES / shown.page).is_file()
+
+
+@pytest.mark.parametrize("example", [shown.example for guide in GUIDES.values() for shown in guide.shown.values()])
+def test_an_example_can_be_typed(example: str) -> None:
+    """Every word of it is a command, an option, or a value that an option takes; nothing is run."""
+    command: Any = typer.main.get_command(app)
+    words = with_names(shlex.split(example.partition(">")[0]))
+    while hasattr(command, "commands"):
+        context = command.make_context("retarder-synth", words, resilient_parsing=True)
+        _, command, words = command.resolve_command(context, words)
+    context = command.make_context(example, words)
+    assert not context.args
+
+
+@pytest.mark.parametrize("width", [60, 80, 100, 140])
+def test_help_is_not_cut_off(width: int) -> None:
+    for guide in GUIDES.values():
+        group = group_of(guide)
+        context = group.make_context("retarder-synth", ["--help"], resilient_parsing=True, terminal_width=width)
+        told = group.get_help(context)
+        assert "..." not in told.replace("[ARGS]...", "")
+        assert max(map(len, told.splitlines())) <= width
