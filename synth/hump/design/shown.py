@@ -123,14 +123,14 @@ def highest(found: FoundDesign) -> Sentence:
         text = (
             f"Up to a hump speed of {speed:.2f} m/s (found to {NEARLY_M_S:g} m/s) no interval of the triples is short. "
         )
-    if math.isfinite(worst.least_s):
+    if found.hump.choices > 1 and math.isfinite(worst.least_s):
         text += (
             f"Exit speeds are compared in {found.hump.choices} steps; twice as many change the least margin by "
             f"{worst.grid_s:+.2f} s."
         )
     figures = {
         "highest_hump_speed_m_s": speed,
-        "least_margin_s": worst.least_s if math.isfinite(worst.least_s) else None,
+        "least_margin_s": finite(worst.least_s),
         "grid_error_s": worst.grid_s,
     }
     return Sentence(text, figures, brief=True)
