@@ -133,7 +133,7 @@ def highest(found: FoundDesign) -> Sentence:
         "least_margin_s": finite(worst.least_s),
         "grid_error_s": worst.grid_s,
     }
-    return Sentence(text, figures, brief=True)
+    return Sentence(text.rstrip(), figures, brief=True)
 
 
 def parting_row(found: FoundDesign, each: Any) -> Row:
