@@ -86,7 +86,9 @@ def limits(found: FoundAim) -> Iterator[Limit]:
 def show(found: FoundAim) -> Iterator[Chapter]:
     """What is shown of it."""
     from synth.aim.shown import asked, cells, charts, files, gaps
+    from synth.aim.shown_commands import cards, command_charts
 
+    yield Chapter("What the position is told", (*command_charts(found.book), *cards(found.book)))
     yield Chapter("Results", (*asked(found.book, found.verdict), *gaps(found.book, found.verdict)))
     yield Chapter("Pictures", tuple(charts(found.book)))
     yield Chapter("Cell by cell", (*cells(found.book), *files(found.book)))

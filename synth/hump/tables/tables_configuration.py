@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -21,22 +21,15 @@ from synth.frame.settings.toml_file import toml_tree
 from synth.frame.settings.toml_text import toml_text
 from synth.hump.configuration.position_settings import HumpPositionSettings
 from synth.hump.configuration.trial_file import TrialFile, parse_trial_file, trial_text
+from synth.hump.tables.entering import BEYOND, LOWEST_M_S, Entering, entering_at
 from synth.hump.tables.fewest_classes import NeededClass, fewest_classes
 from synth.hump.trains.hump_routes import hump_routes
-from synth.hump.trains.made_trial import made_trial, site_of
+from synth.hump.trains.made_trial import site_of
 from synth.hump.trains.position_choice import retarders_at
 from synth.hump.trains.position_roles import Fixed
 from synth.hump.trains.resolved_trial import ResolvedTrial, lead_of, resolve_trial
-from synth.hump.trains.train_memory import TrainMemory
-from synth.kernels.cache import guarded
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.plant_fault import in_file
-
-CUTS: Final = 1000
-"""Cuts that are humped to see how fast they come, or some more: whole trains."""
-
-BEYOND: Final = 0.01
-"""Share of these cuts that may come slower than the entry speeds of the configuration, and the same faster."""
 
 USUAL_STD_M_S: Final = 0.15
 """Accuracy of a position whose book is yet to be made: [hump-computer-1970s] asks 0.15 to 0.2 m/s."""
@@ -49,20 +42,6 @@ APART_ROOT_M_S: Final = 0.25
 
 ALONE: Final = 0.8
 """A book has two targets at least; beside a single one stands one of this share of it."""
-
-LOWEST_M_S: Final = 0.3
-"""Lowest target of a table."""
-
-
-@dataclass(frozen=True)
-class Entering:
-    """How `cuts` cuts came to the position, from `low_m_s` to `high_m_s`, but for a few; `command_m_s`: the highest
-    exit speed that one of them was aimed with, None where the position aims none."""
-
-    cuts: int
-    low_m_s: float
-    high_m_s: float
-    command_m_s: float | None
 
 
 def tables_toml(source: Path, number: int | None) -> str:
@@ -80,18 +59,26 @@ def tables_toml(source: Path, number: int | None) -> str:
     entry = site_of(choice, config)
     with in_file(str(source)):
         classes = tuple(fewest_classes(config.needs[chosen - 1].kinds, config.people))
-    entering = entering_at(chosen - 1, config, entry.position.max_entry_speed_m_s)
+    entering, most_m_s = entering_at(chosen - 1, config), entry.position.max_entry_speed_m_s
+    speeds = speeds_of(chosen - 1, config, entering, most_m_s)
+    least_high_m_s = speeds["targets"]["exit_speeds_m_s"][-1] + BELOW_ENTRY_M_S
     tree = {
         "title": f"Position {chosen} of: {config.hump.title}",
         **own_types_of(toml_tree(text, str(source))),
         **place_of(chosen - 1, config, entry),
-        **speeds_of(chosen - 1, config, entering, entry.position.max_entry_speed_m_s),
-        "cut": [class_tree(each) for each in classes],
+        **speeds,
+        "cut": [
+            {**class_tree(each), "entry": entering.law(each.category.number, round(least_high_m_s, 6), most_m_s)}
+            for each in classes
+        ],
     }
-    high = high_origin(source, chosen, entering, tree["entry"]["high_m_s"], entry.position.max_entry_speed_m_s)
+    high = high_origin(source, chosen, entering, tree["entry"]["high_m_s"], most_m_s)
     origins = {**origins_of(source, chosen, entering), "entry.high_m_s": high}
     sources = {key: why for key, why in origins.items() if is_set(tree, key)}
-    written = f"{head(source, chosen, config)}{toml_text({'title': tree.pop('title'), 'sources': sources, **tree})}"
+    said = {each.number: each for each in file.settings.position}.get(chosen, HumpPositionSettings(number=chosen))
+    written = (
+        f"{head(source, said, config, entering)}{toml_text({'title': tree.pop('title'), 'sources': sources, **tree})}"
+    )
     parse_config(written, str(file.folder / f"tables of position {chosen}"))
     return written
 
@@ -123,30 +110,6 @@ def without_books(file: TrialFile) -> TrialFile:
         bare.append(each.model_copy(update={"tables": None, "tables_config": None, "exit_std_m_s": std}))
     position = (*bare, *said.values())  # those that the hump has not are refused as ever
     return replace(file, settings=file.settings.model_copy(update={"position": position}))
-
-
-def entering_at(place: int, config: ResolvedTrial, most_m_s: float) -> Entering:
-    """How cuts come to the position at `place`, whose retarders take no faster ones than `most_m_s`; `InputError` where
-    none comes."""
-    trial, cuts = made_trial(config), config.settings.trains.cuts
-    trains = math.ceil(CUTS / cuts)
-    _, _, memory = guarded(trial.humped, 0, trains)
-    speeds = memory.entry_m_s[:, :, place]
-    speeds = speeds[np.isfinite(speeds)]
-    if not len(speeds):
-        raise InputError(
-            f"{config.place}: of {trains} trains no cut comes to position {place + 1}; nothing is to be made"
-        )
-    low, high = np.quantile(speeds, [BEYOND, 1.0 - BEYOND])
-    low_m_s, high_m_s = math.floor(10.0 * low) / 10.0, min(math.ceil(10.0 * high) / 10.0, most_m_s)
-    return Entering(len(speeds), max(low_m_s, LOWEST_M_S), high_m_s, highest_aimed_m_s(place, config, memory))
-
-
-def highest_aimed_m_s(place: int, config: ResolvedTrial, memory: TrainMemory) -> float | None:
-    """The highest exit speed that a cut was aimed with, None where none was aimed."""
-    commands = memory.command_m_s[:, :, place]
-    aimed = commands[np.isfinite(commands) & config.roles.aims[place][memory.route]]
-    return float(aimed.max()) if len(aimed) else None
 
 
 def own_types_of(tree: dict[str, Any]) -> dict[str, Any]:
@@ -195,7 +158,8 @@ def speeds_of(place: int, config: ResolvedTrial, entering: Entering, most_m_s: f
     low, high = max(min(ends), LOWEST_M_S), max(ends)
     said = {each.number: each for each in config.settings.position}[place + 1]
     wanted = isinstance(config.roles.exits[place], Fixed) or said.highest_m_s is not None
-    fastest = max(entering.high_m_s, round(high + BELOW_ENTRY_M_S, 6)) if wanted else entering.high_m_s
+    fastest = min(entering.high_m_s, most_m_s)
+    fastest = max(fastest, round(high + BELOW_ENTRY_M_S, 6)) if wanted else fastest
     if fastest > most_m_s:
         raise InputError(
             f"{config.place}: position {place + 1} commands up to {high:g} m/s, but its retarders take cuts of at most "
@@ -258,18 +222,21 @@ def origins_of(source: Path, number: int, entering: Entering) -> dict[str, str]:
     }
 
 
-def head(source: Path, number: int, config: ResolvedTrial) -> str:
-    """What the file is for, and how to use what is made of it, as comments."""
-    book = f"out/position-{number}"
+def head(source: Path, said: HumpPositionSettings, config: ResolvedTrial, entering: Entering) -> str:
+    """What the file is for, and how to use what is made of it, as comments; `said`: what the trial says of the
+    position, which may name the files already."""
+    number = said.number
+    book, configuration = said.tables or f"out/position-{number}/book.h5", said.tables_config or "tables.toml"
     return f"""\
 # Tables for position {number} of {source}: {config.needs[number - 1].words}.
-# The classes are the fewest that stand for all its cuts; a class weighs what cars of its category weigh on the mean.
-# Keep this file, as tables.toml, in the folder of the trial; then
-#     retarder-synth tune tables.toml -o {book}
-# and in the trial
+# The classes are the fewest that stand for all its cuts; a class weighs what cars of its category weigh on the mean,
+# and comes as fast as {entering.cuts} simulated cuts of the trial did.
+# Keep this file, as {configuration}, in the folder of the trial, and make its book there by
+#     retarder-synth tune {configuration} -o {Path(book).parent.as_posix()}
+# In the trial the position names both:
 #     [[position]]
 #     number = {number}
-#     tables = "{book}/book.h5"
-#     tables_config = "tables.toml"
+#     tables = "{book}"
+#     tables_config = "{configuration}"
 # All other keys, with what they are unless given: retarder-synth init --retarder {config.positions[number - 1].site}
 """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -152,11 +152,13 @@ def or_fewer(missing: Collection[Kind], trains: TrainPopulation | SortingList, p
     if isinstance(trains, SortingList):
         return "or take a list without them"
     members = people.categories.members
-    longest: Mapping[int, int] = {
-        place: int(people.mix.of(people.categories, members[place]).axles.max()) for place, _ in missing
-    }
-    most = min((axles - 1) // longest[place] for place, axles in missing)
-    if most >= 1:
-        return f"or set trains.most_cars = {most}"
-    names = sorted({members[place].latin for place, axles in missing if axles <= longest[place]})
-    return f"or leave {', '.join(names)} out of trains.category_shares"
+    longest = {place: int(people.mix.of(people.categories, members[place]).axles.max()) for place, _ in missing}
+    without = {place for place, axles in missing if axles <= longest[place]}
+    remedies = []
+    if without:
+        names = ", ".join(members[place].latin for place in sorted(without))
+        remedies.append(f"leave {names} out of trains.category_shares")
+    if without != set(longest):
+        most = min((axles - 1) // longest[place] for place, axles in missing if place not in without)
+        remedies.append(f"set trains.most_cars = {most}")
+    return f"or {' and '.join(remedies)}"

@@ -108,7 +108,10 @@ def choice_of(
         tuned_with = folder / settings.tables_config
     for path in (book, tuned_with):
         if path is not None and not path.is_file():
-            raise PlantError(f"position {number}: there is no file {str(path)!r}; 'retarder-synth tune' makes a book")
+            raise PlantError(
+                f"position {number}: there is no file {str(path)!r}; 'retarder-synth init --for' prints the "
+                "configuration of a book for this trial, and 'retarder-synth tune' makes it"
+            )
     supply = 1.0 if settings.supply_share is None else settings.supply_share
     require(
         supply == 1.0 or book is None,
