@@ -76,9 +76,7 @@ def tables_toml(source: Path, number: int | None) -> str:
     origins = {**origins_of(source, chosen, entering), "entry.high_m_s": high}
     sources = {key: why for key, why in origins.items() if is_set(tree, key)}
     said = {each.number: each for each in file.settings.position}.get(chosen, HumpPositionSettings(number=chosen))
-    written = (
-        f"{head(source, said, config, entering)}{toml_text({'title': tree.pop('title'), 'sources': sources, **tree})}"
-    )
+    written = head(source, said, config, entering) + toml_text({**tree, "sources": sources})
     parse_config(written, str(file.folder / f"tables of position {chosen}"))
     return written
 
