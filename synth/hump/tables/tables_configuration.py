@@ -68,12 +68,11 @@ def tables_toml(source: Path, number: int | None) -> str:
         **place_of(chosen - 1, config, entry),
         **speeds,
         "cut": [
-            {**class_tree(each), "entry": entering.law(each.category.number, round(least_high_m_s, 6), most_m_s)}
-            for each in classes
+            class_tree(each, entering.law(each.category.number, round(least_high_m_s, 6), most_m_s)) for each in classes
         ],
     }
-    high = high_origin(source, chosen, entering, tree["entry"]["high_m_s"], most_m_s)
-    origins = {**origins_of(source, chosen, entering), "entry.high_m_s": high}
+    high = high_origin(source.name, chosen, entering, tree["entry"]["high_m_s"], most_m_s)
+    origins = {**origins_of(source.name, chosen, entering), "entry.high_m_s": high}
     sources = {key: why for key, why in origins.items() if is_set(tree, key)}
     said = {each.number: each for each in file.settings.position}.get(chosen, HumpPositionSettings(number=chosen))
     written = head(source, said, config, entering) + toml_text({**tree, "sources": sources})
@@ -145,28 +144,39 @@ def seen_ahead_m(element: RouteElement, radars_m: tuple[tuple[float, float], ...
 
 
 def speeds_of(place: int, config: ResolvedTrial, entering: Entering, most_m_s: float) -> dict[str, Any]:
-    """Entry speeds and targets; `InputError` where exit speeds are asked for that the retarders, which take no faster
-    cuts than `most_m_s`, cannot have."""
-    need, aim = config.needs[place], config.settings.aim
-    ends = [speed for speed in (need.lowest_m_s, need.highest_m_s) if speed is not None]
-    if entering.command_m_s is not None:
-        ends += [aim.lowest_m_s, entering.command_m_s]
-    elif not ends:
-        ends = [aim.lowest_m_s, aim.highest_m_s]
-    low, high = max(min(ends), LOWEST_M_S), max(ends)
+    """Entry speeds and targets; `InputError` where exit speeds are asked for that cuts cannot have which come no faster
+    than they do, or than `most_m_s`, which the retarders take."""
+    low, high = commanded_m_s(place, config, entering)
     said = {each.number: each for each in config.settings.position}[place + 1]
     wanted = isinstance(config.roles.exits[place], Fixed) or said.highest_m_s is not None
     fastest = min(entering.high_m_s, most_m_s)
     fastest = max(fastest, round(high + BELOW_ENTRY_M_S, 6)) if wanted else fastest
+    top, named = round(min(high, fastest - BELOW_ENTRY_M_S), 6), f"{config.place}: position {place + 1}"
     if fastest > most_m_s:
         raise InputError(
-            f"{config.place}: position {place + 1} commands up to {high:g} m/s, but its retarders take cuts of at most "
-            f"{most_m_s:g} m/s: set its highest exit speed to {most_m_s - BELOW_ENTRY_M_S:g} m/s or less"
+            f"{named} commands up to {high:g} m/s, but its retarders take cuts of at most {most_m_s:g} m/s: set its "
+            f"highest exit speed to {most_m_s - BELOW_ENTRY_M_S:g} m/s or less"
+        )
+    if top < low:
+        raise InputError(
+            f"{named} commands {low:g} m/s or more, but cuts come to it with {fastest:g} m/s at most: set its lowest "
+            "exit speed lower"
         )
     return {
         "entry": {"low_m_s": entering.low_m_s, "high_m_s": fastest},
-        "targets": {"exit_speeds_m_s": list(targets_m_s(low, min(high, fastest - BELOW_ENTRY_M_S)))},
+        "targets": {"exit_speeds_m_s": list(targets_m_s(low, top))},
     }
+
+
+def commanded_m_s(place: int, config: ResolvedTrial, entering: Entering) -> tuple[float, float]:
+    """Lowest and highest exit speed that may be commanded. The highest of an aim is that of [aim] if the trial gives
+    it; else that of the simulated cuts, for the usual one is meant as no limit."""
+    need, aim = config.needs[place], config.settings.aim
+    ends = [speed for speed in (need.lowest_m_s, need.highest_m_s) if speed is not None]
+    if config.roles.aims[place].any():
+        said = "highest_m_s" in aim.model_fields_set or entering.command_m_s is None
+        ends += [aim.lowest_m_s, aim.highest_m_s if said else entering.command_m_s or 0.0]
+    return max(min(ends), LOWEST_M_S), max(ends)
 
 
 def targets_m_s(low_m_s: float, high_m_s: float) -> Iterator[float]:
@@ -178,15 +188,16 @@ def targets_m_s(low_m_s: float, high_m_s: float) -> Iterator[float]:
     return (round(float(root) ** 2, 2) for root in np.linspace(low, high, steps + 1))
 
 
-def class_tree(each: NeededClass) -> dict[str, Any]:
-    """A class as a configuration has it."""
-    return {
+def class_tree(each: NeededClass, entry: dict[str, Any]) -> dict[str, Any]:
+    """A class as a configuration has it, with its entry speeds if it has own ones."""
+    tree = {
         "label": each.label,
         "car": each.car,
         "cars": each.cars,
         "mass_t": each.mass_t,
         "category": each.category.name,
     }
+    return {**tree, "entry": entry} if entry else tree
 
 
 def is_set(tree: dict[str, Any], key: str) -> bool:
@@ -195,28 +206,28 @@ def is_set(tree: dict[str, Any], key: str) -> bool:
     return name in tree.get(section, {})
 
 
-def high_origin(source: Path, number: int, entering: Entering, high_m_s: float, most_m_s: float) -> str:
+def high_origin(trial: str, number: int, entering: Entering, high_m_s: float, most_m_s: float) -> str:
     """Where the highest entry speed is from."""
     if high_m_s == most_m_s:
         return "the retarders take no faster cuts"
     if high_m_s > entering.high_m_s:
         return "just above the highest exit speed that is asked for"
-    return humped(source, number, entering, "faster")
+    return humped(trial, number, entering, "faster")
 
 
-def humped(source: Path, number: int, entering: Entering, side: str) -> str:
+def humped(trial: str, number: int, entering: Entering, side: str) -> str:
     """What was simulated."""
-    return f"{entering.cuts} simulated cuts of {source}: {100.0 * BEYOND:g} % of them come to position {number} {side}"
+    return f"{entering.cuts} simulated cuts of {trial}: {100.0 * BEYOND:g} % of them come to position {number} {side}"
 
 
-def origins_of(source: Path, number: int, entering: Entering) -> dict[str, str]:
-    """Where the other numbers are from, by their keys."""
+def origins_of(trial: str, number: int, entering: Entering) -> dict[str, str]:
+    """Where the other numbers are from, by their keys; `trial`: the name of its file."""
     return {
-        "retarder.zones_m": f"the hump of {source}",
-        "track.grade_permille": f"the hump of {source}",
-        APPROACH: f"the radars of the hump of {source}",
-        "entry.low_m_s": humped(source, number, entering, "slower"),
-        "targets.exit_speeds_m_s": f"exit speeds that {source} may command at position {number}",
+        "retarder.zones_m": f"the hump of {trial}",
+        "track.grade_permille": f"the hump of {trial}",
+        APPROACH: f"the radars of the hump of {trial}",
+        "entry.low_m_s": humped(trial, number, entering, "slower"),
+        "targets.exit_speeds_m_s": f"exit speeds that {trial} may command at position {number}",
     }
 
 
@@ -226,7 +237,7 @@ def head(source: Path, said: HumpPositionSettings, config: ResolvedTrial, enteri
     number = said.number
     book, configuration = said.tables or f"out/position-{number}/book.h5", said.tables_config or "tables.toml"
     return f"""\
-# Tables for position {number} of {source}: {config.needs[number - 1].words}.
+# Tables for position {number} of {source.name}: {config.needs[number - 1].words}.
 # The classes are the fewest that stand for all its cuts; a class weighs what cars of its category weigh on the mean,
 # and comes as fast as {entering.cuts} simulated cuts of the trial did.
 # Keep this file, as {configuration}, in the folder of the trial, and make its book there by
@@ -236,5 +247,5 @@ def head(source: Path, said: HumpPositionSettings, config: ResolvedTrial, enteri
 #     number = {number}
 #     tables = "{book}"
 #     tables_config = "{configuration}"
-# All other keys, with what they are unless given: retarder-synth init --retarder {config.positions[number - 1].site}
+# All other keys, with what they are unless given: retarder-synth init
 """
