@@ -54,11 +54,11 @@ class Entering:
     def law(self, category: int, top_target_m_s: float, most_m_s: float) -> dict[str, Any]:
         """The entry speeds of a class of this category as a configuration has them; nothing where those of all cuts
         stand for them. The fastest lie above `top_target_m_s`, for a table asks for that, and not above `most_m_s`."""
-        *edges, last = self.of_category.get(category, (0.0,))
+        edges = self.of_category.get(category, ())
         if not edges:
             return {}
-        last = min(max(last, top_target_m_s), most_m_s)
-        kept = [edge for edge in edges if edge < last]
+        last = min(max(edges[-1], top_target_m_s), most_m_s)
+        kept = [edge for edge in edges[:-1] if edge < last]
         shares = [*SHARES[: len(kept) - 1], sum(SHARES[len(kept) - 1 :])]
         return {"edges_m_s": [*kept, last], "shares": shares}
 

@@ -40,9 +40,6 @@ BELOW_ENTRY_M_S: Final = 0.1
 APART_ROOT_M_S: Final = 0.25
 """Neighbouring targets differ so much in the root of their speed at most: 1 m/s at 4 m/s, 0.4 m/s at 0.6 m/s."""
 
-ALONE: Final = 0.8
-"""A book has two targets at least; beside a single one stands one of this share of it."""
-
 
 def tables_toml(source: Path, number: int | None) -> str:
     """The configuration of a book for position `number` of the trial or hump `source`, as TOML with comments.
@@ -180,11 +177,11 @@ def commanded_m_s(place: int, config: ResolvedTrial, entering: Entering) -> tupl
 
 
 def targets_m_s(low_m_s: float, high_m_s: float) -> Iterator[float]:
-    """The fewest targets from one speed to the other, closer to each other where cuts are slow."""
-    if high_m_s <= low_m_s:
-        low_m_s, high_m_s = ALONE * high_m_s, high_m_s
+    """The fewest targets from one speed to the other, two at least, closer to each other where cuts are slow; where
+    both speeds are one, the other target is a step lower."""
     low, high = math.sqrt(low_m_s), math.sqrt(high_m_s)
-    steps = math.ceil((high - low) / APART_ROOT_M_S - 1e-9)
+    low = max(high - APART_ROOT_M_S, math.sqrt(LOWEST_M_S)) if high <= low else low
+    steps = max(math.ceil((high - low) / APART_ROOT_M_S - 1e-9), 1)
     return (round(float(root) ** 2, 2) for root in np.linspace(low, high, steps + 1))
 
 
