@@ -234,7 +234,8 @@ def head(source: Path, said: HumpPositionSettings, config: ResolvedTrial, enteri
     number = said.number
     book, configuration = said.tables or f"out/position-{number}/book.h5", said.tables_config or "tables.toml"
     return f"""\
-# Tables for position {number} of {source.name}: {config.needs[number - 1].words}.
+# Tables for position {number} of {source.name}:
+# {config.needs[number - 1].words}.
 # The classes are the fewest that stand for all its cuts; a class weighs what cars of its category weigh on the mean,
 # and comes as fast as {entering.cuts} simulated cuts of the trial did.
 # Keep this file, as {configuration}, in the folder of the trial, and make its book there by

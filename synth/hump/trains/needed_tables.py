@@ -124,7 +124,8 @@ def unfitting_tables(
             yield f"{named} {lacking}: {remedy}, {or_fewer(missing, trains, people)}"
         targets = need.missing_targets(held)
         if targets is not None:
-            yield f"{named} {targets}, but {need.words}: {remedy}, or command only speeds that it has"
+            within = f"within {speeds(held.lowest_m_s, held.highest_m_s)} (lowest_m_s and highest_m_s, or exit_m_s)"
+            yield f"{named} {targets}, but {need.words}: {remedy}, or give the position exit speeds {within}"
 
 
 def lacking_classes(missing: Collection[Kind], held: HeldTables, categories: WeightCategories) -> str:
