@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from synth.hump.control.number_ranges import ranges
 
 if TYPE_CHECKING:
     from plant_models.hump import HumpGraph, Route
+    from plant_models.library.hump_entry import HumpEntry
 
 
 MOST_TOLD = 30
@@ -96,24 +98,26 @@ def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -
 
 
 def export_command(source: Path, output: Path) -> int:
-    """Write the hump in `source` into the file `output`: railML, CSV or TOML, as its name ends."""
+    """Write the hump in `source` into the file `output`: railML, CSV, workbook or TOML, as its name ends."""
     from synth.frame.input_error import InputError
     from synth.frame.new_file import require_new
-    from synth.hump.forms.hump_csv import to_csv
+    from synth.hump.forms.hump_csv import to_csv, to_xlsx
     from synth.hump.forms.hump_tree import tree_toml
-    from synth.hump.hump_file import CSV_SUFFIX, RAILML_SUFFIXES, read_hump
+    from synth.hump.hump_file import CSV_SUFFIX, RAILML_SUFFIXES, WORKBOOK_SUFFIX, read_hump
     from synth.hump.railml.write import to_railml
     from tuning_tables.atomic_file import write_atomically
 
-    texts = {CSV_SUFFIX: to_csv, ".toml": tree_toml}
-    if output.suffix not in (*RAILML_SUFFIXES, *texts):
-        raise InputError(
-            f"--output is {output}; its name must end with {', '.join((*RAILML_SUFFIXES, CSV_SUFFIX))} or .toml"
-        )
+    forms: dict[str, Callable[[HumpEntry], bytes]] = {
+        **dict.fromkeys(RAILML_SUFFIXES, to_railml),
+        CSV_SUFFIX: lambda hump: to_csv(hump).encode(),
+        WORKBOOK_SUFFIX: to_xlsx,
+        ".toml": lambda hump: tree_toml(hump).encode(),
+    }
+    if output.suffix not in forms:
+        *others, last = forms
+        raise InputError(f"--output is {output}; its name must end with {', '.join(others)} or {last}")
     require_new(output)
-    hump = read_hump(source).entry
-    railml = output.suffix in RAILML_SUFFIXES
-    write_atomically(output, to_railml(hump) if railml else texts[output.suffix](hump).encode())
+    write_atomically(output, forms[output.suffix](read_hump(source).entry))
     print(output)
     return OK
 

@@ -15,7 +15,7 @@ from synth.frame.command_line import add_listed, listed_group
 app = typer.Typer(cls=listed_group(HUMP), help="Check, list and draw a hump; hump whole trains over it.")
 
 Hump = Annotated[
-    Path, typer.Argument(metavar="FILE|NAME", help="A hump file (.toml, .railml, .csv), or a hump of the library.")
+    Path, typer.Argument(metavar="FILE|NAME", help="A hump file (.toml, .railml, .csv, .xlsx), or one of the library.")
 ]
 
 
@@ -61,7 +61,7 @@ def draw(
 def export(
     source: Hump,
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="FILE", help="The new file: .railml, .csv or .toml.")
+        Path, typer.Option("-o", "--output", metavar="FILE", help="The new file: .railml, .csv, .xlsx or .toml.")
     ],
 ) -> int:
     """Write a hump as railML 3, as a table for spreadsheets with a row an element, or as TOML."""

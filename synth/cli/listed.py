@@ -160,6 +160,14 @@ HUMP: Final = (
         "the same trains. Resumable.",
     ),
     Listed(
+        "hump design",
+        "synth.hump.design.command:COMMAND",
+        "synth.hump.design.options:DesignOptions",
+        "init --hump",
+        "Test the design of a hump: fall, brakes, entry speeds and intervals of a bad, a good and a bad runner.\n\n"
+        "Every two tracks are tried; up to which hump speed they do is told. Exit code 1 if the test is not passed.",
+    ),
+    Listed(
         "hump compare",
         "synth.hump.comparison.command:COMMAND",
         "synth.hump.comparison.options:CompareOptions",

@@ -36,6 +36,11 @@ class WrittenOutput(Protocol):
         """Write the page."""
         ...
 
+    @property
+    def workbook(self) -> bool:
+        """Write all tables into one workbook."""
+        ...
+
 
 S = TypeVar("S")
 O = TypeVar("O", bound=Options)  # noqa: E741  # the options of a command

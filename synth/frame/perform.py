@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,7 +22,7 @@ from synth.frame.told import Told
 if TYPE_CHECKING:
     from synth.frame.picture.studio import Studio
 
-PAGE = "report.html"
+PAGE, WORKBOOK = "report.html", "sheets.xlsx"
 
 
 def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_json: bool) -> int:
@@ -74,6 +74,8 @@ def finished(
         for chapter in command.show(result):
             write_data(chapter, directory)
             chapters.append(chapter)
+        if head.output.workbook:
+            directory.write(WORKBOOK, workbook_of(chapters))
         told = Told(command.name, head, created, verdict, tuple(chapters), command.limits_of_use)
         write_shown(told, directory, studio, progress.note)
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")
@@ -89,6 +91,15 @@ def write_data(chapter: Chapter, directory: ResultsDirectory) -> None:
             directory.write(each.name, each.content)
         elif isinstance(each, Table):
             directory.write(each.file, to_csv(each))
+
+
+def workbook_of(chapters: Sequence[Chapter]) -> bytes:
+    """All tables, a sheet each."""
+    from synth.frame.sheet import sheet_rows
+    from synth.frame.workbook import to_workbook
+
+    tables = [each for chapter in chapters for each in chapter.exhibits if isinstance(each, Table)]
+    return to_workbook({each.name: sheet_rows(each) for each in tables})
 
 
 def write_shown(told: Told, directory: ResultsDirectory, studio: Studio, tell: Callable[[str], None]) -> None:

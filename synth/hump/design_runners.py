@@ -1,7 +1,8 @@
-"""The runners that a hump is designed for, rolled over a route without brakes: a good, a mean and a bad one."""
+"""The runners that a hump is designed for, rolled over a route without brakes: very good, good, mean and bad ones."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -16,6 +17,7 @@ from plant_models.rolling.car_mix import CarMix, MixedCar
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from plant_models.rolling.resistance_law import HumpNormLaw
 from plant_models.rolling.weather import Weather
+from synth.hump.configuration.design_settings import DesignSettings
 from synth.simulation.free_roll import rolling_cuts
 
 Floats = NDArray[np.float64]
@@ -24,7 +26,7 @@ CAR: Final = "gondola-4"
 DRAG_AREA_M2: Final = 1.36 * 8.5
 """C_x·S of a gondola with the air ahead on it; engineering judgement."""
 
-HUMP_SPEED_M_S: Final = 1.7
+HUMP_SPEED_M_S: Final = DesignSettings().hump_speed_m_s
 
 
 @dataclass(frozen=True)
@@ -37,19 +39,60 @@ class DesignRunner:
     head_wind_m_s: float
 
     @property
+    def axles(self) -> int:
+        """Those of the car."""
+        return len(load_car(CAR).car.axle_offsets_m)
+
+    @property
     def reduced_gravity_m_s2(self) -> float:
         """g', by which its wheels take part in the motion."""
-        axles = len(load_car(CAR).car.axle_offsets_m)
-        return GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * axles / self.mass_t)
+        return GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * self.axles / self.mass_t)
 
 
-DESIGN_RUNNERS: Final = (
-    DesignRunner("good", 70.0, 0.8, 0.0),
-    DesignRunner("mean", 22.0, 1.75, 0.0),
-    DesignRunner("bad", 22.0, 4.0, 2.0),
-)
-"""Engineering judgement, but for the mean: that of the lightest category in [hump-norm]. No table of the runners that
-humps are designed for was found."""
+MEAN_RUNNER: Final = DesignRunner("mean", 22.0, 1.75, 0.0)
+"""That of the lightest category in [hump-norm]."""
+
+
+def good_runner(asked: DesignSettings) -> DesignRunner:
+    """The good one."""
+    return DesignRunner("good", asked.good_mass_t, asked.good_n_per_kn, asked.good_head_wind_m_s)
+
+
+def bad_runner(asked: DesignSettings) -> DesignRunner:
+    """The bad one, in the worst weather."""
+    return DesignRunner("bad", asked.bad_mass_t, asked.bad_n_per_kn, asked.bad_head_wind_m_s)
+
+
+def very_good_runner(asked: DesignSettings) -> DesignRunner:
+    """The one that needs most brake."""
+    return DesignRunner("very good", asked.very_good_mass_t, asked.very_good_n_per_kn, asked.good_head_wind_m_s)
+
+
+DESIGN_RUNNERS: Final = (good_runner(DesignSettings()), MEAN_RUNNER, bad_runner(DesignSettings()))
+"""Those that pictures and checks of a hump show."""
+
+
+def design_population() -> CutPopulation:
+    """Law and weather of design runners, each of which has a resistance and a wind of its own."""
+    mix = CarMix((MixedCar(load_car(CAR).car, 1.0, DRAG_AREA_M2),))
+    return CutPopulation(mix, load_weight_categories(), HumpNormLaw(), Weather(head_wind_std_m_s=0.0))
+
+
+def single_cars(population: CutPopulation, runners: Sequence[DesignRunner], bends: int) -> DrawnCuts:
+    """A cut of one car for each of `runners`, whose `bends` are mean draws (`DrawnCuts.on_bends`)."""
+    count = len(runners)
+    mass = np.array([[runner.mass_t] for runner in runners])
+    draws = np.full((count, bends), population.law.mean_bend_draw)
+    return DrawnCuts(
+        mix=population.mix,
+        types=np.zeros((count, 1), dtype=np.int64),
+        mass_t=mass,
+        basic_n_per_kn=np.array([[runner.resistance_n_per_kn] for runner in runners]),
+        head_wind_m_s=np.array([runner.head_wind_m_s for runner in runners]),
+        bend_v2_m_s2=draws,
+        bend_head_m=draws,
+        air_n_per_kn=population.weather.air_n_per_kn(DRAG_AREA_M2) / mass[:, 0],
+    )
 
 
 @frozen_arrays
@@ -70,28 +113,14 @@ class RunnerRoll:
 
 def roll_runners(
     route: Route,
-    runners: tuple[DesignRunner, ...] = DESIGN_RUNNERS,
+    runners: Sequence[DesignRunner] = DESIGN_RUNNERS,
     hump_speed_m_s: float = HUMP_SPEED_M_S,
     step_m: float = 1.0,
 ) -> tuple[RunnerRoll, ...]:
     """Each of `runners`, let go with its middle at the crest at `hump_speed_m_s`, in steps of `step_m`."""
-    law, weather = HumpNormLaw(), Weather(head_wind_std_m_s=0.0)
-    car, track = load_car(CAR).car, route.roll_track
-    mix = CarMix((MixedCar(car, 1.0, DRAG_AREA_M2),))
+    population, car, track = design_population(), load_car(CAR).car, route.roll_track
     count = len(runners)
-    mass = np.array([[runner.mass_t] for runner in runners])
-    turned = np.array([law.per_switch_m_s2 * b.switches + law.per_degree_m_s2 * b.turn_deg for b in track.bends])
-    cuts = DrawnCuts(
-        mix=mix,
-        types=np.zeros((count, 1), dtype=np.int64),
-        mass_t=mass,
-        basic_n_per_kn=np.array([[runner.resistance_n_per_kn] for runner in runners]),
-        head_wind_m_s=np.array([runner.head_wind_m_s for runner in runners]),
-        bend_v2_m_s2=np.tile(turned, (count, 1)),
-        bend_head_m=np.zeros((count, len(track.bends))),
-        air_n_per_kn=weather.air_n_per_kn(DRAG_AREA_M2) / mass[:, 0],
-    )
-    population = CutPopulation(mix, load_weight_categories(), law, weather, track.bends)
+    cuts = single_cars(population, runners, len(track.bends)).on_bends(population.law, track.bends)
     rolling = rolling_cuts(population, track, route.yard_from_m, cuts)
     ahead = 0.5 * car.length_m
     middle = np.arange(step_m, route.length_m - ahead, step_m)

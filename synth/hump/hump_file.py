@@ -1,4 +1,4 @@
-"""A hump from the user's file or from the library: TOML, railML or CSV → `ReadHump`, every fault as one sentence."""
+"""A hump from a user's file or from the library: TOML, railML, CSV or workbook → `ReadHump`, each fault a sentence."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from plant_models.library.hump_entry import load_hump as load_of_library
 from plant_models.library.near_miss import near_miss
 from plant_models.library.type_file import HUMPS
 from synth.frame.input_error import InputError
-from synth.frame.settings.toml_file import read_text, read_toml
+from synth.frame.settings.toml_file import read_content, read_text, read_toml
+from synth.frame.workbook import first_sheet_csv
 from synth.hump.file_kind import FileKind, require_kind
 from synth.hump.forms.hump_csv import from_csv
 from synth.hump.railml.read import from_railml
@@ -21,7 +22,9 @@ from synth.retarder.configuration.plant_fault import in_file
 
 RAILML_SUFFIXES: Final = (".railml", ".xml")
 CSV_SUFFIX: Final = ".csv"
-OTHER_SUFFIXES: Final = (*RAILML_SUFFIXES, CSV_SUFFIX)
+WORKBOOK_SUFFIX: Final = ".xlsx"
+TABLE_SUFFIXES: Final = (CSV_SUFFIX, WORKBOOK_SUFFIX)
+OTHER_SUFFIXES: Final = (*RAILML_SUFFIXES, *TABLE_SUFFIXES)
 """Of files of humps that are no TOML."""
 
 
@@ -50,12 +53,14 @@ def read_graph(source: Path) -> ReadHump:
     """The hump in the file `source`, or the one of that name in the library, whatever files it names."""
     name = str(source)
     there = os.path.exists(source)  # pathlib would raise for a name that is too long to ask for
-    if name in hump_names() and not there:
+    if name in hump_names() and not source.is_file():
         with in_file(name):
             return ReadHump(load_of_library(name))
     if not there:
         hint = near_miss(name, hump_names())
         raise InputError(f"{name}: there is no such file, and no such hump in the library; {hint}")
+    if source.suffix == WORKBOOK_SUFFIX:
+        return ReadHump(from_csv(first_sheet_csv(read_content(source), name), source.stem, name))
     text = read_text(source)
     if source.suffix in RAILML_SUFFIXES:
         return ReadHump(*from_railml(text, source.stem, name))
@@ -65,7 +70,7 @@ def read_graph(source: Path) -> ReadHump:
 
 def hump_text(source: Path) -> str:
     """The text of the file `source`, or of the hump of that name in the library."""
-    if str(source) in hump_names() and not source.exists():
+    if str(source) in hump_names() and not source.is_file():
         return BUILT_IN.file(HUMPS, str(source)).text
     return read_text(source)
 

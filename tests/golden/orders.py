@@ -111,6 +111,7 @@ ORDERS: tuple[Order, ...] = (
     Order("hump simulate humped/inputs/config.toml", "humped"),
     Order("hump simulate trial.toml --trains 2", "humped-short"),
     Order("hump compare humped humped-short", "compared"),
+    Order("hump design trial.toml --speed 1.5", "design"),
     Order("hump capacity trial.toml --speeds 1.7,2.6 --exit-std 0.3,0.1 --trains 2", "capacity"),
     Order("hump speed trial.toml", "speed"),
     Order("computer computer.toml", "computed"),

@@ -10,3 +10,4 @@ class OutputSettings(Section):
 
     plots: bool = choice(True, "draw the pictures")
     report: bool = choice(True, "write report.html")
+    workbook: bool = choice(False, "write sheets.xlsx, all tables in one workbook")

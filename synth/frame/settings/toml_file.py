@@ -29,15 +29,21 @@ def read_text(path: Path, template: str = "init") -> str:
     `template`: the command that prints such a file.
     """
     try:
-        return read_regular_file(path, LARGEST_FILE_BYTES).decode("utf-8-sig")
+        return read_content(path, template).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: byte {error.start} is not UTF-8 text; save the file as UTF-8") from None
+
+
+def read_content(path: Path, template: str = "init") -> bytes:
+    """The same as bytes, whatever they are."""
+    try:
+        return read_regular_file(path, LARGEST_FILE_BYTES)
     except FileNotFoundError:
         raise InputError(
             f"{path}: there is no such file; write one with 'retarder-synth {template} > {path.name}'"
         ) from None
     except IsADirectoryError:
         raise InputError(f"{path}: this is a directory; give the path of a TOML configuration file") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: byte {error.start} is not UTF-8 text; save the file as UTF-8") from None
     except DamagedTable:
         raise InputError(
             f"{path}: it has more than {LARGEST_FILE_BYTES} bytes, which no configuration needs; give a TOML file"

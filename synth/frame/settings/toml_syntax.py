@@ -26,7 +26,8 @@ POINT: Final = re.compile(r"[-+]?(?:\d+\.(?!\d)|\.\d+)")
 UNIT: Final = re.compile(r"[ \t]*(%|‰|°|[a-zA-Z]+[²/]?\w*)")
 VALUE: Final = re.compile(r"""[\[{"'\d+-]""")
 KEY: Final = re.compile(r"[\w.\"'-]+\s*=")
-TRUTH: Final = ("true", "false")
+TRUTH: Final = {"true": "true", "yes": "true", "on": "true", "false": "false", "no": "false", "off": "false"}
+"""What users write for true and false."""
 
 
 @dataclass(frozen=True)
@@ -131,8 +132,8 @@ def wrong_value(text: str, at: int, message: str) -> Mend | None:
     """A word without quotes, or with those of a word processor; True; a long minus; a bare decimal point."""
     rest = text[at:]
     word, quoted, minus, point = (form.match(rest) for form in (WORD, QUOTED, MINUS, POINT))
-    if word and word[0].lower() in TRUTH:
-        return Mend(f"{word[0]} must be written {word[0].lower()}", text[:at] + word[0].lower() + rest[word.end() :])
+    if word and (truth := TRUTH.get(word[0].lower())):
+        return Mend(f"{word[0]} must be written {truth}", text[:at] + truth + rest[word.end() :])
     if word and message.startswith("Invalid value"):
         return Mend(f'words need quotes: write "{word[0]}"', f'{text[:at]}"{word[0]}"{rest[word.end() :]}')
     if quoted:

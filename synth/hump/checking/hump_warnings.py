@@ -16,6 +16,7 @@ from plant_models.library.library import BUILT_IN
 from plant_models.library.near_miss import near_miss
 from plant_models.library.type_file import POSITIONS
 from synth.hump.checking.places import RolledRoute
+from synth.hump.configuration.design_settings import DesignSettings
 from synth.hump.configuration.settings import TrainSettings
 from synth.hump.control.number_ranges import ranges
 from synth.hump.design_runners import CAR, HUMP_SPEED_M_S
@@ -32,8 +33,8 @@ LEAST_FIRST_M: Final = 30.0
 LEAST_POSITION_PERMILLE: Final = 5.0
 """Under a position that is not the last ([hump-grades]: 7 or more, about 5 on automated humps)."""
 
-INTO_TRACK_M: Final = 50.0
-"""How far a bad runner still rolls into its track ([hump-height]: 50 to 100 m)."""
+INTO_TRACK_M: Final = DesignSettings().into_track_m
+"""How far a bad runner still rolls into its track."""
 
 OTHER_LENGTH: Final = 0.05
 """Share of its length by which a retarder may differ from its position in the library untold."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -15,6 +15,7 @@ from synth.frame.settings.output import OutputSettings
 from synth.frame.settings.section import Section, choice, many, optional, setting
 from synth.hump.configuration.counted_trains import CountedTrains
 from synth.hump.configuration.coupling_limits import CouplingLimits
+from synth.hump.configuration.design_settings import DesignSettings
 from synth.hump.configuration.position_settings import HumpPositionSettings
 from synth.retarder.configuration.top_keys import TopKeys
 
@@ -67,7 +68,7 @@ class TrainSettings(CountedTrains):
 
 
 class TracksSettings(Section):
-    """Where cars stand before each train."""
+    """Where cars stand before each train, and what holds cuts ahead of them."""
 
     standing: Literal["drawn", "file"] = choice(
         "drawn", "drawn anew for each train, or as the hump file tells (standing_m)"
@@ -79,6 +80,11 @@ class TracksSettings(Section):
     free_high: float = setting(
         0.9, "1", 0.0, 1.0, "largest free share; all between are equally frequent",
         f"{JUDGEMENT}: nothing was found on how full tracks are",
+    )  # fmt: skip
+    skates_share: float = setting(
+        0.0, "1", 0.0, 0.99,
+        "of the energy of a cut, what skates take ahead of the standing cars of a track on which no position aims",
+        f"{JUDGEMENT}: no skates",
     )  # fmt: skip
 
     @model_validator(mode="after")
@@ -155,6 +161,8 @@ class TrialAimSettings(Section):
     Tables given here count before those of the hump file.
     """
 
+    MEANT: ClassVar = {"coupling_speed_m_s": "couplings.allowed_m_s"}
+
     knowledge: KNOWN = choice(
         "category", "what they are chosen by beside the free distance: weight category, or resistance as it is measured"
     )
@@ -216,6 +224,8 @@ class TrialAcceptanceSettings(Section):
 class HumpTrialSettings(TopKeys):
     """A whole hump trial configuration; an empty one is the built-in default."""
 
+    MEANT: ClassVar = dict.fromkeys(("exit_speed_m_s", "exit_m_s", "exit_speed"), "position.exit_m_s")
+
     hump: str = choice(
         DEFAULT_HUMP, f"the hump; one of {', '.join(hump_names())}, or the path of your own file (docs/hump-file.md)"
     )
@@ -240,6 +250,7 @@ class HumpTrialSettings(TopKeys):
         example=(HumpPositionSettings(number=2, exit_m_s={"all": 4.8}, supply_share=0.8),),
     )
     acceptance: TrialAcceptanceSettings = TrialAcceptanceSettings()
+    design: DesignSettings = DesignSettings()
     output: OutputSettings = OutputSettings()
 
     @model_validator(mode="after")

@@ -54,7 +54,7 @@ def trial_text(source: Path, template: str = "init --hump") -> str:
 
     `template`: the command that prints such a file.
     """
-    if str(source) in hump_names() and not source.exists():
+    if str(source) in hump_names() and not source.is_file():
         return toml_text({"hump": str(source)})
     if source.suffix in OTHER_SUFFIXES or not (source.suffix or source.exists()):
         return text_on(source)

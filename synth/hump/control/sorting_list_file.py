@@ -1,4 +1,4 @@
-"""A sorting list as CSV (RFC 4180, UTF-8), one row a cut.
+"""A sorting list as CSV (RFC 4180, UTF-8) or as the first sheet of a workbook, one row a cut.
 
     cut,cars,axles,mass_t,category,track,length_m,rolling,lead,hump_speed_m_s,marks
     1,2,8,151.5,T,17,27.84,mean,0,1.7,
@@ -25,6 +25,7 @@ from plant_models.library.near_miss import near_miss
 from plant_models.library.weight_category import WeightCategories
 from synth.frame.input_error import InputError
 from synth.frame.machine_fault import MACHINE_FAULTS
+from synth.frame.workbook import first_sheet_csv
 from synth.hump.control.cut_record import USUAL_CAR_M, USUAL_HUMP_SPEED_M_S, CutRecord, Mark, Rolling
 from synth.hump.control.sorting_list import SortingList
 from tuning_tables.errors import DamagedTable
@@ -46,6 +47,8 @@ COLUMNS = (
     "marks",
 )
 LARGEST_BYTES = 1_000_000
+WORKBOOK = ".xlsx"
+"""How the name of a list ends that is the first sheet of a workbook."""
 
 SEPARATORS = (",", ";", "\t")
 """What may stand between cells."""
@@ -55,9 +58,10 @@ def load_sorting_list(path: str | os.PathLike[str], categories: WeightCategories
     """The list in the file at `path`; `categories`: those of the yard unless told otherwise. `InputError`."""
     file = os.fspath(path)
     try:
-        text = read_regular_file(path, LARGEST_BYTES).decode("utf-8")
+        content = read_regular_file(path, LARGEST_BYTES)
+        text = first_sheet_csv(content, file) if file.endswith(WORKBOOK) else content.decode("utf-8")
     except FileNotFoundError:
-        raise InputError(f"{file}: there is no such file; give the path of a sorting list as CSV") from None
+        raise InputError(f"{file}: there is no such file; give the path of a sorting list, CSV or .xlsx") from None
     except UnicodeDecodeError as fault:
         raise InputError(f"{file}: byte {fault.start} is not UTF-8 text; save the file as UTF-8") from None
     except DamagedTable:

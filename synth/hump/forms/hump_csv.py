@@ -19,6 +19,7 @@ from plant_models.library.near_miss import near_miss
 from plant_models.library.toml_lines import Place
 from synth.frame.input_error import InputError
 from synth.frame.settings.toml_text import value_text
+from synth.frame.workbook import to_workbook
 from synth.hump.forms.hump_tree import Tree, hump_tree
 from synth.retarder.configuration.plant_fault import in_file
 
@@ -54,16 +55,25 @@ COLUMNS: Final[Mapping[str, Key]] = {
 
 
 def to_csv(hump: HumpEntry) -> str:
-    """The table; only columns in which something stands."""
+    """The table as CSV."""
+    written = io.StringIO()
+    csv.writer(written, lineterminator="\n").writerows([cell_text(cell) for cell in row] for row in to_rows(hump))
+    return written.getvalue()
+
+
+def to_xlsx(hump: HumpEntry) -> bytes:
+    """The table as a workbook; numbers are numbers there, what a cell cannot hold is as in a hump file."""
+    rows = [[c if isinstance(c, int | float | str | None) else cell_text(c) for c in row] for row in to_rows(hump)]
+    return to_workbook({HUMP: rows})
+
+
+def to_rows(hump: HumpEntry) -> list[list[Any]]:
+    """The table with its head; only columns in which something stands."""
     tree = hump_tree(hump)
     head = {KIND: HUMP, **{name: (tree["hump"] if name in OF_HUMP else tree).get(name) for name in HEAD}}
     rows = [head, *({KIND: kind, **flat(row, "")} for kind in ELEMENTS for row in tree["hump"].get(kind, []))]
     columns = [KIND, *(name for name in COLUMNS if any(row.get(name) is not None for row in rows))]
-    written = io.StringIO()
-    writer = csv.writer(written, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([cell_text(row.get(name)) for name in columns] for row in rows)
-    return written.getvalue()
+    return [columns, *([row.get(name) for name in columns] for row in rows)]
 
 
 def flat(row: Tree, prefix: str) -> Tree:

@@ -8,6 +8,7 @@ from plant_models.library.hump_cars import ForCars
 from plant_models.library.weight_category import WeightCategories, WeightCategory
 from synth.hump.configuration.settings import HumpTrialSettings
 from synth.hump.control.cut_record import CutRecord
+from synth.hump.trains.position_roles import Roles
 
 
 def car_warnings(asked: ForCars | None, kinds: Mapping[WeightCategory, Collection[int]]) -> Iterator[str]:
@@ -44,6 +45,16 @@ def list_warnings(cuts: Sequence[CutRecord], categories: WeightCategories) -> It
             f"cut {cut.serial} of the sorting list{more} has {cut.mass_t:g} t on {cut.axles} axles, which is the "
             f"weight category {by_mass.label}, and the list says {numbers[cut.category].label}: it rolls and brakes as "
             "the list says; leave the column category out to have that of the mass"
+        )
+
+
+def skates_warnings(settings: HumpTrialSettings, roles: Roles) -> Iterator[str]:
+    """A sentence where skates are asked for and no track has some."""
+    share = settings.tracks.skates_share
+    if share > 0.0 and roles.aims.any(axis=0).all():
+        yield (
+            f"tracks.skates_share is {share:g}, but a position aims at the standing cars of every track, and skates "
+            "lie where none does: take it out, or give the last position another role"
         )
 
 

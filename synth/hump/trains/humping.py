@@ -13,6 +13,7 @@ from synth.hump.trains.hump_position import Arrivals, HumpPosition
 from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.hump.trains.meeting import Ahead, LastUsers, first_of, meeting
 from synth.hump.trains.motion import Cars, Moving, Push, Rolls, braked_evenly, merged, rolled_free
+from synth.hump.trains.skates import NO_SKATES, Skates
 from synth.hump.trains.standing_cars import StandingCars
 from synth.hump.trains.tails import Tails, followed
 from synth.hump.trains.train_cuts import TrainCuts
@@ -28,11 +29,13 @@ NEARLY_M = 0.05
 
 @dataclass(frozen=True)
 class Hump:
-    """A hump for trains: its routes, its positions in order from the crest, and what rolls its cuts."""
+    """A hump for trains: its routes, its positions in order from the crest, what rolls its cuts, and the skates on its
+    tracks."""
 
     routes: HumpRoutes
     positions: tuple[HumpPosition, ...]
     rolls: Rolls
+    skates: Skates = NO_SKATES
 
 
 def humped(hump: Hump, trains: TrainCuts, free_m: Floats, speeds: HumpSpeeds, control: ExitSpeeds) -> TrainMemory:
@@ -269,7 +272,8 @@ class OneCut:
         memory.caught_on_track[lanes, cut] = touches
         memory.end_m[lanes, cut], memory.end_time_s[lanes, cut] = still.head_m, still.time_s
         memory.tail_m[lanes, cut], memory.still_s[lanes, cut] = still.head_m - self.last_m[rolls], still.time_s
-        memory.end_speed_m_s[lanes, cut] = np.where(touches, closing, still.speed_m_s)
+        coupled = self.hump.skates.left_m_s(self.routes[rolls], still.speed_m_s)
+        memory.end_speed_m_s[lanes, cut] = np.where(touches, closing, coupled)
         standing.block(self.lanes[~rolls], self.routes[~rolls], self.length_m[~rolls])
 
     def halt(self, moving: Moving, ended: Moving) -> None:

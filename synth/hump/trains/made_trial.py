@@ -20,6 +20,7 @@ from synth.hump.trains.normal_hump_position import LibraryBrake, NormalHumpPosit
 from synth.hump.trains.position_choice import PositionChoice
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.route_ways import route_ways
+from synth.hump.trains.skates import Skates
 from synth.hump.trains.table_hump_position import TableHumpPosition
 from synth.hump.trains.train_plan import Planner
 from synth.hump.trains.train_source import DrawnSource, ListSource
@@ -53,6 +54,7 @@ def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
         free=free_of(config),
         threads=threads,
         couplings=config.settings.couplings,
+        skates=skates_of(config),
     )
 
 
@@ -142,6 +144,12 @@ def control_of(config: ResolvedTrial) -> Control:
     if for_intervals or for_aim:
         sensing = Sensing(config.settings.sensors.speed_std_m_s, for_aim, for_intervals)
     return Control(exits.feedback, sensing, config.settings.hump_speed.slow_down_s)
+
+
+def skates_of(config: ResolvedTrial) -> Skates:
+    """Skates on the tracks on which no position aims."""
+    rows = np.flatnonzero(~config.roles.aims.any(axis=0))
+    return Skates(config.settings.tracks.skates_share, tuple(rows.tolist()))
 
 
 def free_of(config: ResolvedTrial) -> FreeTracks:

@@ -38,7 +38,7 @@ from synth.hump.trains.asked_trains import (
     population_of,
     trains_of,
 )
-from synth.hump.trains.car_warnings import car_warnings, list_warnings, weather_warnings
+from synth.hump.trains.car_warnings import car_warnings, list_warnings, skates_warnings, weather_warnings
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from synth.hump.trains.needed_tables import NeededTables, needed_tables, unfitting_tables
 from synth.hump.trains.position_choice import PositionChoice, position_choices
@@ -190,6 +190,7 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
             *role_warnings(asked, roles, routes),
             *book_warnings(positions, roles, settings.aim),
             *car_warnings(file.hump.cars, cars_of_cuts(trains, categories)),
+            *skates_warnings(settings, roles),
             *weather_warnings(settings),
             *list_warnings(trains.cuts if isinstance(trains, SortingList) else (), categories),
         ),

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from synth.hump.trains.controlled_train import ControlledTrain, controlled_train
-from synth.hump.trains.humping import Hump
-from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_passages import train_passages
@@ -27,11 +25,8 @@ class OneTrain:
 
     def traced(self) -> TrainTrace:
         """Its cuts on their ways."""
-        trial = self.trial
-        rolls = rolling_on(trial.ways, self.trains.population, self.trains.drawn, trial.threads)
-        return train_trace(
-            Hump(trial.routes, trial.positions, rolls), self.trains, self.memory, 0, trial.couplings.allowed_m_s
-        )
+        hump = self.trial.hump_for(self.trial.rolls_of(self.trains))
+        return train_trace(hump, self.trains, self.memory, 0, self.trial.couplings.allowed_m_s)
 
     def controlled(self) -> ControlledTrain:
         """What the hump control records of it."""
@@ -47,7 +42,7 @@ def early_traces(trial: HumpTrial, numbers: Sequence[int]) -> tuple[TrainTrace, 
     if not numbers:
         return ()
     trains, _, memory = trial.humped(0, max(numbers) + 1)
-    hump = Hump(trial.routes, trial.positions, rolling_on(trial.ways, trains.population, trains.drawn, trial.threads))
+    hump = trial.hump_for(trial.rolls_of(trains))
     return tuple(train_trace(hump, trains, memory, number, trial.couplings.allowed_m_s) for number in numbers)
 
 

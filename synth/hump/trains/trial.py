@@ -27,6 +27,7 @@ from synth.hump.trains.outcomes import USUAL_COUPLINGS, PassLimits, TrainOutcome
 from synth.hump.trains.rollability import CategoryMean, Rollability, measured_rollability
 from synth.hump.trains.route_rolling import RouteRolling, rolling_on
 from synth.hump.trains.route_ways import RouteWays
+from synth.hump.trains.skates import NO_SKATES, Skates
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.stretch_reading import AimReading, ReadByRoute, ReadOnStretch
 from synth.hump.trains.train_cuts import TrainCuts, expected
@@ -128,7 +129,7 @@ class HumpTrial:
     `positions`: models in order from the crest, of every route that has so many; `planner` has their roles; `free`:
     tracks before each train. `aim`: exit speeds of the positions that aim, by route; `usable_heads_m`: energy head
     (rows,) that each position can be trusted to take from cuts, by mass, axles and category; `full_heads_m`: what it
-    takes at mean friction. `couplings`: which couplings are too fast.
+    takes at mean friction. `skates`: on the tracks. `couplings`: which couplings are too fast.
     """
 
     source: TrainSource
@@ -144,6 +145,7 @@ class HumpTrial:
     free: FreeTracks
     threads: int = 0
     couplings: CouplingLimits = USUAL_COUPLINGS
+    skates: Skates = NO_SKATES
 
     def __post_init__(self) -> None:
         require(
@@ -171,13 +173,21 @@ class HumpTrial:
     def humped(self, first: int, count: int) -> tuple[TrainCuts, TrainPlan, TrainMemory]:
         """The same trains with their plan and all that happened to them."""
         trains, free_m, known, plan = self.planned(first, count)
-        rolls = rolling_on(self.ways, trains.population, trains.drawn, self.threads)
-        hump = Hump(self.routes, self.positions, rolls)
+        rolls = self.rolls_of(trains)
+        hump = self.hump_for(rolls)
         control = self.control_of(trains, known, plan, self.aim_of(trains, known, rolls))
         speeds: HumpSpeeds = ProgramSpeeds(plan.hump_speed_m_s)
         if self.control.slow_down_s is not None and isinstance(control, Feedback):
             speeds = FeedbackSpeeds(control, self.control.slow_down_s)
         return trains, plan, humped(hump, trains, free_m, speeds, control)
+
+    def rolls_of(self, trains: TrainCuts) -> RouteRolling:
+        """How the cuts of `trains` roll."""
+        return rolling_on(self.ways, trains.population, trains.drawn, self.threads)
+
+    def hump_for(self, rolls: RouteRolling) -> Hump:
+        """The hump for the trains whose `rolls` these are."""
+        return Hump(self.routes, self.positions, rolls, self.skates)
 
     def planned(self, first: int, count: int) -> tuple[TrainCuts, Floats, KnownCuts, TrainPlan]:
         """The same trains before they are humped: with their free tracks, what is known of them, and their plan."""

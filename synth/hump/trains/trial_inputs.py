@@ -2,7 +2,7 @@
 
 inputs/config.toml               the configuration, with what the command line said
 inputs/hump.toml or hump.railml  the hump
-inputs/train.csv                 the sorting list, if there was one
+inputs/train.csv or train.xlsx   the sorting list, if there was one
 inputs/tables/position-N.h5      the book of a position, position-N.toml what it was tuned with
 inputs/aim/N/                    aim tables of the last position, for each group of routes
 inputs/types/                    the user's own types
@@ -20,13 +20,14 @@ from synth.frame.settings.toml_file import read_text, toml_tree
 from synth.frame.settings.toml_text import toml_text
 from synth.hump.configuration.position_settings import HumpPositionSettings
 from synth.hump.configuration.trial_file import INPUTS, TrialFile
-from synth.hump.hump_file import RAILML_SUFFIXES, hump_text
+from synth.hump.forms.hump_tree import tree_toml
+from synth.hump.hump_file import RAILML_SUFFIXES, TABLE_SUFFIXES, hump_text
 from synth.hump.trains.position_choice import PositionChoice
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.retarder.configuration.own_types import with_own_types
 from synth.retarder.forms.table_file import file_stem
 
-CONFIG, LIST, TABLES, AIMS, TYPES = "config.toml", "train.csv", "tables", "aim", "types"
+CONFIG, LIST, TABLES, AIMS, TYPES = "config.toml", "train", "tables", "aim", "types"
 
 
 def files_read(file: TrialFile, config: ResolvedTrial) -> Iterator[Path]:
@@ -47,12 +48,15 @@ def write_inputs(file: TrialFile, config: ResolvedTrial, directory: ResultsDirec
     tree: dict[str, Any] = file.settings.model_dump(mode="json", exclude_none=True, exclude_unset=True)
     own: dict[str, TypeFile] = {str(each): each for each in file.library.own}
     contents: dict[str, bytes] = {}
-    suffix = file.hump_source.suffix if file.hump_source.suffix in RAILML_SUFFIXES else ".toml"
-    tree["hump"] = f"hump{suffix}"
-    contents[tree["hump"]] = hump_text(file.hump_source).encode("utf-8")
+    source = file.hump_source
+    tree["hump"] = f"hump{source.suffix if source.suffix in RAILML_SUFFIXES else '.toml'}"
+    is_table = source.suffix in TABLE_SUFFIXES
+    contents[tree["hump"]] = (tree_toml(file.hump) if is_table else hump_text(source)).encode("utf-8")
     if file.settings.trains.list is not None:
-        tree.setdefault("trains", {})["list"] = LIST
-        contents[LIST] = (file.folder / file.settings.trains.list).read_bytes()
+        listed = file.folder / file.settings.trains.list
+        name = f"{LIST}{listed.suffix}"
+        tree.setdefault("trains", {})["list"] = name
+        contents[name] = listed.read_bytes()
     said = {each.number: each for each in file.settings.position}
     told = (position_tree(choice, said.get(choice.number), contents, own) for choice in config.positions)
     tree["position"] = [each for each in told if len(each) > 1]

@@ -66,9 +66,12 @@ def not_aimed(result: HumpedTrial) -> str:
     tracks = sorted(int(track) for track in result.config.routes.tracks[~aims])
     if not tracks:
         return ""
+    skates = result.config.settings.tracks.skates_share
+    held = f"cuts couple with what skates leave of their speed, which take {100.0 * skates:.3g} % of the energy"
+    free = "cuts couple as fast as they come there (where skates are laid, set tracks.skates_share)"
     return (
-        f"on tracks {ranges(tracks)} no position aims at the standing cars: cuts couple as fast as they come there "
-        "(track brakes and skates are not in the model; acceptance.overspeed = 1 judges no couplings)"
+        f"on tracks {ranges(tracks)} no position aims at the standing cars: {held if skates > 0.0 else free}; "
+        "acceptance.overspeed = 1 judges no couplings"
     )
 
 

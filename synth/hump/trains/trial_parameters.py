@@ -17,6 +17,9 @@ from synth.hump.trains.position_choice import PositionChoice
 OF_POPULATION: Final = ("cuts", "cars_mean", "most_cars", "category_shares", "track_shares")
 """Of [trains], what a sorting list tells in its place."""
 
+OF_DRAWN_TRACKS: Final = {"tracks.free_low", "tracks.free_high"}
+"""What the hump file tells in their place where cars stand as it tells."""
+
 BESIDE_ONE_SPEED: Final = {"constant_m_s", "slow_down_s"}
 """Of [hump_speed], what counts where there is one speed for all cuts; it stands in place of the rest."""
 
@@ -36,6 +39,8 @@ def trial_numbers(
     left_out = {f"trains.{key}" for key in OF_POPULATION if settings.trains.list is not None}
     if settings.hump_speed.constant_m_s is not None:
         left_out |= {f"hump_speed.{key}" for key in HumpSpeedSettings.model_fields.keys() - BESIDE_ONE_SPEED}
+    if settings.tracks.standing == "file":
+        left_out |= OF_DRAWN_TRACKS
     yield from (replace(value, key=f"cars.{value.key.removeprefix('cars.')}") for value in mix.provenance)
     yield from category_values(settings, categories)
     for section in sections_in_force(settings, designed):
@@ -51,7 +56,7 @@ def sections_in_force(settings: HumpTrialSettings, designed: bool) -> Iterator[s
         "trains": True,
         "weather": True,
         "resistance": settings.resistance.law == "hump-norm",
-        "tracks": settings.tracks.standing == "drawn",
+        "tracks": True,
         "hump_speed": True,
         "exit_speeds": True,
         "aim": designed,

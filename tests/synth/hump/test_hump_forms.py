@@ -10,7 +10,8 @@ import pytest
 
 from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
 from synth.frame.input_error import InputError
-from synth.hump.forms.hump_csv import from_csv, to_csv
+from synth.frame.workbook import first_sheet_csv
+from synth.hump.forms.hump_csv import from_csv, to_csv, to_xlsx
 from synth.hump.forms.hump_tree import tree_toml
 from synth.hump.hump_file import parse_hump
 from tests.effort import sized
@@ -48,6 +49,13 @@ def test_a_hump_stays_the_same_in_every_form() -> None:
                 hump.notes,
                 hump.cars,
             )
+
+
+@pytest.mark.parametrize("name", hump_names())
+def test_a_hump_stays_the_same_in_a_workbook(name: str) -> None:
+    hump = load_hump(name)
+    again = from_csv(first_sheet_csv(to_xlsx(hump), "x.xlsx"), name, "x.xlsx")
+    assert (again.graph, again.title, again.notes, again.cars) == (hump.graph, hump.title, hump.notes, hump.cars)
 
 
 def test_all_faults_of_a_table_are_told_each_with_its_line() -> None:

@@ -46,13 +46,16 @@ SHOWN = (AlarmKind.MISROUTED, AlarmKind.CONTACT, AlarmKind.FOUL, AlarmKind.UNSEP
 MARKERS = dict(zip(SHOWN, ("X", "o", "^", "s"), strict=True))
 
 
-def time_path(trace: TrainTrace) -> Figure:
-    """Path across from the crest, time down. Sections of all routes stand beside one another at their metres."""
+def time_path(trace: TrainTrace, title: str = "") -> Figure:
+    """Path across from the crest, time down. Sections of all routes stand beside one another at their metres.
+
+    `title`: what the train is, where that is more than its number.
+    """
     routes = trace.routes
     upto_m = float(routes.ends_m.max()) + BEHIND_M
     ends_s = max(float(cut.trace.time_s[cut.trace.head_m <= upto_m].max()) for cut in trace.cuts)
     tall = min(max(ends_s / SECONDS_PER_INCH, SHORTEST_IN), TALLEST_IN)
-    figure = new_figure(12.5, tall + 2.45, f"Time–path diagram of train {trace.number + 1}", subject_of(trace))
+    figure = new_figure(12.5, tall + 2.45, title or f"Time–path diagram of train {trace.number + 1}", subject_of(trace))
     place(figure, left=1.35, right=0.75, bottom=1.15, top=1.3)
     axes = figure.subplots()
     dress(axes, "", "metres from the crest", "seconds since the first cut was at the crest")

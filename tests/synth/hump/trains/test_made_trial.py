@@ -8,11 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from plant_models.library.hump_entry import load_hump
+from synth.frame import sheet
 from synth.frame.exhibits import Table
 from synth.frame.input_error import InputError
 from synth.frame.results_directory import results_directory
-from synth.frame.sheet import to_csv
 from synth.hump.configuration.trial_file import parse_trial_file
+from synth.hump.forms import hump_csv
 from synth.hump.hump_file import hump_text
 from synth.hump.trains.hump_position import Arrivals
 from synth.hump.trains.hump_speed import PairByPair
@@ -90,9 +92,9 @@ def test_the_program_is_that_of_an_even_push() -> None:
         assert row.time_s == pytest.approx(time)
         assert row.pushed_m == pytest.approx(place)
     (table,) = (each for each in program_exhibits(program, brief=True) if isinstance(each, Table))
-    head, *sheet = (line.split(",") for line in to_csv(table).decode("utf-8-sig").splitlines())
+    head, *lines = (line.split(",") for line in sheet.to_csv(table).decode("utf-8-sig").splitlines())
     assert head[-3:] == ["exit_1_m_s", "exit_2_m_s", "exit_3_m_s"]
-    rows = [dict(zip(head, cells, strict=True)) for cells in sheet]
+    rows = [dict(zip(head, cells, strict=True)) for cells in lines]
     assert [int(row["track"]) for row in rows] == [row.track for row in program.rows]
     last = {key: float(rows[-1][key]) for key in ("time_s", "pushed_m", "hump_speed_m_s")}
     assert last == {"time_s": time, "pushed_m": place, "hump_speed_m_s": program.rows[-1].hump_speed_m_s}
@@ -143,6 +145,18 @@ def test_a_position_with_a_book_runs_its_tables(tmp_path: Path) -> None:
     again = load_trial(tmp_path / "out" / "inputs" / "config.toml")
     assert (again.sha256, again.trains_sha256) == (config.sha256, config.trains_sha256)
     np.testing.assert_array_equal(made_trial(again).batch(0, 4).strokes, found.strokes)
+
+
+@pytest.mark.parametrize("form", ["csv", "xlsx"])
+def test_a_hump_in_a_spreadsheet_can_be_repeated_from_the_inputs(tmp_path: Path, form: str) -> None:
+    hump, table = load_hump("dumper"), tmp_path / f"my.{form}"
+    table.write_bytes(hump_csv.to_xlsx(hump) if form == "xlsx" else hump_csv.to_csv(hump).encode())
+    file = parse_trial_file(f'hump = "{table.name}"', str(tmp_path / "trial.toml"))
+    config = resolve_trial(file)
+    with results_directory(tmp_path / "out", "hump simulate") as out:
+        write_inputs(file, config, out)
+    table.unlink()
+    assert load_trial(tmp_path / "out" / "inputs" / "config.toml").trains_sha256 == config.trains_sha256
 
 
 def test_books_that_lack_a_class_or_targets_are_refused(tmp_path: Path) -> None:

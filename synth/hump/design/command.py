@@ -1,0 +1,97 @@
+"""The command `hump design`: the design test of a hump, by single cars that run badly and well."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.exhibits import Chapter
+from synth.hump.configuration.trial_file import TrialFile, parse_trial_file, trial_text
+from synth.hump.design.options import DesignOptions
+from synth.hump.limits_of_use import MODEL_ONLY, NO_SAFETY
+
+if TYPE_CHECKING:
+    from synth.hump.design.found_design import FoundDesign
+    from synth.hump.trains.asked_trial import AskedTrial
+
+LIMITS_OF_USE = (
+    MODEL_ONLY,
+    "The test has three single cars whose resistance is told and known, and positions without error. What chance and "
+    "errors do to whole trains is told by hump simulate.",
+    "Time that the beams of a retarder need between two cars is not in the test: the interval at a retarder is the "
+    "time in which it is empty.",
+    NO_SAFETY,
+)
+
+
+def resolve(asked: Asked[TrialFile, DesignOptions]) -> AskedTrial:
+    """The trial, with the hump speed that was typed."""
+    from synth.frame.input_error import InputError
+    from synth.hump.trains.asked_trial import AskedTrial
+    from synth.hump.trains.resolved_trial import resolve_trial
+
+    file, speed = asked.settings, asked.options.speed
+    if speed is not None:
+        design = file.settings.design.model_copy(update={"hump_speed_m_s": speed})
+        file = replace(file, settings=file.settings.model_copy(update={"design": design}))
+    config = resolve_trial(file)
+    if len(config.routes.routes) < 2:
+        raise InputError(f"{asked.place}: the hump has one track; the test needs two that part")
+    return AskedTrial(file, config)
+
+
+def head(asked: AskedTrial) -> Head:
+    """What is said of it."""
+    from synth.hump.design.design_parameters import design_json, design_parameters
+
+    told = asked.head(f"Design test. {asked.config.hump.title}", design_json(asked.config))
+    return replace(told, parameters=design_parameters(asked.config))
+
+
+def steps(asked: AskedTrial) -> Steps:
+    """What progress counts."""
+    return Steps(1, "testing", "humps")
+
+
+def compute(asked: AskedTrial, work: Work) -> FoundDesign:
+    """The whole test."""
+    from synth.hump.design.found_design import found_design
+    from synth.hump.design.hump_under_test import hump_under_test
+    from synth.kernels.cache import guarded
+
+    found = guarded(found_design, asked, hump_under_test(asked.config))
+    work.progress.done(f"{len(found.intervals.pairs)} pairs of tracks")
+    return found
+
+
+def limits(found: FoundDesign) -> Iterable[Limit]:
+    """Fall, brakes, speeds at the entrances, intervals."""
+    from synth.hump.design.design_limits import design_limits
+
+    return design_limits(found)
+
+
+def show(found: FoundDesign) -> Iterator[Chapter]:
+    """What is found first, then what it rests on."""
+    from synth.hump.design.shown import design, fall_and_brakes, triple
+
+    yield Chapter("Design test", tuple(design(found)))
+    yield Chapter("Fall and brakes", tuple(fall_and_brakes(found)))
+    yield Chapter("The worst triple", tuple(triple(found)))
+
+
+COMMAND = Command(
+    name="hump design",
+    read=parse_trial_file,
+    options=DesignOptions,
+    resolve=resolve,
+    head=head,
+    steps=steps,
+    compute=compute,
+    show=show,
+    limits=limits,
+    limits_of_use=LIMITS_OF_USE,
+    text=trial_text,
+)
