@@ -24,8 +24,8 @@ LIMITS_OF_USE = (
     MODEL_ONLY,
     CHANCE_ONLY,
     "A figure of 0 does not mean never: the upper end of its interval is what these trains show.",
-    "Cuts that were misrouted, in contact, or stopped count as such; their couplings and gaps are not counted. A cut in "
-    "contact does not push the one ahead, which comes as far and as fast as it would alone.",
+    "Cuts that were misrouted, in contact, or stopped count as such; their couplings and gaps are not counted. A cut "
+    "in contact does not push the one ahead, which comes as far and as fast as it would alone.",
     "Each train finds standing cars of its own, so tracks do not fill from train to train. A train with the cuts of "
     "several trains (trains.cuts) tells what these do on the same tracks, none of which is cleared meanwhile.",
     NO_SAFETY,
