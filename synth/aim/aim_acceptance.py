@@ -57,7 +57,11 @@ def judge_aims(made: Sequence[MadeAim], p_excess: float) -> AimBookVerdict:
     else:
         sentence = f"in none of {counted(told, 'cell')} are more than {limit} of the cuts shown to couple too fast"
     if without:
-        sentence += f"; {counted(without, 'cell')} have no exit speed that keeps it"
+        cells = sum(each.cells for each in judged)
+        sentence += (
+            f"; in {without} of {counted(cells, 'cell')} no exit speed keeps it, for the track falls more than such "
+            "cuts resist: there they are let go at the lowest speed"
+        )
     return AimBookVerdict(not bad, sentence, judged)
 
 

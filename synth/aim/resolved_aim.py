@@ -110,14 +110,17 @@ class ResolvedAim:
         return hashlib.sha256(self.canonical_json.encode()).hexdigest()
 
 
-def resolve_aim(file: AimFile) -> ResolvedAim:
-    """Fill in the library's values; `InputError` names file, key and value of whatever does not fit."""
+def resolve_aim(file: AimFile, of_hump: TrackEntry | None = None) -> ResolvedAim:
+    """Fill in the library's values; `InputError` names file, key and value of whatever does not fit.
+
+    `of_hump`: the track of a hump file, in place of one of the library.
+    """
     settings, place = file.settings, file.place
     require_held(f"{place}: track.name", TRACKS, settings.track.name, file.library)
     require_held(f"{place}: cuts.mix", CAR_MIXES, settings.cuts.mix, file.library)
     require_held(f"{place}: weight_categories", WEIGHT_CATEGORIES, settings.weight_categories, file.library)
     with in_file(place, lambda sentence: keyed(sentence, KEY_OF_PLANT_MESSAGE)):
-        track = track_with_settings(load_track(settings.track.name, file.library), settings)
+        track = track_with_settings(of_hump or load_track(settings.track.name, file.library), settings)
         mix = settings.cuts.applied_to(load_car_mix(settings.cuts.mix, file.library))
         categories = load_weight_categories(settings.weight_categories, file.library)
         position = settings.position.name or track.position
@@ -126,7 +129,7 @@ def resolve_aim(file: AimFile) -> ResolvedAim:
         members = members_of(categories, settings)
         for member in members:
             mix.mix.of(categories, member)
-        require_distances(settings, scene)
+        settings = settings.model_copy(update={"aim": with_fitting_distances(settings, scene)})
         book = book_of(file)
     parameters = tuple(aim_numbers(settings, track, mix, members))
     return ResolvedAim(
@@ -172,18 +175,23 @@ def scene_of(track: TrackEntry, mix: CarMixEntry, categories: WeightCategories, 
     return AimScene(population, track.track, *zone, stretch, coupling, threads)
 
 
-def require_distances(settings: AimFileSettings, scene: AimScene) -> None:
-    """`PlantError` unless the free distances end before the track does."""
+def with_fitting_distances(settings: AimFileSettings, scene: AimScene) -> AimedSettings:
+    """What is asked, with the free distances that end before the track does; `PlantError` where the file gives others,
+    or none is left."""
     distances = settings.aim.free_distances_m
     most, track = max(settings.cuts.cars), scene.track
     longest = max(car.car.length_m for car in scene.population.mix.cars)
     room = track.end_m - scene.exit_m - most * longest
+    fitting = tuple(distance for distance in distances if distance <= room)
+    if fitting and "free_distances_m" not in settings.aim.model_fields_set:
+        return settings.aim.model_copy(update={"free_distances_m": fitting})
     require(
         distances[-1] <= room,
         f"aim.free_distances_m[{len(distances) - 1}] is {distances[-1]:g}; between a cut of {most} cars that has just "
         f"left the position at {scene.exit_m:g} m and the end of the track at {track.end_m:g} m are "
         f"{max(room, 0.0):.0f} m: shorten the distances or the cuts (cuts.cars)",
     )
+    return settings.aim
 
 
 def book_of(file: AimFile) -> tuple[Path, Path | None] | None:

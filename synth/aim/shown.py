@@ -19,7 +19,6 @@ from synth.frame.printed_numbers import decimals, percent
 from synth.retarder.case_names import file_stem
 from synth.retarder.forms.code_options import PLAIN
 from synth.retarder.forms.table_forms import FORMS
-from tuning_tables.aim import AimTable
 
 KNOWN: Final = {"category": "category alone", "measured": "resistance measured"}
 """What people call a kind of knowledge."""
@@ -213,13 +212,8 @@ def files(book: AimBook) -> Iterator[Exhibit]:
         yield from (File(f"{folder}/{name}", content) for name, content in FORMS[form](tables, PLAIN).items())
 
 
-def tables_of(book: AimBook, *, measured: bool) -> list[AimTable]:
-    """The tables of one kind of knowledge."""
-    return [made.table for made in book.tables if made.table.is_measured is measured]
-
-
 def charts(book: AimBook) -> Iterator[Exhibit]:
-    """Gaps, exit speeds, chances by category, and the track."""
+    """Gaps, chances by category, and the track."""
     config = book.config
     yield Chart(
         "aim-gaps",
@@ -228,22 +222,6 @@ def charts(book: AimBook) -> Iterator[Exhibit]:
         "not chosen on. Cuts for which no exit speed keeps the chance are let go at the lowest speed.",
         lambda: _pictures().gaps(book),
     )
-    if "category" in config.aim.knowledge:
-        yield Chart(
-            "aim-commands-by-cars",
-            "Exit speed by category and cars",
-            "Exit speeds of the tables by category: what the park position is told. No mark: no exit speed keeps the "
-            "required chance.",
-            lambda: _pictures().commands_by_cars(tables_of(book, measured=False)),
-        )
-    if "measured" in config.aim.knowledge:
-        yield Chart(
-            "aim-commands-by-resistance",
-            "Exit speed by measured resistance",
-            "Exit speeds of the tables by measured resistance, for the shortest cuts, at some resistances between the "
-            "ends that each panel names. No mark: no exit speed keeps the required chance.",
-            lambda: _pictures().commands_by_resistance(tables_of(book, measured=True)),
-        )
     yield from (chances_of(config, member) for member in config.members)
     ends = dict.fromkeys((config.members[0], config.members[-1]))
     rolled = partial(runners, config.scene, seed=config.simulation.seed)

@@ -132,12 +132,9 @@ def schema_command() -> int:
 
 def drawn_route(graph: HumpGraph, track: int | None) -> Route:
     """The route to `track` from the first crest that reaches it; without a track, to the one with the most turning."""
-    from synth.frame.input_error import InputError
+    from synth.hump.route_to import route_to
 
-    routes = [route for lead in graph.leads for route in graph.routes(lead).values()]
     if track is None:
+        routes = [route for lead in graph.leads for route in graph.routes(lead).values()]
         return max(routes, key=lambda route: round(sum(bend.turn_deg for bend in route.roll_track.bends), 6))
-    for route in routes:
-        if route.track == track:
-            return route
-    raise InputError(f"--track is {track}; the hump has the tracks {ranges(graph.tracks)}")
+    return route_to(graph, track)

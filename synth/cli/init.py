@@ -75,8 +75,27 @@ def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -
     """
     if show_list:
         return print_list(as_json)
-    key, text = asked_for(types)
+    print_file(*asked_for(types), as_json)
+    return 0
+
+
+def print_file(key: str, text: str, as_json: bool) -> None:
+    """Print the `text` of a file; in JSON under a `key`."""
     print(json.dumps({key: text}, ensure_ascii=False) if as_json else text, end="\n" if as_json else "")
+
+
+def tables_command(trial: Path | None, position_number: int | None, alone: bool, as_json: bool) -> int:
+    """Print the configuration of the tables that a position needs in the hump `trial`; `alone`: nothing else of `init`
+    is asked for."""
+    from synth.frame.input_error import InputError
+
+    if trial is None:
+        raise InputError("init --position-number is for --for TRIAL.toml, the trial whose position it is; add that")
+    if not alone:
+        raise InputError("init --for prints the configuration of tables for a trial; give none of the other options")
+    from synth.hump.tables.tables_configuration import tables_toml
+
+    print_file("configuration", tables_toml(trial, position_number), as_json)
     return 0
 
 

@@ -5,11 +5,12 @@ Annotations are not postponed here: typer would compile every one of them anew a
 
 from collections.abc import Callable
 from inspect import Parameter, signature
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from synth.frame.arguments import Json
+from synth.frame.arguments import Json, whole_number
 
 FILES = {
     "retarder": ("retarders", "File of a retarder type. With the name of a position: its configuration."),
@@ -59,12 +60,30 @@ def init(
     schema: Annotated[
         bool, typer.Option("--schema", help="The JSON Schema of such a configuration instead, for editors.")
     ] = False,
+    for_trial: Annotated[
+        Path | None,
+        typer.Option(
+            "--for",
+            metavar="TRIAL.toml|HUMP",
+            help="Configuration of the tables that a position needs in this hump trial.",
+        ),
+    ] = None,
+    position_number: Annotated[
+        int | None,
+        typer.Option(
+            parser=whole_number(1, 10),
+            metavar="N",
+            help="With --for: which position, 1 being the first behind the crest.",
+        ),
+    ] = None,
     as_json: Json = False,
     **files: str | None,
 ) -> int:
     """Print a commented configuration to start from, or the file of one type."""
-    from synth.cli.init import init_command, schema_command
+    from synth.cli.init import init_command, schema_command, tables_command
 
-    if schema:
-        return schema_command({FILES[name][0]: given for name, given in files.items()})
-    return init_command({FILES[name][0]: given for name, given in files.items()}, show_list, as_json)
+    types = {FILES[name][0]: given for name, given in files.items()}
+    if for_trial is not None or position_number is not None:
+        alone = not (schema or show_list or any(given is not None for given in types.values()))
+        return tables_command(for_trial, position_number, alone, as_json)
+    return schema_command(types) if schema else init_command(types, show_list, as_json)

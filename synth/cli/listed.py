@@ -22,8 +22,8 @@ COMMANDS: Final = (
     ),
     Listed(
         "aim",
-        "synth.aim.command:COMMAND",
-        "synth.aim.options:AimOptions",
+        "synth.hump.aiming.command:COMMAND",
+        "synth.hump.aiming.options:AimOptions",
         "init --aim",
         "Make aim tables: the exit speeds at which a park position lets cuts go.\n\n"
         "Random cuts roll to the standing cars; the tables keep a required probability of coupling too fast. Exit code "

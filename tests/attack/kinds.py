@@ -14,13 +14,13 @@ from typing import Final
 import h5py
 import numpy as np
 
-from synth.aim.command import COMMAND as AIM
 from synth.aim.configuration.template import default_aim_toml
 from synth.cli.hump import check_command
 from synth.computer.command import COMMAND as COMPUTER
 from synth.computer.template import default_computer_toml
 from synth.frame.asked_file import asked_of
 from synth.frame.terminal.telling import say
+from synth.hump.aiming.command import COMMAND as AIM
 from synth.hump.configuration.template import default_trial_toml
 from synth.hump.forms.hump_csv import to_csv
 from synth.hump.hump_file import parse_hump

@@ -94,9 +94,7 @@ def exits_of(asked: HumpPositionSettings, choice: PositionChoice, choices: int, 
     if choice.out_of_service:
         return Spacing(SpeedRange(UNBRAKED_M_S, UNBRAKED_M_S, 1))
     if asked.exit_m_s is not None:
-        speeds = fixed_speeds(asked, categories)
-        require_tables(choice, "exit_m_s", max(speeds))
-        return Fixed(np.array(speeds), entry)
+        return Fixed(np.array(fixed_speeds(asked, categories)), entry)
     low, high = exit_range(asked, choice)
     return Spacing(SpeedRange(low, high, choices if low < high else 1, entry))
 
@@ -122,49 +120,29 @@ def fixed_speeds(asked: HumpPositionSettings, categories: WeightCategories) -> l
 
 
 def exit_range(asked: HumpPositionSettings, choice: PositionChoice) -> tuple[float, float]:
-    """Lowest and highest exit speed of a position that keeps cuts apart."""
+    """Lowest and highest exit speed of a position that keeps cuts apart. An end that is not asked for is the usual one,
+    or, within it, that of the book; where then nothing is left to choose from, the book does not fit."""
     low = EXIT_RANGE_M_S[0] if asked.lowest_m_s is None else asked.lowest_m_s
     high = max(EXIT_RANGE_M_S[1], low) if asked.highest_m_s is None else asked.highest_m_s
-    if choice.top_target_m_s is not None and asked.highest_m_s is None:
-        high = min(high, choice.top_target_m_s)
-        require(
-            low <= high,
-            f"position {asked.number}: the book {choice.book} has tables for all its classes up to {high:g} m/s, and "
-            f"the lowest exit speed there is {low:g}{'' if asked.lowest_m_s else ' unless given'}: set lowest_m_s of "
-            f"[[position]] number = {asked.number} to {high:g} or less, or tune a book with targets up to "
-            f"{EXIT_RANGE_M_S[1]:g} m/s (targets.exit_speeds_m_s)",
-        )
     low = min(low, high) if asked.lowest_m_s is None else low
-    require_tables(choice, "highest_m_s", high)
-    return low, high
-
-
-def require_tables(choice: PositionChoice, key: str, highest_m_s: float) -> None:
-    """`PlantError` where a position with a book has no tables for speeds that may be commanded."""
-    top = choice.top_target_m_s
-    require(
-        top is None or highest_m_s <= top,
-        f"position {choice.number}: {key} is {highest_m_s:g}; its book {choice.book} has tables for all its classes "
-        f"up to {top or 0.0:g}: lower it, or tune a book for faster cuts",
+    if choice.held is None:
+        return low, high
+    in_book = choice.held.within(low, high)
+    found = (
+        in_book[0] if asked.lowest_m_s is None else low,
+        in_book[1] if asked.highest_m_s is None else high,
     )
+    return found if found[0] < found[1] else (low, high)
 
 
-def role_warnings(
-    asked: RoleSettings, roles: Roles, choices: Sequence[PositionChoice], routes: HumpRoutes
-) -> Iterator[str]:
+def role_warnings(asked: RoleSettings, roles: Roles, routes: HumpRoutes) -> Iterator[str]:
     """A sentence for each role that does what hardly anybody wants."""
-    for place, (each, exits, choice) in enumerate(zip(asked.positions, roles.exits, choices, strict=True)):
+    for place, each in enumerate(asked.positions):
         blocked = sorted(int(track) for track in routes.tracks[roles.aims[place] & routes.parts_behind])
         if blocked:
             yield (
                 f"position {each.number} aims at the standing cars of tracks {ranges(blocked)}, and switches are "
                 "behind it: cuts leave it slowly and block them, so that those behind catch up"
-            )
-        single = isinstance(exits, Spacing) and exits.range.low_m_s == exits.range.high_m_s
-        if single and place in roles.not_of_all and choice.book is not None and each.lowest_m_s is None:
-            yield (
-                f"position {each.number} can be commanded {choice.top_target_m_s:g} m/s alone: its book ends there, "
-                "and slower exits are not asked for; set its lowest_m_s lower"
             )
 
 

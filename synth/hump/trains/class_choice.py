@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,42 +42,18 @@ class ClassChoice:
 
     def able(self, category: int, axles: int) -> Ints:
         """The classes, by place, among which the axle load decides for cuts of this category with so many axles."""
-        counts = self._axles_of(category)
-        nearest = self._nearest(counts, axles)
+        member = self.categories.members[category]
+        counts = {
+            place: c.plant.cut.axles for place, c in enumerate(self.classes) if c.plant.cut.category == member.name
+        }
+        nearest = nearest_axles(counts.values(), axles)
         if nearest is None:
-            raise PlantError(f"tables: {self.missing({(category, axles)})}")
+            raise PlantError(f"tables: none for cuts of category {member.label} with {axles} axles")
         return np.array([place for place, count in counts.items() if count == nearest])
 
-    def serves(self, category: int, axles: int) -> bool:
-        """Whether some class stands for cuts of this category with so many axles."""
-        return self._nearest(self._axles_of(category), axles) is not None
 
-    def _axles_of(self, category: int) -> dict[int, int]:
-        """Axles of the classes of a category, by their places."""
-        name = self.categories.members[category].name
-        return {place: c.plant.cut.axles for place, c in enumerate(self.classes) if c.plant.cut.category == name}
-
-    def _nearest(self, counts: Mapping[int, int], axles: int) -> int | None:
-        nearest = min(counts.values(), key=lambda count: (abs(count - axles), count), default=0)
-        return nearest if nearest and nearest / MOST_SHORTER <= axles <= nearest * MOST_LONGER else None
-
-    def missing(self, kinds: Collection[tuple[int, int]]) -> str:
-        """What is missing for cuts of these (category, axles), for which no class stands, and what there is."""
-        members = self.categories.members
-        labels = {each.name: each.label for each in members}
-        held: dict[str, list[int]] = {}
-        for name, count in sorted({(c.plant.cut.category, c.plant.cut.axles) for c in self.classes}):
-            held.setdefault(labels.get(name, name), []).append(count)
-        wanted: dict[str, list[int]] = {}
-        for category, axles in sorted(kinds):
-            wanted.setdefault(members[category].label, []).append(axles)
-        return (
-            f"none for cuts of category {with_axles(wanted)}; a class stands for cuts of its category with "
-            f"1/{MOST_SHORTER:g} to {MOST_LONGER:.2f} times its axles, and there are {with_axles(held)}: tune a class "
-            "for such cuts"
-        )
-
-
-def with_axles(kinds: Mapping[str, Sequence[int]]) -> str:
-    """Categories with numbers of axles in words."""
-    return "; ".join(f"{name} with {', '.join(map(str, counts))} axles" for name, counts in kinds.items())
+def nearest_axles(held: Collection[int], axles: int) -> int | None:
+    """Which of the axle numbers `held` of the classes of a category stands for cuts with so many `axles`; None where
+    none does."""
+    nearest = min(held, key=lambda count: (abs(count - axles), count), default=0)
+    return nearest if nearest and nearest / MOST_SHORTER <= axles <= nearest * MOST_LONGER else None

@@ -26,7 +26,7 @@ from synth.hump.trains.train_plan import Planner
 from synth.hump.trains.train_source import DrawnSource, ListSource
 from synth.hump.trains.trial import ConstantSpeed, Control, HumpTrial, Program, Sensing, SimulatedPairs, TrainSource
 from synth.hump.trains.trial_aim import trial_aim
-from synth.retarder.book_classes import book_classes, unfitting
+from synth.retarder.book_classes import book_classes
 from synth.retarder.table_class import TableClass
 
 METHODS: dict[str, SpeedMethod] = {"whole-train": WholeTrain(), "pair-by-pair": PairByPair()}
@@ -102,47 +102,8 @@ def classes_of(choice: PositionChoice, config: ResolvedTrial) -> tuple[TableClas
 
 
 def table_model(choice: PositionChoice, config: ResolvedTrial) -> HumpPosition:
-    """The closed loops of the tables in the book of a position; `InputError` unless there are some for all cuts."""
-    found = ClassChoice(classes_of(choice, config), config.categories)
-    missing = {kind for kind in kinds_of_cuts(config) if not found.serves(*kind)}
-    if missing:
-        assert choice.book is not None
-        named = f"{config.place}: position {choice.number}"
-        said = f"tables: {found.missing(missing)}, {or_fewer_kinds(missing, config)}"
-        raise InputError(unfitting(named, choice.book, PlantError(said)))
-    return TableHumpPosition(found)
-
-
-def or_fewer_kinds(missing: set[tuple[int, int]], config: ResolvedTrial) -> str:
-    """What a user may set so that trains have none of the kinds of cuts that are `missing`."""
-    trains = config.trains
-    if isinstance(trains, SortingList):
-        return "or take a list without them"
-    members = config.categories.members
-    cars = {
-        place: {int(n) for n in config.people.mix.of(config.categories, members[place]).axles} for place, _ in missing
-    }
-    most = min((axles - 1) // max(cars[place]) for place, axles in missing)
-    if most >= 1:
-        return f"or set trains.most_cars = {most}"
-    names = sorted({members[place].latin for place, axles in missing if axles <= max(cars[place])})
-    return f"or leave {', '.join(names)} out of trains.category_shares"
-
-
-def kinds_of_cuts(config: ResolvedTrial) -> set[tuple[int, int]]:
-    """(place of the category, axles) of all cuts that trains can have."""
-    members, trains = config.categories.members, config.trains
-    if isinstance(trains, SortingList):
-        numbers = [member.number for member in members]
-        return {(numbers.index(cut.category), cut.axles) for cut in trains.cuts}
-    used = [place for place, member in enumerate(members) if trains.category_shares.get(member.number, 0.0) > 0.0]
-    counts = range(1, trains.most_cars + 1)
-    return {
-        (place, cars * int(axles))
-        for place in used
-        for axles in config.people.mix.of(config.categories, members[place]).axles
-        for cars in counts
-    }
+    """The closed loops of the tables in the book of a position."""
+    return TableHumpPosition(ClassChoice(classes_of(choice, config), config.categories))
 
 
 def planner_of(config: ResolvedTrial) -> Planner:

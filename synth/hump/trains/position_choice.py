@@ -16,13 +16,27 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
+class HeldTables:
+    """What the tables of a book are for: `kinds`, (weight category, axles) of its classes; every class has tables for
+    exit speeds from `lowest_m_s` to `highest_m_s`."""
+
+    kinds: frozenset[tuple[str, int]]
+    lowest_m_s: float
+    highest_m_s: float
+
+    def within(self, low_m_s: float, high_m_s: float) -> tuple[float, float]:
+        """The part of a range of exit speeds that there are tables for; the ends lie the wrong way round for none."""
+        return max(low_m_s, self.lowest_m_s), min(high_m_s, self.highest_m_s)
+
+
+@dataclass(frozen=True)
 class PositionChoice:
     """Position `number` of every route that has so many, 1 being the first behind the crest: `site`, its name in the
     library.
 
     Its controller: `exit_std_m_s`, or `book` with the configuration `tuned_with` (None: the built-in one). Out of
     service it brakes nothing. `supply_share`: of the full brake power. `std_set_by_user`: not by the hump file.
-    `top_target_m_s`: highest speed that the book has a table for in every class; None without a book.
+    `held`: what the tables of the book are for; None without a book.
     """
 
     number: int
@@ -33,7 +47,7 @@ class PositionChoice:
     out_of_service: bool
     supply_share: float
     std_set_by_user: bool
-    top_target_m_s: float | None
+    held: HeldTables | None
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -94,7 +108,10 @@ def choice_of(
         tuned_with = folder / settings.tables_config
     for path in (book, tuned_with):
         if path is not None and not path.is_file():
-            raise PlantError(f"position {number}: there is no file {str(path)!r}; 'retarder-synth tune' makes a book")
+            raise PlantError(
+                f"position {number}: there is no file {str(path)!r}; 'retarder-synth init --for' prints the "
+                "configuration of a book for this trial, and 'retarder-synth tune' makes it"
+            )
     supply = 1.0 if settings.supply_share is None else settings.supply_share
     require(
         supply == 1.0 or book is None,
@@ -102,18 +119,22 @@ def choice_of(
         "its own configuration: change it there (tables_config)",
     )
     by_user = settings.exit_std_m_s is not None
-    out, top = settings.out_of_service, None if book is None else top_target_m_s(book)
-    return PositionChoice(number, site, std, book, tuned_with, out, supply, by_user, top)
+    out, held_tables = settings.out_of_service, None if book is None else held_in(book)
+    return PositionChoice(number, site, std, book, tuned_with, out, supply, by_user, held_tables)
 
 
-def top_target_m_s(book: Path) -> float:
-    """Highest target that every class of the tables in `book` has."""
+def held_in(book: Path) -> HeldTables:
+    """What the tables in `book` are for."""
     (file,) = read_tables(book)
-    tops: dict[object, float] = {}
+    targets: dict[tuple[str, float, tuple[float, ...]], list[float]] = {}
     for table in file.tables:
-        key = table.cut.category, table.cut.mass_t, table.cut.axle_offsets_m
-        tops[key] = max(tops.get(key, 0.0), table.target_speed_m_s)
-    return min(tops.values())
+        key = table.cut.category, table.cut.mass_t, tuple(table.cut.axle_offsets_m)
+        targets.setdefault(key, []).append(table.target_speed_m_s)
+    return HeldTables(
+        kinds=frozenset((category, len(axles)) for category, _, axles in targets),
+        lowest_m_s=max(min(of_class) for of_class in targets.values()),
+        highest_m_s=min(max(of_class) for of_class in targets.values()),
+    )
 
 
 def same_of(number: int, what: str, found: set[T]) -> T:

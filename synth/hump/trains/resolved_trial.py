@@ -23,6 +23,7 @@ from plant_models.library.data_file import keyed
 from plant_models.library.hump_entry import HumpEntry
 from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
+from synth.frame.input_error import InputError
 from synth.frame.settings.numbers import range_warnings
 from synth.hump.configuration.settings import OVERSPEEDS_PER_ASKED, HumpTrialSettings
 from synth.hump.configuration.trial_file import TrialFile, read_trial_file
@@ -39,10 +40,12 @@ from synth.hump.trains.asked_trains import (
 )
 from synth.hump.trains.car_warnings import car_warnings, list_warnings, skates_warnings, weather_warnings
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
+from synth.hump.trains.needed_tables import NeededTables, needed_tables, unfitting_tables
 from synth.hump.trains.position_choice import PositionChoice, position_choices
 from synth.hump.trains.position_roles import Fixed, Roles
 from synth.hump.trains.rising_track import require_falling
 from synth.hump.trains.table_aim import aim_warnings, require_fitting
+from synth.hump.trains.trial_aim_range import book_warnings
 from synth.hump.trains.trial_parameters import (
     CHANGES_NO_TRAIN,
     position_values,
@@ -70,7 +73,7 @@ class ResolvedTrial:
     """Everything that humped trains depend on.
 
     `trains`: a population, or the humped cuts of a sorting list. `aims`: exported aim tables of positions that aim;
-    where there are none, speeds are chosen for the trial.
+    where there are none, speeds are chosen for the trial. `needs`: what the tables of each position must be for.
     `library`: with the user's own types. `parameters`: every number with unit, range, source and whether it is assumed;
     `warnings`: sentences about values outside their sensible range; `place`: what messages call the file.
     """
@@ -83,6 +86,7 @@ class ResolvedTrial:
     trains: TrainPopulation | SortingList
     positions: tuple[PositionChoice, ...]
     roles: Roles
+    needs: tuple[NeededTables, ...]
     aims: tuple[AimChoice, ...]
     settings: HumpTrialSettings
     library: Library
@@ -156,6 +160,10 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         aims = aim_choices(routes, roles, settings.aim, file.hump_source.parent, file.folder)
         for each in aims:
             require_fitting(each, routes, cars_of_cuts(trains, categories), settings.aim.knowledge == "measured")
+    needs = needed_tables(asked.positions, roles, trains, people)
+    lacking = tuple(unfitting_tables(place, positions, needs, trains, people))
+    if lacking:
+        raise InputError(*lacking)
     parameters = (
         *trial_numbers(settings, usual, file.hump, mix, categories, designed=len(rows_without(aims, roles)) > 0),
         *role_values(asked, roles, categories),
@@ -170,6 +178,7 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         trains=trains,
         positions=positions,
         roles=roles,
+        needs=needs,
         aims=aims,
         settings=settings,
         library=library,
@@ -178,7 +187,8 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         warnings=(
             *range_warnings(parameters),
             *aim_warnings(aims, routes, settings),
-            *role_warnings(asked, roles, positions, routes),
+            *role_warnings(asked, roles, routes),
+            *book_warnings(positions, roles, settings.aim),
             *car_warnings(file.hump.cars, cars_of_cuts(trains, categories)),
             *skates_warnings(settings, roles),
             *weather_warnings(settings),

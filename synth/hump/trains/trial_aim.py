@@ -12,6 +12,7 @@ from synth.hump.trains.hump_aim import HumpAim, joined_aims, no_aim
 from synth.hump.trains.position_choice import PositionChoice
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.table_aim import table_aim
+from synth.hump.trains.trial_aim_range import aim_range_m_s
 from synth.retarder.forms.table_file import read_tables
 
 
@@ -37,7 +38,7 @@ def design_of(config: ResolvedTrial, threads: int, last: PositionChoice) -> AimD
     return AimDesign(
         population=config.people,
         position=NormalPosition(told_exit_std_m_s(last)),
-        requirement=Requirement(aim.p_overspeed, (aim.lowest_m_s, aim.highest_m_s)),
+        requirement=Requirement(aim.p_overspeed, aim_range_m_s(aim, last)),
         knowledge=MeasuredAhead(config.settings.sensors.speed_std_m_s) if measured else ByCategory(),
         design_cuts=aim.design_cuts,
         seed=config.settings.trains.seed,

@@ -62,7 +62,7 @@ def test_cells_without_speed_do_not_count_but_are_told(made: MadeAim) -> None:
     verdict = judge_aims([with_hits(made, [[0, 100], [90, 0]], [[0, 1000], [1000, 0]])], 0.01)
     assert verdict.accepted
     assert (verdict.tables[0].told, verdict.tables[0].without, verdict.tables[0].cells) == (2, 2, 4)
-    assert "2 cells have no exit speed that keeps it" in verdict.sentence
+    assert "no exit speed keeps it, for the track falls more" in verdict.sentence
     nothing = judge_aims([with_hits(made, [[0, 0], [0, 0]], [[0, 0], [0, 0]])], 0.01)
     assert not nothing.accepted
     assert nothing.sentence.startswith("no exit speed keeps the required probability anywhere")

@@ -7,6 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from plant_models.library import load_hump, load_weight_categories
+from synth.aim.configuration.aim_file import parse_aim_file
+from synth.aim.resolved_aim import ResolvedAim
+from synth.frame.command import Asked
+from synth.hump.aiming.command import resolve
+from synth.hump.aiming.options import AimOptions
 from synth.hump.trains.aim_design import positions_m
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
@@ -42,24 +47,15 @@ def written(folder: Path, tables: Iterable[AimTable]) -> Path:
     return folder
 
 
-def aim_text(hump: HumpRoutes, row: int, passes: int) -> str:
-    """An aim configuration for the last position of the route `row`, by category Л, with the nodes of a trial's own
-    aim."""
+def resolved_aim(hump: HumpRoutes, row: int, passes: int) -> ResolvedAim:
+    """An aim for the last position of the route `row` of the medium hump, by category Л, with the nodes of a trial's
+    own aim."""
     route = hump.routes[row]
-    track, (entrance, leave) = route.roll_track, positions_m(route)[-1]
-    pieces = zip(track.breaks_m[:-1], track.breaks_m[1:], track.profile.grades_permille, strict=True)
-    elements = ", ".join(f"{{ from_m = {a}, to_m = {b}, grade_permille = {float(i)} }}" for a, b, i in pieces)
-    bends = ", ".join(
-        f"{{ from_m = {b.from_m}, to_m = {b.to_m}, switches = {b.switches}, turn_deg = {float(b.turn_deg)} }}"
-        for b in track.bends
-    )
-    room = route.length_m - leave - 60.0
+    room = route.length_m - positions_m(route)[-1][1] - 60.0
     distances = [round(max(room * (place / 15) ** 2, 0.5), 3) for place in range(16)]
-    return (
-        f"[track]\nelements = [{elements}]\nbends = [{bends}]\n"
-        f'[position]\nname = "rnz-2m-park"\nentrance_m = {entrance}\nexit_m = {leave}\n'
-        f"[stretch]\nfrom_m = 200.0\nto_m = {entrance}\n"
+    text = (
         f'[cuts]\ncategories = ["Л"]\ncars = [1, 2, 3]\n'
-        f'[aim]\nfree_distances_m = {distances}\nexit_std_m_s = 0.15\nknowledge = ["category"]\n'
-        f"[simulation]\npasses = {passes}\n"
+        f'[aim]\nfree_distances_m = {distances}\nknowledge = ["category"]\n'
     )
+    options = AimOptions(hump=Path("medium"), track=route.track, passes=passes)
+    return resolve(Asked(parse_aim_file(text, "aim.toml"), options, "aim.toml", Path(), text))

@@ -18,7 +18,8 @@ from synth.hump.forms import hump_csv
 from synth.hump.hump_file import hump_text
 from synth.hump.trains.hump_position import Arrivals
 from synth.hump.trains.hump_speed import PairByPair
-from synth.hump.trains.made_trial import kinds_of_cuts, made_trial
+from synth.hump.trains.made_trial import made_trial
+from synth.hump.trains.position_choice import HeldTables
 from synth.hump.trains.resolved_trial import load_trial, resolve_trial
 from synth.hump.trains.shown.program import program_exhibits
 from synth.hump.trains.speed_program import speed_program
@@ -113,12 +114,6 @@ def test_a_constant_speed_is_kept() -> None:
     assert program.mean_m_s == pytest.approx(1.7)
 
 
-def test_books_must_have_a_class_for_every_kind_of_cut() -> None:
-    config = resolve_trial(parse_trial_file(SMALL, "trial.toml"))
-    places = range(len(config.categories.members))
-    assert kinds_of_cuts(config) == {(place, axles) for place in places for axles in (4, 8, 12)}
-
-
 BOOKED = """\
 category_shares = { L = 1.0 }
 [[position]]
@@ -135,8 +130,11 @@ def test_a_position_with_a_book_runs_its_tables(tmp_path: Path) -> None:
     text = changed(SMALL, ("most_cars = 3\n", "most_cars = 2\n"), ("[aim]\ndesign_cuts = 200\n", ""))
     file = parse_trial_file(text + BOOKED, str(tmp_path / "trial.toml"))
     config = resolve_trial(file)
-    assert (config.positions[2].top_target_m_s, config.positions[2].exit_std_m_s) == (3.0, None)
+    assert config.positions[2].held == HeldTables(frozenset({("Л", 4), ("Л", 8)}), 1.5, 3.0)
+    assert config.positions[2].exit_std_m_s is None
+    assert any("position 3 aims with 1.5 to 3 m/s, for which" in warning for warning in config.warnings)
     trial = made_trial(config)
+    assert trial.aim.expected_m_s(*(np.array([0]),) * 3, np.array([5.0]), False) == 1.5  # not 0.5, which it cannot keep
     found = trial.batch(0, 4)
     assert (found.strokes[:, :2] == 0).all()
     assert (found.strokes[:, 2] > 0).all()
@@ -166,15 +164,25 @@ def test_books_that_lack_a_class_or_targets_are_refused(tmp_path: Path) -> None:
     (tmp_path / "park.toml").write_text(PARK, encoding="utf-8")
     place = str(tmp_path / "trial.toml")
     heavy = changed(SMALL, ("[aim]\ndesign_cuts = 200\n", "")) + changed(BOOKED, ("L = 1.0", "T = 1.0"))
-    with pytest.raises(InputError, match=r"position 3 names .*park.h5, which does not fit: tables: none for cuts of"):
-        made_trial(resolve_trial(parse_trial_file(heavy, place)))
+    make_one = f"make one that fits by 'retarder-synth init --for {place} --position-number"
+    with pytest.raises(InputError) as caught:
+        resolve_trial(parse_trial_file(heavy, place))
+    (sentence,) = caught.value.sentences
+    assert "park.h5 has no class for cuts of category Т (T) with 4, 8, 12 axles; a class stands" in sentence
+    assert f"there are Л (L) with 4, 8 axles: {make_one} 3 > tables.toml', or leave T out of" in sentence
     ahead = "[[position]]\nnumber = 2\ntables = 'park.h5'\n"
-    with pytest.raises(InputError, match=r"position 2: highest_m_s is 6.5; its book .*park.h5 has tables .* up to 3:"):
-        resolve_trial(parse_trial_file(f"{SMALL}{ahead}highest_m_s = 6.5\n", place))
-    with pytest.raises(
-        InputError, match=r"position 2: the book .*up to 3 m/s, and the lowest .* is 4 unless given: set"
+    for keys, words in (
+        ("", "ends at 3 m/s, but it keeps cuts apart with 4 to 7 m/s, which are usual where"),
+        ("highest_m_s = 2.5\nlowest_m_s = 1.0\n", "begins at 1.5 m/s, but it keeps cuts apart with 1 to 2.5 m/s, by"),
+        ("exit_m_s = { T = 1.0, all = 3.5 }\n", "has tables from 1.5 to 3 m/s alone, but exit_m_s of the position"),
     ):
-        resolve_trial(parse_trial_file(SMALL + ahead, place))
+        with pytest.raises(InputError) as caught:
+            resolve_trial(parse_trial_file(f"{SMALL}{ahead}{keys}", place))
+        lacks_classes, lacks_targets = caught.value.sentences
+        assert "has no class for cuts of category ЛС" in lacks_classes
+        assert "or set trains.most_cars" not in lacks_classes
+        assert f"position 2: its book {tmp_path / 'park.h5'} {words}" in lacks_targets
+        assert f"{make_one} 2" in lacks_targets
 
 
 def test_a_position_that_no_library_has_is_refused(tmp_path: Path) -> None:

@@ -11,8 +11,6 @@ import pytest
 
 from plant_models.hump import Retarder
 from synth.aim.aim_book import aim_book
-from synth.aim.configuration.aim_file import parse_aim_file
-from synth.aim.resolved_aim import resolve_aim
 from synth.frame.input_error import InputError
 from synth.frame.results_directory import results_directory
 from synth.hump.configuration.trial_file import parse_trial_file
@@ -29,7 +27,15 @@ from synth.hump.trains.train_figures import ratio
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.trial_inputs import write_inputs
 from synth.simulation.free_roll import rolling_cuts
-from tests.synth.hump.trains.exported_aims import CATEGORIES, EXIT_M, STRETCH_M, aim_text, made_tables, medium, written
+from tests.synth.hump.trains.exported_aims import (
+    CATEGORIES,
+    EXIT_M,
+    STRETCH_M,
+    made_tables,
+    medium,
+    resolved_aim,
+    written,
+)
 from tests.synth.hump.trains.mixed_cuts import without_padding
 from tests.system.conftest import changed
 from tuning_tables import DamagedTable
@@ -182,7 +188,7 @@ def test_an_exported_aim_agrees_with_the_one_that_is_designed_for_the_trial(tmp_
     """Same cuts, same nodes, other draws: same trains come to the same gaps and over-speeds within what 2000 and 4000
     drawn cuts tell of a quantile; the difference is taken train by train."""
     light = changed(SMALL, ("most_cars = 3\n", "most_cars = 3\ncategory_shares = { L = 1.0 }\n"), ("= 200", "= 4000"))
-    book = aim_book(resolve_aim(parse_aim_file(aim_text(medium(), 0, 4000), "aim.toml")), "2026-11-22T08:00:00Z", print)
+    book = aim_book(resolved_aim(medium(), 0, 4000), "2026-11-22T08:00:00Z", print)
     written(tmp_path / "aim", [made.table for made in book.tables])
     place = str(tmp_path / "trial.toml")
     own, told = (made_trial(resolve_trial(parse_trial_file(light + more, place))) for more in ("", 'tables = "aim"\n'))

@@ -40,7 +40,7 @@ TRIALS = {
     f"{ONE}exit_m_s = {{ L = 5.0 }}": "position 1: exit_m_s has no speed for LS, S, ST, T; add LS, or all for all",
     f"{ONE}exit_m_s = 48": "position[0].exit_m_s.all is 48; it must be from 0.3 to 12",
     f"{ONE}lowest_m_s = 5\nhighest_m_s = 4": "position[0].lowest_m_s is 5.0; it must not be above highest_m_s, 4.0",
-    f'{ONE}tables = "no.h5"': "position 1: there is no file 'no.h5'; 'retarder-synth tune' makes a book",
+    f'{ONE}tables = "no.h5"': "position 1: there is no file 'no.h5'; 'retarder-synth init --for' prints the",
     f"{ONE}exit_std_m_s = 0,35": "line 3: 0,35 is no number of TOML; write 0.35, with a decimal point",
     "[position]\nnumber = 1": "it must be a list of tables: write [[position]], not [position]",
     f"{ONE}{ONE}": "position[1].number is 1, which is there before; put the two together",

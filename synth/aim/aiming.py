@@ -1,4 +1,4 @@
-"""The command `aim`: the exit speeds at which a park position lets cuts go, as tables of controllers."""
+"""What the command `aim` does: the exit speeds at which a park position lets cuts go, as tables of controllers."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from synth.aim.configuration.aim_file import AimFile, parse_aim_file
-from synth.aim.options import AimOptions
-from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.aim.configuration.aim_file import AimFile
+from synth.frame.command import Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 
 if TYPE_CHECKING:
+    from plant_models.library import TrackEntry
     from synth.aim.aim_acceptance import AimBookVerdict
     from synth.aim.aim_book import AimBook
     from synth.aim.resolved_aim import ResolvedAim
@@ -37,12 +37,13 @@ class FoundAim:
     verdict: AimBookVerdict
 
 
-def resolve(asked: Asked[AimFile, AimOptions]) -> ResolvedAim:
-    """The file with what is given on the command line; a book that does not fit is refused."""
+def resolved(file: AimFile, track: TrackEntry | None = None) -> ResolvedAim:
+    """Everything that tables depend on, for the `track`, None: that of the file; a book that does not fit is
+    refused."""
     from synth.aim.aimed_position import position_of
     from synth.aim.resolved_aim import resolve_aim
 
-    config = resolve_aim(asked.settings.with_simulation(asked.options.passes, asked.options.seed))
+    config = resolve_aim(file, track)
     position_of(config)
     return config
 
@@ -85,21 +86,9 @@ def limits(found: FoundAim) -> Iterator[Limit]:
 def show(found: FoundAim) -> Iterator[Chapter]:
     """What is shown of it."""
     from synth.aim.shown import asked, cells, charts, files, gaps
+    from synth.aim.shown_commands import cards, command_charts
 
+    yield Chapter("What the position is told", (*command_charts(found.book), *cards(found.book)))
     yield Chapter("Results", (*asked(found.book, found.verdict), *gaps(found.book, found.verdict)))
     yield Chapter("Pictures", tuple(charts(found.book)))
     yield Chapter("Cell by cell", (*cells(found.book), *files(found.book)))
-
-
-COMMAND = Command(
-    name="aim",
-    read=parse_aim_file,
-    options=AimOptions,
-    resolve=resolve,
-    head=head,
-    steps=steps,
-    compute=compute,
-    show=show,
-    limits=limits,
-    limits_of_use=LIMITS_OF_USE,
-)
