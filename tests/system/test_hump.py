@@ -82,11 +82,11 @@ def test_export_in_another_form_and_read_it(command: Command, file: Path, tmp_pa
     assert command("hump", "routes", target).out == command("hump", "routes", file).out
     target.write_text(target.read_text().replace("<signalsIS>", "<speeds/><signalsIS>"))
     assert "read over: speeds (1)" in command("hump", "check", target).out
-    for name in ("small.csv", "again.toml"):
+    for name in ("small.csv", "small.xlsx", "again.toml"):
         assert command("hump", "export", file, "-o", tmp_path / name).code == 0
         assert command("hump", "routes", tmp_path / name).out == command("hump", "routes", file).out
     assert (
-        "must end with .railml, .xml, .csv or .toml"
+        "must end with .railml, .xml, .csv, .xlsx or .toml"
         in command("hump", "export", file, "-o", tmp_path / "small.txt").sentence
     )
 
