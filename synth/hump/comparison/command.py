@@ -71,16 +71,19 @@ def steps(asked: Compared) -> Steps:
 
 
 def compute(asked: Compared, work: Work) -> Compared:
-    """Nothing is humped."""
+    """Nothing is computed: figures and trains are made when they are shown."""
     work.progress.note(f"{len(asked.runs)} runs of {len(asked.runs[0].found)} trains read")
     return asked
 
 
 def show(compared: Compared) -> Iterator[Chapter]:
-    """Every figure of every run."""
+    """Every figure of every run; then a few trains, which are humped again to be played."""
+    from synth.hump.comparison.played import played
     from synth.hump.comparison.shown import figures
 
     yield Chapter("Figures", tuple(figures(compared.runs)))
+    if compared.runs[0].config.settings.output.report:
+        yield Chapter("Trains side by side", tuple(played(compared.runs)))
 
 
 COMMAND = Command(

@@ -157,6 +157,10 @@ class HumpTrial:
     def batch(self, first: int, count: int) -> TrainOutcomes:
         """What the trains `first` … `first + count − 1` come to."""
         trains, _, memory = self.humped(first, count)
+        return self.outcomes(trains, memory)
+
+    def outcomes(self, trains: TrainCuts, memory: TrainMemory) -> TrainOutcomes:
+        """What trains came to that were humped here."""
         return outcomes(self.routes, trains, memory, self.able(trains, memory.route.ravel()), self.couplings)
 
     def able(self, trains: TrainCuts, route: Ints) -> PassLimits:

@@ -3,49 +3,79 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib.resources import files
+from typing import Any, Final
 
 from plant_models.library.hump_entry import HumpEntry
 from synth.frame.page.markup import Markup, element
 from synth.frame.page.page_style import STYLE
+from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.hump_page.plan_data import plan_data
 from synth.hump.trains.hump_page.train_data import train_data
 from synth.hump.trains.train_trace import TrainTrace
 
-POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"
+PLAYER: Final = "hump.html"
+"""The name of its file."""
+
+POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"
 """The browser itself keeps the page from loading anything."""
 
+SCRIPTS: Final = ("train_ways.js", "plan_panel.js", "alarms.js", "player.js")
 
-def hump_page(hump: HumpEntry, shown: Mapping[str, TrainTrace], categories: Sequence[str]) -> str:
-    """One HTML document: the trains `shown`, by their titles in a menu, on the plan of `hump`; the first of them is
-    there when the page is opened. The same trains give the same text."""
-    traces = tuple(shown.values())
-    used = sorted({row for trace in traces for cut in trace.cuts for row in (cut.route, cut.wanted)})
-    routes = {row: traces[0].routes.routes[row] for row in used}
-    data = {
-        "title": hump.title,
-        "plan": plan_data(hump.graph, routes),
-        "trains": [{"title": title, **train_data(trace, categories)} for title, trace in shown.items()],
-    }
-    title = "Trains over the hump" if len(traces) > 1 else f"Train {traces[0].number + 1} over the hump"
+
+@dataclass(frozen=True)
+class PlayedRun:
+    """Trains of one run over `hump`, in the order of the menu; `name` tells it from the others, '' where it is alone.
+
+    `categories`: names of the weight categories. `couplings`: which couplings are too fast.
+    """
+
+    name: str
+    hump: HumpEntry
+    traces: tuple[TrainTrace, ...]
+    categories: tuple[str, ...]
+    couplings: CouplingLimits
+
+
+def hump_page(title: str, runs: Sequence[PlayedRun], trains: Sequence[str]) -> str:
+    """One HTML document: the trains of all `runs` one below the other on one clock, each on the plan of its hump.
+
+    `trains`: what the menu calls them; the first is there when the page is opened. The same trains give the same text.
+    """
+    data = {"trains": list(trains), "runs": [run_data(run) for run in runs]}
+    humps = "; ".join(f"{run.name}: {run.hump.title}" if run.name else run.hump.title for run in runs)
     head = element(
         "head",
         element("meta", charset="utf-8"),
         Markup(f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'),
         element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        element("title", f"{title}: {hump.title}"),
+        element("title", f"{title}: {humps}"),
         element("style", Markup(STYLE + "\n" + text_of("player.css"))),
     )
     body = element(
         "body",
         element("h1", title),
-        element("p", hump.title, class_="meta"),
+        element("p", humps, class_="meta"),
         Markup(text_of("player.html")),
         element("script", Markup(script_safe(data)), id="data", type="application/json"),
-        element("script", Markup(text_of("player.js"))),
+        *(element("script", Markup(text_of(name))) for name in SCRIPTS),
     )
     return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
+
+
+def run_data(run: PlayedRun) -> dict[str, Any]:
+    """What the page must know of one run."""
+    used = sorted({row for trace in run.traces for cut in trace.cuts for row in (cut.route, cut.wanted)})
+    routes = {row: run.traces[0].routes.routes[row] for row in used}
+    return {
+        "name": run.name,
+        "plan": plan_data(run.hump.graph, routes),
+        "categories": list(run.categories),
+        "coupling_limits_m_s": list(run.couplings.classes_m_s),
+        "trains": [train_data(trace) for trace in run.traces],
+    }
 
 
 def script_safe(data: object) -> str:

@@ -29,13 +29,12 @@ TOLD = {
 """What stands between the cut and the cut ahead."""
 
 
-def train_data(trace: TrainTrace, categories: Sequence[str]) -> Data:
-    """Cuts, passes, occupied elements and alarms; `categories`: names of the weight categories."""
+def train_data(trace: TrainTrace) -> Data:
+    """Cuts, passes, occupied elements and alarms."""
     return {
         "begin_s": hundredth(min(float(cut.trace.time_s[0]) for cut in trace.cuts)),
         "end_s": hundredth(trace.end_s),
         "mean_hump_speed_m_s": finite(trace.mean_hump_speed_m_s),
-        "categories": list(categories),
         "cuts": [cut_data(trace, cut) for cut in trace.cuts],
         "occupied": [[o.number, o.cut, hundredth(o.from_s), finite(o.to_s)] for o in trace.occupied],
         "alarms": [alarm_data(alarm, trace.cuts) for alarm in trace.alarms],
@@ -57,6 +56,7 @@ def cut_data(trace: TrainTrace, cut: TracedCut) -> Data:
         "free_m": finite(cut.free_m),
         "coupled_m_s": finite(cut.coupled_m_s),
         "gap_m": finite(cut.gap_m),
+        "caught_s": caught_s(trace, cut),
         "passes": [
             [p.number, hundredth(p.begin_s), finite(p.end_s), *map(hundredth, (p.entry_m_s, p.command_m_s)),
              hundredth(p.exit_m_s)]
@@ -68,21 +68,34 @@ def cut_data(trace: TrainTrace, cut: TracedCut) -> Data:
     }  # fmt: skip
 
 
+def caught_s(trace: TrainTrace, cut: TracedCut) -> float | None:
+    """When it caught up, as the figures count it: misrouted, or in contact ahead of its last position."""
+    at = trace.routes.retarder[cut.route].max()
+    last = trace.routes.numbers[trace.routes.vertex[cut.route, at]] if at >= 0 else None
+    counted = (
+        alarm.time_s
+        for alarm in trace.alarms
+        if alarm.cut == cut.cut
+        and (alarm.kind is AlarmKind.MISROUTED or (alarm.kind is AlarmKind.CONTACT and alarm.number != last))
+    )
+    return finite(min(counted, default=None))
+
+
 def alarm_data(alarm: Alarm, cuts: Sequence[TracedCut]) -> Data:
-    """One alarm; an instant that never comes is None."""
+    """One alarm; an instant that never comes is None. `m_s`: the speed that belongs to it."""
     return {
-        "words": words(alarm, cuts[alarm.cut]),
+        "kind": alarm.kind.name.lower(),
+        "words": words(alarm),
+        "m_s": finite(cuts[alarm.cut].coupled_m_s) if alarm.kind is AlarmKind.OVERSPEED else None,
         "severe": alarm.kind.severe,
         "t": finite(alarm.time_s),
         "cut": alarm.cut,
     }
 
 
-def words(alarm: Alarm, cut: TracedCut) -> str:
+def words(alarm: Alarm) -> str:
     """'cut 4 in contact with cut 3 at retarder 411'."""
     told = f"cut {alarm.cut + 1} {TOLD[alarm.kind]}"
-    if alarm.kind is AlarmKind.OVERSPEED and cut.coupled_m_s is not None:
-        told += f", {cut.coupled_m_s:.2f} m/s"
     if alarm.ahead is not None:
         told += f" cut {alarm.ahead + 1}"
     return told if alarm.number is None else f"{told} at {element_name(alarm.number)}"

@@ -9,12 +9,12 @@ from typing import Any, Final
 from synth.frame.exhibits import Chart, Exhibit, File, Sentence
 from synth.hump.control.event_log import to_log_csv
 from synth.hump.trains.chosen_trains import chosen_trains
-from synth.hump.trains.hump_page.hump_page import hump_page
+from synth.hump.trains.hump_page.hump_page import PLAYER, PlayedRun, hump_page
 from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.traced_train import OneTrain, early_traces
+from synth.hump.trains.traced_train import OneTrain, some_trains
 from synth.hump.trains.train_trace import TrainTrace
 
-PLAYER, LOG = "hump.html", "events.csv"
+LOG: Final = "events.csv"
 
 TIME_PATH: Final = (
     "Each band is a cut from its tail to its head; the figures at the crest are its number and its track. Boxes: an "
@@ -37,11 +37,13 @@ def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Traced) -> 
     """What happened to it: the page that plays it and others, its log, and pictures."""
     yield from standing_cuts(result, shown)
     if result.config.settings.output.report:
-        first, *others = chosen_trains(result.found)
-        more = early_traces(result.trial, [each.number for each in others])
-        traces = {first.title: traced()} | {each.title: trace for each, trace in zip(others, more, strict=True)}
-        page = hump_page(result.config.hump, traces, result.category_names)
-        yield File(PLAYER, page.encode(), f"Play on the plan: {'; '.join(traces)}")
+        chosen = chosen_trains(result.found)
+        others = some_trains(result.trial, [each.number for each in chosen[1:]])
+        traces = (traced(), *(each.traced() for each in others))
+        titles = [each.title for each in chosen]
+        played = PlayedRun("", result.config.hump, traces, result.category_names, result.config.settings.couplings)
+        page = hump_page("Trains over the hump", (played,), titles)
+        yield File(PLAYER, page.encode(), f"Play on the plan: {'; '.join(titles)}")
     control = shown.controlled()
     otherwise = len(control.disagreements)
     yield File(LOG, to_log_csv(control.events).encode(), "Event log of the hump control for this train")
@@ -50,7 +52,7 @@ def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Traced) -> 
         "times.",
         {"points_lay_otherwise": otherwise},
     )
-    number = shown.trains.first + 1
+    number = shown.number + 1
     yield Chart(
         "hump-time-path", f"Time–path diagram of train {number}", TIME_PATH,
         lambda: _pictures().time_path(traced()),
@@ -67,7 +69,7 @@ def standing_cuts(result: HumpedTrial, shown: OneTrain) -> Iterator[Sentence]:
     if standing:
         first, fall_m = result.trial.routes.first_element
         yield Sentence(
-            f"Warning: {standing} of the {len(shown.trains)} cuts of train {shown.trains.first + 1} stand before "
+            f"Warning: {standing} of the {len(shown.trains)} cuts of train {shown.number + 1} stand before "
             f"element {first}; the track falls by {fall_m:.2f} m up to there.",
             {"standing_cuts": standing},
             brief=True,

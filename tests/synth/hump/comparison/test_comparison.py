@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from shutil import copytree
 
@@ -11,7 +12,10 @@ import pytest
 from scipy.stats import ttest_rel
 
 from synth.cli import main
+from synth.frame.exhibits import File, Sentence
+from synth.hump.comparison import played
 from synth.hump.comparison.compared_runs import runs_in
+from synth.hump.comparison.compared_trains import compared_trains
 
 TRIAL = """hump = "dumper"
 [trains]
@@ -60,6 +64,35 @@ def test_figures_are_those_of_the_runs_and_differences_those_of_student(
     assert (found["low95"], found["high95"]) == pytest.approx((expected.low, expected.high))
     assert rows["catch_ups", "slow"]["difference"] is None
     assert np.isfinite(rows["cars_per_hour", "fast"]["difference"]["low95"])
+
+
+def test_a_page_plays_the_train_with_the_largest_difference_in_both_runs(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    slow, _ = runs = runs_in([folder / "slow", folder / "fast"])
+    page, told = played.played(runs)
+    assert isinstance(page, File)
+    assert isinstance(told, Sentence)
+    (text,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', page.content.decode(), re.DOTALL)
+    data = json.loads(text)
+    title = r"train (\d+): largest difference in catch-ups, (\d+) in slow, (\d+) in fast"
+    found = re.match(title, data["trains"][0])
+    assert found
+    number, *counts = map(int, found.groups())
+    caught = np.stack([run.found.caught for run in runs])
+    assert counts == list(caught[:, number - 1])
+    assert abs(counts[1] - counts[0]) == np.abs(caught[1] - caught[0]).max() > 1
+    assert told.figures["played"][0] == number
+    for run, name, count in zip(data["runs"], ("slow", "fast"), counts, strict=True):
+        cuts = run["trains"][0]["cuts"]
+        assert (run["name"], len(cuts), sum(cut["caught_s"] is not None for cut in cuts)) == (name, 12, count)
+
+    of_slow = played.humped_again(slow, compared_trains(runs)[:1])
+    assert played.as_told(of_slow[0], slow.found)
+    monkeypatch.setattr(played, "humped_again", lambda run, chosen: of_slow)
+    (warning,) = played.played(runs)
+    assert isinstance(warning, Sentence)
+    assert warning.text.startswith("Warning: fast was humped by another version of this program")
 
 
 def test_what_cannot_be_compared_is_refused(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

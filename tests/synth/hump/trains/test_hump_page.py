@@ -1,4 +1,5 @@
-"""The page that plays a train, in a browser: cuts at their places, slider, alarms, no error, nothing loaded."""
+"""The page that plays a train of each run, in a browser as wide as a telephone: cuts at their places on one clock,
+alarms, counters, labels, no error, nothing loaded."""
 
 from __future__ import annotations
 
@@ -6,15 +7,19 @@ import json
 import re
 import shutil
 import subprocess
+from collections import Counter
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from synth.hump.trains.hump_page.hump_page import hump_page, script_safe
+from synth.hump.comparison.compared_trains import MOST_CUTS
+from synth.hump.trains.hump_page.hump_page import PlayedRun, hump_page, script_safe
 from synth.hump.trains.hump_page.train_data import HUNDREDTHS, differences
+from synth.hump.trains.outcomes import USUAL_COUPLINGS, outcomes
 from synth.hump.trains.train_trace import TrainTrace, train_trace
 from tests.plant_models.rolling.populations import CATEGORIES
 from tests.synth.hump.trains.humped_trains import HumpedTrains, humped_trains
@@ -23,38 +28,61 @@ NAMES = tuple(category.name for category in CATEGORIES.members)
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 SECONDS, SLID_S = 75.0, 120.0
 FRAME_MS = 250
+BEFORE_S = 3.0
+MOST_PAGE_BYTES = 3e6
 EVIL = "</script><script>throw 1</script><img src=x onerror=alert(1)> & \u2028"
 
 PROBE = """
 <script>
 const out = {};
-const cuts = () => Object.fromEntries([...document.querySelectorAll("#plan .cut")].map((g) =>
-  [g.dataset.cut, [Number(g.dataset.head), Number(g.dataset.speed), g.dataset.state]]));
-out.first = { time: Number(document.getElementById("plan").dataset.time), cuts: cuts() };
-const slider = document.getElementById("slider");
-slider.value = "SLID_S";
-slider.dispatchEvent(new Event("input"));
-out.slid = { time: Number(document.getElementById("plan").dataset.time), cuts: cuts() };
-const alarm = document.querySelector("#alarms li:not(.pale) button");
-alarm.click();
-out.alarm = { text: alarm.textContent, time: Number(document.getElementById("plan").dataset.time) };
-out.drawn = document.querySelectorAll("#plan .cut polyline[points]").length;
-out.menu = document.getElementById("train").selectedOptions[0].textContent;
-out.passes = document.querySelectorAll("#passes tr").length;
-out.title = document.querySelector("p.meta").textContent;
-document.getElementById("view").value = "yard";
-document.getElementById("view").dispatchEvent(new Event("change"));
-out.yard = document.querySelectorAll("#plan .cut").length;
+const at = (id) => document.getElementById(id);
+const plans = () => [...document.querySelectorAll(".plan")];
+const time = () => Number(plans()[0].dataset.time);
+const cuts = () => plans().map((plan) => Object.fromEntries([...plan.querySelectorAll(".cut")].map((g) =>
+  [g.dataset.cut, [Number(g.dataset.head), Number(g.dataset.speed), g.dataset.state]])));
+const labels = () => plans().map((plan) => [...plan.querySelectorAll(".cut text, .told, .number[text-anchor=end]")]
+  .filter((text) => text.textContent && text.getBBox().width > 0)
+  .map((text) => [text.textContent, text.getBBox()])
+  .map(([text, box]) => [text, box.x, box.x + box.width, box.y + box.height]));
+const key = (name) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key: name, bubbles: true }));
+const chosen = (id, value) => { at(id).value = value; at(id).dispatchEvent(new Event("change")); };
+const slide = (seconds) => { at("slider").value = seconds; at("slider").dispatchEvent(new Event("input")); };
+out.first = { time: time(), cuts: cuts(), view: at("view").value, labels: labels() };
+slide("SLID_S");
+out.slid = { time: time(), cuts: cuts() };
+slide(at("slider").min);
+out.jumps = [];
+const marks = [...at("marks").children];
+for (let place = 0; place <= marks.length; place += 1) { key("n"); out.jumps.push([at("alarm").textContent, time()]); }
+key("p");
+out.back = at("alarm").textContent;
+out.marks = marks.map((mark) => mark.title);
+marks[0].focus();
+marks[0].dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight", bubbles: true }));
+out.neighbour = [document.activeElement === marks[1], time()];
+out.menu = at("train").selectedOptions[0].textContent;
+out.meta = document.querySelector("p.meta").textContent;
+slide(at("slider").max);
+out.counted = [...document.querySelectorAll(".counted")].map((each) => each.textContent);
+out.dots = plans().map((plan) => [...plan.querySelectorAll(".coupling")]
+  .filter((dot) => dot.style.display === "" && dot.getAttribute("cx")).map((dot) => dot.getAttribute("fill")));
+chosen("unit", "km/h");
+out.in_km_h = at("runs").textContent + at("marks").lastChild.title + document.querySelector(".cuts").textContent;
+out.remembered = localStorage.getItem("unit");
+localStorage.clear();
+chosen("view", "throat");
+slide("SLID_S");
+out.throat = labels();
 const frames = [];  // the frames of a busy browser may never come: the probe gives its own
 window.requestAnimationFrame = (drawn) => frames.push(drawn);
-document.getElementById("play").click();
+at("play").click();
 for (const stamp of [0, FRAME_MS]) frames.shift()(stamp);
-out.played = Number(document.getElementById("plan").dataset.time);
-out.rate = Number(document.getElementById("rate").value);
-document.getElementById("play").click();
+out.played = time();
+out.rate = Number(at("rate").value);
+at("play").click();
 out.waiting = frames.length;
 frames.shift()(2 * FRAME_MS);
-out.paused = Number(document.getElementById("plan").dataset.time);
+out.paused = time();
 out.asked = frames.length;
 const told = document.createElement("pre");
 told.id = "probe";
@@ -70,12 +98,13 @@ def humped() -> HumpedTrains:
 
 
 @pytest.fixture(scope="module")
-def trace(humped: HumpedTrains) -> TrainTrace:
-    return train_trace(humped.hump, humped.trains, humped.memory, 0)
+def traces(humped: HumpedTrains) -> tuple[TrainTrace, TrainTrace]:
+    one, other = (train_trace(humped.hump, humped.trains, humped.memory, lane) for lane in (0, 1))
+    return one, other
 
 
-Seen = tuple[dict[str, Any], str]
-"""What the probe found in the page, and what the browser said."""
+Seen = dict[str, Any]
+"""What the probe found in the page, and under `said` what the browser wrote."""
 
 
 def in_browser(page: str, folder: Path, fragment: str) -> Seen:
@@ -86,31 +115,43 @@ def in_browser(page: str, folder: Path, fragment: str) -> Seen:
     probe = PROBE.replace("SLID_S", str(SLID_S)).replace("FRAME_MS", str(FRAME_MS))
     file.write_text(page.replace("</body>", probe + "</body>"), encoding="utf-8")
     options = ("--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr")
-    command = [CHROMIUM, *options, "--window-size=1400,900", "--dump-dom", f"file://{file}{fragment}"]
+    command = [CHROMIUM, *options, "--window-size=500,900", "--dump-dom", f"file://{file}{fragment}"]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
     (told,) = re.findall(r'<pre id="probe">(.*?)</pre>', ended.stdout, re.DOTALL)
-    return json.loads(told.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")), ended.stderr
+    found = json.loads(told.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
+    return {**found, "said": ended.stderr}
+
+
+def played(humped: HumpedTrains, name: str, *traces: TrainTrace) -> PlayedRun:
+    """A run as a page plays it."""
+    return PlayedRun(name, replace(humped.entry, title=EVIL), traces, (EVIL, *NAMES[1:]), USUAL_COUPLINGS)
 
 
 @pytest.fixture(scope="module")
-def seen(humped: HumpedTrains, trace: TrainTrace, tmp_path_factory: pytest.TempPathFactory) -> Seen:
-    evil = replace(humped.entry, title=EVIL)
-    other = train_trace(humped.hump, humped.trains, humped.memory, 1)
-    page = hump_page(evil, {"other": other, EVIL: trace}, [EVIL, *NAMES[1:]])
+def seen(humped: HumpedTrains, traces: tuple[TrainTrace, TrainTrace], tmp_path_factory: pytest.TempPathFactory) -> Seen:
+    """Two runs, of which one plays the first train and the other one the second."""
+    one, other = traces
+    runs = (played(humped, "one", other, one), played(humped, EVIL, one, other))
+    page = hump_page("Two runs", runs, ["other", EVIL])
     return in_browser(page, tmp_path_factory.mktemp("page"), f"#train=1&t={SECONDS}")
 
 
-def test_the_console_is_silent(seen: Seen) -> None:
-    assert "CONSOLE" not in seen[1]
+def test_the_console_is_silent_and_names_of_files_stay_text(seen: Seen) -> None:
+    assert "CONSOLE" not in seen["said"]
+    assert seen["menu"] == EVIL
+    assert seen["meta"] == f"one: {EVIL}; {EVIL}: {EVIL}"
 
 
 @pytest.mark.parametrize("moment", ["first", "slid"])
-def test_cuts_are_where_the_trace_has_them(seen: Seen, trace: TrainTrace, moment: str) -> None:
-    told = seen[0][moment]
+@pytest.mark.parametrize("run", [0, 1])
+def test_cuts_are_where_the_trace_has_them(
+    seen: Seen, traces: tuple[TrainTrace, TrainTrace], moment: str, run: int
+) -> None:
+    told, trace = seen[moment], traces[run]
     assert told["time"] == pytest.approx({"first": SECONDS, "slid": SLID_S}[moment], abs=0.1)
     rolling = 0
     for cut in trace.cuts:
-        head, speed, state = told["cuts"][str(cut.cut + 1)]
+        head, speed, state = told["cuts"][run][str(cut.cut + 1)]
         if told["time"] < cut.trace.time_s[0]:
             assert state == "waits"
             assert head <= 0.0
@@ -125,51 +166,82 @@ def test_cuts_are_where_the_trace_has_them(seen: Seen, trace: TrainTrace, moment
     assert rolling > 4
 
 
-def test_cuts_that_wait_stand_one_behind_the_other(seen: Seen, trace: TrainTrace) -> None:
-    cuts = seen[0]["first"]["cuts"]
-    waiting = [cut for cut in trace.cuts if cuts[str(cut.cut + 1)][2] == "waits"]
+def test_cuts_that_wait_stand_one_behind_the_other(seen: Seen, traces: tuple[TrainTrace, TrainTrace]) -> None:
+    cuts = seen["first"]["cuts"][0]
+    waiting = [cut for cut in traces[0].cuts if cuts[str(cut.cut + 1)][2] == "waits"]
     heads = [cuts[str(cut.cut + 1)][0] for cut in waiting]
     assert len(waiting) > 2
     np.testing.assert_allclose(np.diff(heads), [-cut.length_m for cut in waiting[:-1]], atol=0.02)
 
 
-def test_a_click_on_an_alarm_goes_there(seen: Seen, trace: TrainTrace) -> None:
-    first = next(alarm for alarm in trace.alarms if alarm.kind.severe)
-    told = seen[0]["alarm"]
-    assert told["time"] == pytest.approx(first.time_s - 3.0, abs=0.02)
-    assert told["text"].startswith(f"{first.time_s:.1f} s: cut {first.cut + 1} misrouted behind cut")
+def test_the_keys_go_through_all_severe_alarms_of_both_runs(seen: Seen, traces: tuple[TrainTrace, TrainTrace]) -> None:
+    alarms = sorted((alarm.time_s, run, alarm.kind.severe) for run in (0, 1) for alarm in traces[run].alarms)
+    severe = [(time_s, run) for time_s, run, is_severe in alarms if is_severe]
+    assert len(severe) > 5
+    for number, (time_s, run) in enumerate(severe):
+        text, at_s = seen["jumps"][number]
+        begin = f"Alarm {number + 1} of {len(severe)}. {('one', EVIL)[run]}, "
+        assert text.startswith(begin)
+        assert float(text.removeprefix(begin).split(" s: cut ")[0]) == pytest.approx(time_s, abs=0.06)
+        assert at_s == pytest.approx(time_s - BEFORE_S, abs=0.02)
+    assert all(jump == seen["jumps"][len(severe) - 1] for jump in seen["jumps"][len(severe) :])
+    assert seen["back"] == seen["jumps"][len(severe) - 2][0]
+    assert len(seen["marks"]) == len(alarms)
+    assert seen["neighbour"][0]
+    assert seen["neighbour"][1] == pytest.approx(alarms[1][0] - BEFORE_S, abs=0.02)
 
 
-def test_all_is_drawn_in_both_views(seen: Seen, trace: TrainTrace) -> None:
-    told = seen[0]
-    assert told["drawn"] == told["yard"] == len(trace.cuts)
-    assert told["passes"] > 0
+def test_counters_and_dots_end_as_the_outcomes_of_the_trains(
+    seen: Seen, humped: HumpedTrains, traces: tuple[TrainTrace, TrainTrace]
+) -> None:
+    found = outcomes(humped.hump.routes, humped.trains, humped.memory)
+    limits = (*USUAL_COUPLINGS.classes_m_s, np.inf)
+    for run, trace in enumerate(traces):
+        caught, over = found.caught[run], found.overspeed[run]
+        text = f"{found.cars[run]} cars humped · {caught} cuts caught up · {over.sum()} couplings above 1.39 m/s"
+        assert re.sub(r"\b1 (cut|coupling)\b", r"1 \1s", seen["counted"][run]) == text
+        coupled = [cut.coupled_m_s for cut in trace.cuts if cut.coupled_m_s is not None]
+        classes = Counter(int(np.searchsorted(limits, speed)) for speed in coupled)
+        assert sorted(Counter(seen["dots"][run]).values()) == sorted(classes.values())
+        assert [classes[place] for place in (1, 2, 3)] == list(over)
 
 
-def test_a_frame_plays_the_time_since_the_frame_before(seen: Seen) -> None:
-    told = seen[0]
-    assert told["rate"] > 0.0
-    assert told["played"] == pytest.approx(told["alarm"]["time"] + FRAME_MS / 1000 * told["rate"], abs=0.02)
+def test_all_speeds_are_told_in_the_unit_that_is_chosen(seen: Seen) -> None:
+    assert "couplings above 5.00 km/h" in seen["in_km_h"]
+    assert "m/s" not in seen["in_km_h"]
+    assert seen["remembered"] == "km/h"
 
 
-def test_a_pause_shows_no_later_time_and_asks_for_no_frame(seen: Seen) -> None:
-    told = seen[0]
-    assert told["waiting"] == 1
-    assert told["paused"] == told["played"]
-    assert told["asked"] == 0
+@pytest.mark.parametrize("moment", ["yard", "throat"])
+def test_labels_do_not_lie_on_one_another(seen: Seen, moment: str) -> None:
+    plans = {"yard": seen["first"]["labels"], "throat": seen["throat"]}[moment]
+    assert seen["first"]["view"] == "yard"
+    for labels in plans:
+        assert sum(":" in text for text, *_ in labels) > 4
+        for (one, left, right, y), (other, other_left, other_right, other_y) in combinations(labels, 2):
+            apart = right < other_left + 1.0 or other_right < left + 1.0 or abs(y - other_y) > 8.0
+            assert apart, (one, other)
 
 
-def test_names_of_files_stay_text(seen: Seen) -> None:
-    assert seen[0]["title"] == seen[0]["menu"] == EVIL
+def test_a_frame_plays_the_time_since_the_frame_before_and_a_pause_shows_no_later_one(seen: Seen) -> None:
+    assert seen["rate"] > 0.0
+    assert seen["played"] == pytest.approx(SLID_S + FRAME_MS / 1000 * seen["rate"], abs=0.1)
+    assert (seen["waiting"], seen["asked"]) == (1, 0)
+    assert seen["paused"] == seen["played"]
 
 
-def test_the_page_loads_nothing_and_is_the_same_each_time(humped: HumpedTrains, trace: TrainTrace) -> None:
-    page = hump_page(humped.entry, {"first": trace}, NAMES)
-    assert page == hump_page(humped.entry, {"first": trace}, NAMES)
+def test_the_page_loads_nothing_and_is_the_same_each_time(
+    humped: HumpedTrains, traces: tuple[TrainTrace, TrainTrace]
+) -> None:
+    run = PlayedRun("", humped.entry, traces, NAMES, USUAL_COUPLINGS)
+    page = hump_page("One", (run,), ["first", "other"])
+    assert page == hump_page("One", (run,), ["first", "other"])
     outside = re.findall(r"""(?:src|href)=|@import|url\(|fetch\(|https?://(?!www\.w3\.org/2000/svg)""", page)
     assert outside == []
     assert "default-src 'none'" in page
-    assert len(page.encode()) * 40 / len(trace.cuts) < 2e6
+    with_one = hump_page("One", (replace(run, traces=traces[:1]),), ["first"])
+    a_cut = (len(page) - len(with_one)) / len(traces[1].cuts)
+    assert len(with_one) + MOST_CUTS * a_cut < MOST_PAGE_BYTES
 
 
 def test_nothing_can_end_the_element_of_the_data() -> None:
