@@ -59,6 +59,11 @@ def element_name(number: int) -> str:
     return f"{noun} {number}"
 
 
+def in_brackets(name: str | None) -> str:
+    """' (East 4)' behind a number; '' without a name."""
+    return "" if name is None else f" ({name})"
+
+
 def fault_of(element: int, sentence: str) -> HumpError:
     """The fault `sentence` of an element, whose name is put before it."""
     return HumpError(f"{element_name(element)}: {sentence}", element)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
-from plant_models.hump.element_number import HumpError
+from plant_models.hump.element_number import HumpError, element_name, in_brackets
 from plant_models.hump.retarder import Retarder
 from plant_models.hump.route import Route, Vertex, route_through
 from plant_models.hump.signal import Signal
@@ -80,6 +80,29 @@ class HumpGraph:
     def tracks(self) -> tuple[int, ...]:
         """Numbers of the classification tracks, in order."""
         return tuple(sorted({s.track for s in self.sections if s.track is not None}))
+
+    @cached_property
+    def names(self) -> Mapping[int, str]:
+        """What the yard calls elements, by number; only of those that have a name."""
+        named = ((vertex.number, getattr(vertex, "name", None)) for vertex in self.vertices)
+        return {number: name for number, name in named if name is not None}
+
+    @cached_property
+    def track_names(self) -> Mapping[int, str]:
+        """What it calls tracks, by number; only of those that have a name."""
+        return {s.track: s.name for s in self.sections if s.is_last and s.track is not None and s.name is not None}
+
+    def called(self, number: int) -> str:
+        """An element in words: '7', or with its name '7 (East 4)'."""
+        return f"{number}{in_brackets(self.names.get(number))}"
+
+    def element_called(self, number: int) -> str:
+        """The same with its kind: 'switch 7 (East 4)'."""
+        return f"{element_name(number)}{in_brackets(self.names.get(number))}"
+
+    def track_called(self, track: int) -> str:
+        """A track in words: '12', or with its name '12 (C12)'."""
+        return f"{track}{in_brackets(self.track_names.get(track))}"
 
     def left_tracks(self, switch: int) -> tuple[int, ...]:
         """w_left: the tracks to which routes take the left branch of `switch`, in order."""

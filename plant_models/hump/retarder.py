@@ -20,7 +20,8 @@ class Retarder:
     `entry_joint_m` ahead of the entrance to `exit_joint_m` behind it, the last zone included. `position`: name in the
     library of retarder positions. Its controller is told by one of two: `book`, the file of its tables as the hump's
     file names it, or `exit_std_m_s` (m/s) where no more is known: the standard deviation of its exit speeds from the
-    commanded ones, 0 for an ideal one. `aim_tables`: files of aim tables, beside either. Raises `PlantError`.
+    commanded ones, 0 for an ideal one. `aim_tables`: files of aim tables, beside either. `name`: what the yard calls
+    it. Raises `PlantError`.
     """
 
     number: int
@@ -33,6 +34,7 @@ class Retarder:
     aim_tables: tuple[str, ...] = ()
     axle_counters: bool = True
     exit_std_m_s: float | None = None
+    name: str | None = None
 
     def __post_init__(self) -> None:
         RETARDERS.checked(self.number)

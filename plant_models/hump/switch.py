@@ -36,7 +36,7 @@ class Switch:
 
     The insulated section reaches from `entry_joint_m` ahead of the points to `exit_joint_m` behind them on both
     branches. The machine throws the points in `throw_s`; `relay_s` passes before it starts. With `axle_counters` there
-    is one at each of its three joints. Raises `PlantError`.
+    is one at each of its three joints. `name`: what the yard calls it. Raises `PlantError`.
     """
 
     number: int
@@ -47,6 +47,7 @@ class Switch:
     throw_s: float
     relay_s: float
     axle_counters: bool = True
+    name: str | None = None
 
     def __post_init__(self) -> None:
         SWITCHES.checked(self.number)

@@ -15,7 +15,8 @@ class TrackSection:
     """An insulated section of `length_m`, whose element and edge begin where the section does.
 
     `track`: number of the classification track that it is part of, None on the way there. The last section of a track
-    has an edge to nowhere and is as long as that; `standing_m` of cars stand at its far end. Raises `PlantError`.
+    has an edge to nowhere and is as long as that; `standing_m` of cars stand at its far end. `name`: what the yard
+    calls it; that of the last section is the track's. Raises `PlantError`.
     """
 
     number: int
@@ -24,6 +25,7 @@ class TrackSection:
     track: int | None = None
     standing_m: float = 0.0
     axle_counters: bool = True
+    name: str | None = None
 
     def __post_init__(self) -> None:
         SECTIONS.checked(self.number)

@@ -22,7 +22,7 @@ from plant_models.hump.ranges import (
 )
 from plant_models.library.data_file import form_name, number, number_or_pairs, pairs, shown, shown_key
 from plant_models.library.hump_faults import FoundFaults, HumpFileFault
-from plant_models.library.hump_forms import some_numbers, some_pairs, text, texts, triples, truth, whole
+from plant_models.library.hump_forms import short_text, some_numbers, some_pairs, text, texts, triples, truth, whole
 from plant_models.library.near_miss import close_name, near_miss
 from plant_models.library.sourced_value import CONFIDENCES
 from plant_models.library.toml_lines import Place
@@ -86,12 +86,12 @@ BRANCH: Final[Schema] = {
     "turn_deg": Key("degrees", number, TURN_DEG),
     "fouling_m": Key("m", number, FOULING_M),
 }
-COUNTED: Final[Schema] = {"number": Key("", whole), "axle_counters": Key("", truth)}
+NAMED: Final[Schema] = {"number": Key("", whole), "name": Key("", short_text), "axle_counters": Key("", truth)}
 
 ELEMENTS: Final[Mapping[str, Schema]] = {
     "signal": {"number": Key("", whole), "next": EDGE},
     "switch": {
-        **COUNTED,
+        **NAMED,
         "entry_joint_m": Key("m", number, ENTRY_JOINT_M),
         "exit_joint_m": Key("m", number, SWITCH_EXIT_JOINT_M),
         "throw_s": Key("s", number, THROW_S),
@@ -100,7 +100,7 @@ ELEMENTS: Final[Mapping[str, Schema]] = {
         "right": BRANCH,
     },
     "retarder": {
-        **COUNTED,
+        **NAMED,
         "entry_joint_m": Key("m", number, ENTRY_JOINT_M),
         "exit_joint_m": Key("m", number, RETARDER_EXIT_JOINT_M),
         "position": Key("", text),
@@ -111,7 +111,7 @@ ELEMENTS: Final[Mapping[str, Schema]] = {
         "next": EDGE,
     },
     "section": {
-        **COUNTED,
+        **NAMED,
         "length_m": Key("m", number, LENGTH_M),
         "track": Key("", whole, TRACK),
         "standing_m": Key("m", number, STANDING_M),
@@ -128,7 +128,7 @@ ELSEWHERE: Final[Mapping[str, str]] = {
         ("exit_speed_m_s", "exit_m_s", "target_m_s", "speed_m_s"),
         "a hump file holds no exit speeds; the configuration of a trial does (retarder-synth init --hump)",
     ),
-    "name": "elements have numbers only",
+    "name": "only switches, retarders and sections have names",
     "radius_m": "give curves, [from_m, to_m, degrees]",
 }
 """Keys that are often looked for in a row, and what to do."""

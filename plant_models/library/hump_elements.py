@@ -145,12 +145,12 @@ def signal_from(maker: ElementMaker, cells: Cells) -> Signal | None:
 
 def switch_from(maker: ElementMaker, cells: Cells) -> Switch | None:
     """A switch."""
-    number, counted = maker.number(cells), given(cells, "axle_counters", True)
+    number, counted, name = maker.number(cells), given(cells, "axle_counters", True), given(cells, "name", None)
     left, right = (maker.branch(cells, side) or Branch(ANY_EDGE, 0.0, 1.0) for side in ("left", "right"))
     entry, leave, throw, relay = maker.needed(cells, ["entry_joint_m", "exit_joint_m", "throw_s", "relay_s"])
     if None in (number, entry, leave, throw, relay):
         return None
-    return maker.made(cells, "", lambda: Switch(number or 0, left, right, entry, leave, throw, relay, counted))
+    return maker.made(cells, "", lambda: Switch(number or 0, left, right, entry, leave, throw, relay, counted, name))
 
 
 def retarder_from(maker: ElementMaker, cells: Cells) -> Retarder | None:
@@ -164,10 +164,11 @@ def retarder_from(maker: ElementMaker, cells: Cells) -> Retarder | None:
     if any(is_faulty(cells, key) for key in ("book", "exit_std_m_s")):
         exit_std = 0.0  # nothing more is told of what controls it
     aims, counted = given(cells, "aim_tables", ()), given(cells, "axle_counters", True)
+    name = given(cells, "name", None)
     return maker.made(
         cells,
         "",
-        lambda: Retarder(number or 0, edge, zones or (), entry, leave, position, book, aims, counted, exit_std),
+        lambda: Retarder(number or 0, edge, zones or (), entry, leave, position, book, aims, counted, exit_std, name),
     )
 
 
@@ -213,7 +214,8 @@ def section_from(maker: ElementMaker, cells: Cells) -> TrackSection | None:
         return None
     track = given(cells, "track", None)
     standing, counted = given(cells, "standing_m", 0.0), given(cells, "axle_counters", True)
-    return maker.made(cells, "", lambda: TrackSection(number, edge, length, track, standing, counted))
+    name = given(cells, "name", None)
+    return maker.made(cells, "", lambda: TrackSection(number, edge, length, track, standing, counted, name))
 
 
 MAKERS: Final[Mapping[str, Callable[[ElementMaker, Cells], Vertex | None]]] = {

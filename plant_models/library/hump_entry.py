@@ -8,11 +8,12 @@ from typing import Any, Final
 
 from plant_models.errors import PlantError
 from plant_models.hump import HumpGraph
+from plant_models.hump.element_number import in_brackets
 from plant_models.library.data_file import parse_toml, shown, shown_key
 from plant_models.library.hump_cars import ForCars, for_cars
 from plant_models.library.hump_cells import SOURCED, Cell, Cells, Origin, TypeTables, origin_of
 from plant_models.library.hump_faults import FoundFaults
-from plant_models.library.hump_forms import text, texts
+from plant_models.library.hump_forms import short_text, text, texts
 from plant_models.library.hump_rows import HumpRows
 from plant_models.library.library import BUILT_IN, Library
 from plant_models.library.near_miss import near_miss
@@ -169,9 +170,10 @@ def label(tree: Mapping[str, Any], place: Place) -> str:
         raw = listed[row] if isinstance(listed, list) and isinstance(row, int) else None
         given = raw.get("number") if isinstance(raw, dict) else None
         usable = isinstance(given, int) and not isinstance(given, bool)
-        name = f"{kind} {given}" if usable else f"{kind}[{row}]"
+        told = short_text(raw.get("name")) if isinstance(raw, dict) else None
+        called = f"{kind} {given}{in_brackets(told)}" if usable else f"{kind}[{row}]"
         inner = [str(key) for key in place[3:-1] if key != "number"]
-        return ": ".join((name, *inner, ""))
+        return ": ".join((called, *inner, ""))
     return ""
 
 

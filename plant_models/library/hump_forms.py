@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from plant_models.library.data_file import number, pairs
+
+LONGEST_NAME: Final = 24
+"""Characters; a longer name leaves no room on a plan."""
 
 
 def text(raw: object) -> str | None:
     """A non-empty string of printable characters."""
     return raw if isinstance(raw, str) and raw and raw.isprintable() else None
+
+
+def short_text(raw: object) -> str | None:
+    """A non-empty string of at most 24 printable characters."""
+    found = text(raw)
+    return found if found is not None and len(found) <= LONGEST_NAME else None
 
 
 def texts(raw: object) -> tuple[str, ...] | None:

@@ -9,7 +9,17 @@ from plant_models.hump import GROUPS
 from plant_models.library.data_file import number, number_or_pairs, pairs
 from plant_models.library.hump_cells import CONTROLLERS, ELEMENTS, PROFILE, Key, Schema
 from plant_models.library.hump_entry import FORMAT, VERSION
-from plant_models.library.hump_forms import some_numbers, some_pairs, text, texts, triples, truth, whole
+from plant_models.library.hump_forms import (
+    LONGEST_NAME,
+    short_text,
+    some_numbers,
+    some_pairs,
+    text,
+    texts,
+    triples,
+    truth,
+    whole,
+)
 from plant_models.library.sourced_value import CONFIDENCES
 
 Json = dict[str, Any]
@@ -35,6 +45,7 @@ FORMS: Final[Mapping[Callable[[object], Any], Json]] = {
     whole: {"type": "integer"},
     truth: {"type": "boolean"},
     text: PRINTABLE,
+    short_text: {**PRINTABLE, "maxLength": LONGEST_NAME},
     texts: {"type": "array", "items": PRINTABLE},
 }
 """What a value of each form may be."""

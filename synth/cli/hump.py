@@ -59,19 +59,21 @@ def routes_command(source: Path, as_json: bool) -> int:
         "Elements with their metres from the crest; switches with the position that they need. Code: 0 left, 1 right."
     ]
     for lead in graph.leads:
-        page += map(route_words, graph.routes(lead).values())
+        page += (route_words(route, graph) for route in graph.routes(lead).values())
     for switch in graph.switches:
         left, right = graph.left_tracks(switch.number), graph.right_tracks(switch.number)
-        page.append(f"switch {switch.number}: left to tracks {ranges(left)}; right to tracks {ranges(right)}")
+        page.append(
+            f"{graph.element_called(switch.number)}: left to tracks {ranges(left)}; right to tracks {ranges(right)}"
+        )
     print_page(*page)
     return OK
 
 
-def route_words(route: Route) -> str:
-    """A route in one line."""
+def route_words(route: Route, graph: HumpGraph) -> str:
+    """A route of `graph` in one line."""
     sides = {0: " left", 1: " right", None: ""}
-    steps = [f"{element.number}{sides[element.position]} {element.at_m:g}" for element in route.elements]
-    name = f"signal {route.lead}, track {route.track}, code {route.code or 'none'}"
+    steps = [f"{graph.called(element.number)}{sides[element.position]} {element.at_m:g}" for element in route.elements]
+    name = f"signal {route.lead}, track {graph.track_called(route.track)}, code {route.code or 'none'}"
     return f"{name}: {', '.join(steps)}, end {route.length_m:g}"
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from plant_models.errors import PlantError
-from plant_models.hump import HumpGraph, Signal, element_name
+from plant_models.hump import HumpGraph, Signal
 from plant_models.library.hump_entry import HumpEntry
 from plant_models.library.sourced_value import SourcedValue
 from synth.frame.exhibits import Column, Exhibit, Sentence, Table
@@ -20,6 +20,7 @@ from synth.hump.design_runners import HUMP_SPEED_M_S
 PLACES: Final = (
     Column("kind", "what", words=True),
     Column("numbers", "number", words=True),
+    Column("names", "names", words=True, spare=1),
     Column("at_m", "points, entrance or beginning", "m", decimals(1)),
     Column("from_m", "section from", "m", decimals(1)),
     Column("to_m", "to", "m", decimals(1)),
@@ -42,7 +43,7 @@ class CheckedHump:
     def exhibits(self) -> tuple[Exhibit, ...]:
         """What is told of it."""
         warnings = Table("warnings", "What is likely a mistake", WARNINGS, [vars(each) for each in self.warnings])
-        return (*held(self.hump), falls(self.rolled), places_table(places_of(self.rolled)), warnings)
+        return (*held(self.hump), falls(self.rolled), places_table(places_of(self.rolled), self.hump.graph), warnings)
 
 
 def checked_hump(hump: HumpEntry) -> CheckedHump:
@@ -58,10 +59,11 @@ def require_rolling(hump: HumpEntry, rolled: Sequence[RolledRoute]) -> None:
     if worst.good.stop_m < worst.last_m:
         ahead = next(element for element in worst.route.elements if element.to_m > worst.good.stop_m)
         likely = next((each.sentence for each in of_grades(hump, rolled)), "give the track more fall")
+        track = hump.graph.track_called(worst.route.track)
         raise PlantError(
-            f"cuts stand before {element_name(ahead.number)}: the good runner, let go at {HUMP_SPEED_M_S:g} m/s and "
-            f"not braked, stands {worst.good.stop_m:.0f} m behind the crest on the way to track {worst.route.track}; "
-            f"{likely}"
+            f"cuts stand before {hump.graph.element_called(ahead.number)}: the good runner, let go at "
+            f"{HUMP_SPEED_M_S:g} m/s and not braked, stands {worst.good.stop_m:.0f} m behind the crest on the way to "
+            f"track {track}; {likely}"
         )
 
 
@@ -171,11 +173,19 @@ def falls(rolled: Sequence[RolledRoute]) -> Sentence:
     return Sentence(f"  fall from the crest: {words}", {"fall_m": least}, brief=True)
 
 
-def places_table(places: Sequence[Place]) -> Table:
-    """Where everything stands."""
-    rows: list[Mapping[str, Any]] = [{**vars(place), "numbers": ranges(place.numbers)} for place in places]
+def places_table(places: Sequence[Place], graph: HumpGraph) -> Table:
+    """Where everything stands, with the names that the elements of `graph` have."""
+    rows: list[Mapping[str, Any]] = [
+        {**vars(place), "numbers": ranges(place.numbers), "names": names_in(place, graph)} for place in places
+    ]
     title = (
         f"From the crest; speeds of the design runners, let go at {HUMP_SPEED_M_S:g} m/s and not braked: the fastest "
         "good one and the slowest bad one of all ways, with the middle there."
     )
     return Table("places", title, PLACES, rows, brief=True)
+
+
+def names_in(place: Place, graph: HumpGraph) -> tuple[str, ...]:
+    """Those of the elements, or tracks, of a place that have one, each behind its number."""
+    names = graph.track_names if place.kind == "track" else graph.names
+    return tuple(f"{number}: {names[number]}" for number in place.numbers if number in names)

@@ -89,16 +89,17 @@ def of_rises(hump: HumpEntry, rolled: Sequence[RolledRoute]) -> Iterator[HumpWar
     if rise > MOST_RISE_M:
         yield HumpWarning(
             "rise",
-            f"on the way to track {worst.route.track} the track rises by {rise:.2f} m from {from_m:g} m to {to_m:g} m, "
-            "ahead of its last switch or position; a grade is positive where the track falls",
+            f"on the way to track {hump.graph.track_called(worst.route.track)} the track rises by {rise:.2f} m from "
+            f"{from_m:g} m to {to_m:g} m, ahead of its last switch or position; a grade is positive where the track "
+            "falls",
         )
     falls = [(each.fall_m(each.switches[0].at_m), each.switches[0]) for each in rolled if each.switches]
     fall, switch = min(falls, key=lambda found: found[0], default=(LEAST_FIRST_FALL_M, None))
     if switch is not None and fall < LEAST_FIRST_FALL_M:
         yield HumpWarning(
             "first-fall",
-            f"from the crest to switch {switch.number} the track falls {fall:.2f} m; {LEAST_FIRST_FALL_M:g} m or more "
-            "are usual, so that cuts part before they come to it",
+            f"from the crest to {hump.graph.element_called(switch.number)} the track falls {fall:.2f} m; "
+            f"{LEAST_FIRST_FALL_M:g} m or more are usual, so that cuts part before they come to it",
         )
 
 
@@ -125,8 +126,8 @@ def of_runners(hump: HumpEntry, rolled: Sequence[RolledRoute]) -> Iterator[HumpW
             "height",
             f"the bad runner ({worst.bad.runner.mass_t:g} t, {worst.bad.runner.resistance_n_per_kn:g} N/kN, head wind "
             f"{worst.bad.runner.head_wind_m_s:g} m/s), let go at {HUMP_SPEED_M_S:g} m/s and not braked, stands {where} "
-            f"the beginning of track {worst.route.track}; the fall of a hump lets it roll {INTO_TRACK_M:g} m into its "
-            "track or more [hump-height]",
+            f"the beginning of track {hump.graph.track_called(worst.route.track)}; the fall of a hump lets it roll "
+            f"{INTO_TRACK_M:g} m into its track or more [hump-height]",
         )
 
 

@@ -14,7 +14,7 @@ from plant_models.library.data_file import shown, shown_key
 from plant_models.library.hump_cars import for_cars
 from plant_models.library.hump_cells import ELEMENTS, PROFILE, Key, Schema
 from plant_models.library.hump_entry import FORMAT, VERSION, HumpEntry, hump_at
-from plant_models.library.hump_forms import text, texts, wholes
+from plant_models.library.hump_forms import short_text, text, texts, wholes
 from plant_models.library.near_miss import near_miss
 from plant_models.library.toml_lines import Place
 from synth.frame.input_error import InputError
@@ -170,7 +170,7 @@ def nested(cells: Mapping[str, str]) -> Tree:
 
 def value_of(cell: str, key: Key) -> Any:
     """What a cell means; the words themselves where it is no value of a hump file."""
-    if key.form is text:
+    if key.form in (text, short_text):
         return cell
     try:
         return tomllib.loads(f"v = {cell.replace(',', '.') if NUMBER.fullmatch(cell) else cell}")["v"]

@@ -43,6 +43,8 @@ def tree_toml(hump: HumpEntry) -> str:
 def row_of(vertex: Vertex) -> Tree:
     """An element as a row; keys that say what is so without them are left out."""
     row: Tree = {"number": vertex.number}
+    if not isinstance(vertex, Signal) and vertex.name is not None:
+        row["name"] = vertex.name
     match vertex:
         case Switch():
             row |= {key: getattr(vertex, key) for key in ("entry_joint_m", "exit_joint_m", "throw_s", "relay_s")}

@@ -135,8 +135,8 @@ def switch_from(tree: RailmlTree, element: Xml.Element, sides: list[tuple[Edge, 
         entry, leave, throw, relay = (
             tree.number(element, key) for key in ("entryJoint", "exitJoint", "throw", "relay")
         )
-        counted = tree.truth(element, "axleCounters")
-        return Switch(tree.whole(element, "number"), left, right, entry, leave, throw, relay, counted)
+        counted, number = tree.truth(element, "axleCounters"), tree.whole(element, "number")
+        return Switch(number, left, right, entry, leave, throw, relay, counted, tree.called(element))
 
     return made(tree, element, make)
 
@@ -150,8 +150,8 @@ def element_from(tree: RailmlTree, number: int, element: Xml.Element, edge: Edge
         return made(tree, element, lambda: retarder_from(tree, number, element, edge))
     track = None if element.get("track") is None else tree.whole(element, "track")
     length, standing = tree.number(element, "length"), tree.number(element, "standing")
-    counted = tree.truth(element, "axleCounters")
-    return made(tree, element, lambda: TrackSection(number, edge, length, track, standing, counted))
+    counted, name = tree.truth(element, "axleCounters"), tree.called(element)
+    return made(tree, element, lambda: TrackSection(number, edge, length, track, standing, counted, name))
 
 
 def retarder_from(tree: RailmlTree, number: int, element: Xml.Element, edge: Edge) -> Retarder:
@@ -165,7 +165,7 @@ def retarder_from(tree: RailmlTree, number: int, element: Xml.Element, edge: Edg
     exit_std = None if element.get("exitStd") is None else tree.number(element, "exitStd")
     files = tuple(tree.text(e, "file") for e in element.findall(own("aimTables")))
     counted = tree.truth(element, "axleCounters")
-    return Retarder(number, edge, zones, *joints, position, book, files, counted, exit_std)
+    return Retarder(number, edge, zones, *joints, position, book, files, counted, exit_std, tree.called(element))
 
 
 @dataclass(frozen=True)

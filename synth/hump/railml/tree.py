@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Final
 from xml.etree import ElementTree as Xml
 
+from plant_models.library.hump_forms import LONGEST_NAME, short_text
 from synth.frame.input_error import InputError
 from synth.hump.railml.names import CONTAINERS, OWN, RAILML, READ, own
 from tuning_tables.excerpt import excerpt
@@ -103,6 +104,16 @@ class RailmlTree:
         if raw not in ("true", "false"):
             raise self.fault(element, f"{key} is {excerpt(raw)!r}; it must be true or false")
         return raw == "true"
+
+    def called(self, element: Xml.Element) -> str | None:
+        """What the yard calls an element of ours, if it has a name."""
+        raw = element.get("name")
+        name = None if raw is None else short_text(raw)
+        if raw is not None and name is None:
+            raise self.fault(
+                element, f"name is {excerpt(raw)!r}; it must be at most {LONGEST_NAME} printable characters"
+            )
+        return name
 
     def named(self, element: Xml.Element) -> int:
         """The number that is the element's name in railML."""

@@ -180,14 +180,14 @@ def write_own(infrastructure: Xml.Element, hump: HumpEntry) -> None:
             told_of_switch = own_below(told, "switch", number=vertex.number, throw=vertex.throw_s, relay=vertex.relay_s)
             joints = {"entryJoint": vertex.entry_joint_m, "exitJoint": vertex.exit_joint_m}
             turns = {f"{side}Turn": branch.turn_deg for side, branch in zip(SIDES, vertex.branches, strict=True)}
-            for key, value in (joints | turns | {"axleCounters": yes(vertex.axle_counters)}).items():
+            for key, value in (joints | turns | {"axleCounters": yes(vertex.axle_counters)} | named(vertex)).items():
                 told_of_switch.set(key, str(value))
         elif isinstance(vertex, Retarder):
             write_retarder(told, vertex)
         elif isinstance(vertex, TrackSection):
             track = {} if vertex.track is None else {"track": vertex.track}
             own_below(told, "section", number=vertex.number, netElementRef=name, length=vertex.length_m, **track,
-                      standing=vertex.standing_m, axleCounters=yes(vertex.axle_counters))  # fmt: skip
+                      standing=vertex.standing_m, axleCounters=yes(vertex.axle_counters), **named(vertex))  # fmt: skip
         for branch, edge in enumerate(vertex.edges):
             for sensor in edge.point_sensors:
                 own_below(told, "pointSensor", netElementRef=net_element(vertex, branch), pos=sensor.at_m)
@@ -200,7 +200,7 @@ def write_retarder(parent: Xml.Element, retarder: Retarder) -> None:
     """A retarder with its zones and its controller."""
     told = own_below(parent, "retarder", number=retarder.number, netElementRef=net_element(retarder, 0),
                      position=retarder.position, entryJoint=retarder.entry_joint_m, exitJoint=retarder.exit_joint_m,
-                     axleCounters=yes(retarder.axle_counters))  # fmt: skip
+                     axleCounters=yes(retarder.axle_counters), **named(retarder))  # fmt: skip
     if retarder.book is not None:
         told.set("book", retarder.book)
     if retarder.exit_std_m_s is not None:
@@ -218,6 +218,11 @@ def of_library(retarder: Retarder) -> bool:
         return zones_of(retarder.position) == retarder.zones_m
     except PlantError:
         return False
+
+
+def named(element: Switch | Retarder | TrackSection) -> dict[str, str]:
+    """The attribute of an element that has a name."""
+    return {} if element.name is None else {"name": element.name}
 
 
 def yes(truth: bool) -> str:

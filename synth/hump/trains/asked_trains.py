@@ -80,7 +80,8 @@ def trains_of(
             for cut in listed.cuts:
                 require(
                     cut.track not in (trains.closed_tracks or ()),
-                    f"{path}: cut {cut.serial} goes to track {cut.track}, which trains.closed_tracks closes",
+                    f"{path}: cut {cut.serial} goes to track {routes.graph.track_called(cut.track)}, which "
+                    "trains.closed_tracks closes",
                 )
             return listed
         except PlantError as fault:

@@ -57,7 +57,8 @@ def faults_of(cut: CutRecord, routes: HumpRoutes) -> Iterator[str]:
         row = of_track[cut.track]
         room, entrance = float(routes.length_m[row] - routes.release_m[row]), float(routes.entrance_m[row].min())
         if cut.length_m > room:
-            yield f"is {cut.length_m:g} m long; behind the last position of track {cut.track} there are {room:g} m"
+            track = routes.graph.track_called(cut.track)
+            yield f"is {cut.length_m:g} m long; behind the last position of track {track} there are {room:g} m"
         elif 0.5 * cut.length_m > entrance:
             yield f"{too_long(cut.length_m, entrance)}: split it, or mark it do-not-hump"
 

@@ -25,7 +25,8 @@ def require_falling(routes: HumpRoutes, settings: HumpTrialSettings) -> None:
         worst = int(np.argmax(rises))
         require(
             rises[worst] <= SPARE * comes_up_m,
-            f"hump: on the way to track {route.track}, {places[worst]:g} m behind the crest, the track lies "
-            f"{rises[worst]:.2f} m above the crest; at {fastest_m_s:g} m/s cuts come up {comes_up_m:.2f} m, so they "
-            "stand before it; a grade is positive where the track falls: correct grade_permille",
+            f"hump: on the way to track {routes.graph.track_called(route.track)}, {places[worst]:g} m behind the "
+            f"crest, the track lies {rises[worst]:.2f} m above the crest; at {fastest_m_s:g} m/s cuts come up "
+            f"{comes_up_m:.2f} m, so they stand before it; a grade is positive where the track falls: correct "
+            "grade_permille",
         )

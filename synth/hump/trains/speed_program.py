@@ -28,6 +28,7 @@ class ProgramRow:
     length_m: float
     category: str
     track: int
+    track_name: str | None
     hump_speed_m_s: float
     time_s: float
     pushed_m: float
@@ -85,6 +86,7 @@ def program_of(number: int, trains: TrainCuts, plan: TrainPlan, exit_m_s: Floats
             length_m=float(trains.length_m[cut]),
             category=members[trains.category[cut]].latin,
             track=int(trains.track[cut]),
+            track_name=routes.graph.track_names.get(int(trains.track[cut])),
             hump_speed_m_s=float(plan.hump_speed_m_s[0, cut]),
             time_s=float(plan.crest_s[0, cut] - plan.crest_s[0, 0]),
             pushed_m=float(middle[cut] - middle[0]),

@@ -118,9 +118,10 @@ def stretches_m(choice: AimChoice, routes: HumpRoutes) -> Floats:
     beyond = np.flatnonzero(found[:, 1] > entrance + 1e-6)
     if len(beyond):
         row = beyond[0]
+        track = routes.graph.track_called(int(routes.tracks[rows[row]]))
         raise PlantError(
             f"{choice.named}, whose resistances are measured up to {found[row, 1]:g} m from the crest on the way to "
-            f"track {routes.tracks[rows[row]]}, where the last position begins at {entrance[row]:g} m; give tables "
+            f"track {track}, where the last position begins at {entrance[row]:g} m; give tables "
             "that are measured ahead of the position"
         )
     return found

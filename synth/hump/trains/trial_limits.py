@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
-from plant_models.hump.element_number import element_name
 from synth.frame.command import Limit
 from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.humped_trial import HumpedTrial
@@ -57,7 +56,9 @@ def where_caught(result: HumpedTrial) -> str:
     if not counts.any():
         return ""
     worst = int(counts.argmax())
-    return f"{100.0 * counts[worst] / counts.sum():.0f} % of them at {element_name(routes.numbers[worst])}"
+    return (
+        f"{100.0 * counts[worst] / counts.sum():.0f} % of them at {routes.graph.element_called(routes.numbers[worst])}"
+    )
 
 
 def not_aimed(result: HumpedTrial) -> str:

@@ -55,6 +55,10 @@ class Growing:
     def number(self, group: int) -> int:
         return int(self.free[group].pop())
 
+    def name(self) -> str | None:
+        """What a yard may call an element, or no name; a number, too."""
+        return [None, "East 4", "12", 'стрелка "103"; 1,5'][self.random.integers(4)]
+
     def edge(self, to: int | None) -> Edge:
         length = float(self.random.uniform(60.0, 200.0))
         grades = [(0.0, float(self.random.uniform(-2.0, 50.0)))]
@@ -68,18 +72,19 @@ class Growing:
         if depth == 0 or kind < 0.1:
             last = self.edge(None)
             number = self.number(3)
-            self.vertices.append(TrackSection(number, last, last.length_m, int(self.tracks.pop())))
+            name = self.name()
+            self.vertices.append(TrackSection(number, last, last.length_m, int(self.tracks.pop()), name=name))
         elif kind < 0.7:
             number = self.number(0)
             left, right = (Branch(self.edge(self.grow(depth - 1)), 4.73, 27.0) for _ in range(2))
-            self.vertices.append(Switch(number, left, right, 6.0, 12.0, 0.6, 0.2))
+            self.vertices.append(Switch(number, left, right, 6.0, 12.0, 0.6, 0.2, name=self.name()))
         elif kind < 0.8:
             number = self.number(1)
             self.vertices.append(Signal(number, self.edge(self.grow(depth - 1))))
         elif kind < 0.9:
             number = self.number(2)
             to = self.grow(depth - 1)
-            self.vertices.append(replace(retarder(number, to), next=self.edge(to)))
+            self.vertices.append(replace(retarder(number, to), next=self.edge(to), name=self.name()))
         else:
             number = self.number(3)
             self.vertices.append(TrackSection(number, self.edge(self.grow(depth - 1)), 10.0))

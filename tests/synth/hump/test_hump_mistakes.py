@@ -121,7 +121,11 @@ MISTAKES = [
         f"left = {{ to = 433, {LAST}, turn_deg = 40",
         "turn_deg is 40.0; it must be a finite",
     ),
-    ("number = 601, type", 'number = 601, name = "East 4", type', "unknown key name; elements have numbers only"),
+    (
+        "number = 601, type",
+        'number = 601, name = "The track of the East by the pond", type',
+        "section 601: name is 'The track of the East by the pond'; it must be a non-empty string of at most 24",
+    ),
     (
         'type = "track", track = 3 }',
         'type = "track" }',

@@ -50,7 +50,8 @@ def hump_picture(hump: HumpEntry, route: Route, rolls: Sequence[RunnerRoll]) -> 
     dress(plan, "Track plan; along in metres from the crest, across not to scale")
     draw_plan(plan, hump.graph, layout)
     plan.tick_params(labelbottom=True)
-    title = f"Route to track {route.track}, code {route.code or 'none'}: height, and energy head of cars without brakes"
+    track, code = hump.graph.track_called(route.track), route.code or "none"
+    title = f"Route to track {track}, code {code}: height, and energy head of cars without brakes"
     dress(profile, title, "metres from the crest", "m above the crest")
     draw_profile(profile, route, rolls)
     profile.set_xlim(-0.03 * route.length_m, 1.01 * max(layout.end_m.values()))

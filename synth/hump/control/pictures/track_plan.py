@@ -29,7 +29,7 @@ def draw_plan(axes: Axes, graph: HumpGraph, layout: PlanLayout, unnumbered: Cont
     for section in graph.sections:
         x, y = layout.at[section.number]
         if section.is_last:
-            draw_track(axes, section, layout)
+            draw_track(axes, section, layout, graph)
         else:
             axes.plot([x, x + section.length_m], [y, y], color=SKY, linewidth=2.5, zorder=3)
     for each in graph.retarders:
@@ -50,8 +50,8 @@ def draw_plan(axes: Axes, graph: HumpGraph, layout: PlanLayout, unnumbered: Cont
     axes.grid(False, axis="y")
 
 
-def draw_track(axes: Axes, section: TrackSection, layout: PlanLayout) -> None:
-    """A classification track with its number, and the cars that stand on it."""
+def draw_track(axes: Axes, section: TrackSection, layout: PlanLayout, graph: HumpGraph) -> None:
+    """A classification track with its number and name, and the cars that stand on it."""
     (x, y), assigned = layout.at[section.number], section.track
     assert assigned is not None
     end = x + section.length_m
@@ -59,19 +59,18 @@ def draw_track(axes: Axes, section: TrackSection, layout: PlanLayout) -> None:
     axes.plot([end, end], [y - 0.25, y + 0.25], color=INK, linewidth=RAIL_WIDTH, zorder=2)
     if section.standing_m > 0.0:
         axes.plot([end - section.standing_m, end], [y, y], color=GREY, linewidth=4.0, solid_capstyle="butt", zorder=3)
-    axes.annotate(str(assigned), (end, y), (4, 0), textcoords="offset points", va="center", fontsize=7)
+    axes.annotate(graph.track_called(assigned), (end, y), (4, 0), textcoords="offset points", va="center", fontsize=7)
 
 
 def draw_retarder(axes: Axes, retarder: Retarder, layout: PlanLayout) -> None:
-    """The braking zones of a retarder on its edge, with its number."""
+    """The braking zones of a retarder on its edge, with its number and name."""
     (x, y), (to_x, to_y) = layout.at[retarder.number], layout.at[retarder.next.to or retarder.number]
     slope = (to_y - y) / (to_x - x)
     for begin, end in retarder.zones_m:
         ends = [x + begin, x + end], [y + slope * begin, y + slope * end]
         axes.plot(*ends, color=BLUE, linewidth=ELEMENT_WIDTH, solid_capstyle="butt", zorder=4)
-    axes.annotate(
-        str(retarder.number), (x, y), (0, 3), textcoords="offset points", fontsize=5.5, color=BLUE, va="bottom"
-    )
+    for text, offset, hangs in ((str(retarder.number), 3, "bottom"), (retarder.name or "", -4, "top")):
+        axes.annotate(text, (x, y), (0, offset), textcoords="offset points", fontsize=5.5, color=BLUE, va=hangs)
 
 
 def draw_switch(axes: Axes, switch: Switch, layout: PlanLayout) -> None:
@@ -91,13 +90,15 @@ def draw_switch(axes: Axes, switch: Switch, layout: PlanLayout) -> None:
 
 
 def number_switch(axes: Axes, number: int, layout: PlanLayout, graph: HumpGraph) -> None:
-    """The number of a switch, on that side of the points where no track comes from."""
+    """The number of a switch, on that side of the points where no track comes from; its name on the other side."""
     x, y = layout.at[number]
     from_above = any(layout.at[ahead][1] < y for ahead in graph.network.predecessors(number))
-    side, hangs = (-2, "top") if from_above else (2, "bottom")
-    axes.annotate(
-        str(number), (x, y), (-2, side), textcoords="offset points", ha="right", va=hangs, fontsize=6.5, zorder=6
-    )
+    up, hangs, other = (-1, "top", "bottom") if from_above else (1, "bottom", "top")
+    name = graph.names.get(number, "")
+    for text, size, offset, side in ((str(number), 6.5, 2 * up, hangs), (name, 5.5, -4 * up, other)):
+        axes.annotate(
+            text, (x, y), (-2, offset), textcoords="offset points", ha="right", va=side, fontsize=size, zorder=6
+        )
 
 
 def plan_legend() -> list[Artist]:

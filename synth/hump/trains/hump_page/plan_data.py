@@ -26,8 +26,8 @@ def plan_data(graph: HumpGraph, routes: Mapping[int, Route]) -> Data:
         "signals": [[each.number, *map(rounded, layout.at[each.number])] for each in graph.signals],
         "retarders": [[each.number, *map(rounded, layout.at[each.number])] for each in graph.retarders],
         "tracks": [[track, rounded(layout.end_m[track]), row] for track, row in layout.row.items()],
-        "called": {str(each.number): str(each.number) for each in graph.vertices},
-        "tracks_called": {str(track): str(track) for track in layout.row},
+        "called": {str(each.number): graph.called(each.number) for each in graph.vertices},
+        "tracks_called": {str(track): graph.track_called(track) for track in layout.row},
         "routes": {str(row): way(route, layout) for row, route in routes.items()},
     }
 

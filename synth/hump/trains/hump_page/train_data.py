@@ -4,13 +4,12 @@ to the one before."""
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.hump.element_number import element_name
+from plant_models.hump import HumpGraph
 from synth.hump.trains.train_trace import Alarm, AlarmKind, TracedCut, TrainTrace
 
 Data = dict[str, Any]
@@ -37,7 +36,7 @@ def train_data(trace: TrainTrace) -> Data:
         "mean_hump_speed_m_s": finite(trace.mean_hump_speed_m_s),
         "cuts": [cut_data(trace, cut) for cut in trace.cuts],
         "occupied": [[o.number, o.cut, hundredth(o.from_s), finite(o.to_s)] for o in trace.occupied],
-        "alarms": [alarm_data(alarm, trace.cuts) for alarm in trace.alarms],
+        "alarms": [alarm_data(alarm, trace) for alarm in trace.alarms],
     }
 
 
@@ -81,24 +80,24 @@ def caught_s(trace: TrainTrace, cut: TracedCut) -> float | None:
     return finite(min(counted, default=None))
 
 
-def alarm_data(alarm: Alarm, cuts: Sequence[TracedCut]) -> Data:
+def alarm_data(alarm: Alarm, trace: TrainTrace) -> Data:
     """One alarm; an instant that never comes is None. `m_s`: the speed that belongs to it."""
     return {
         "kind": alarm.kind.name.lower(),
-        "words": words(alarm),
-        "m_s": finite(cuts[alarm.cut].coupled_m_s) if alarm.kind is AlarmKind.OVERSPEED else None,
+        "words": words(alarm, trace.routes.graph),
+        "m_s": finite(trace.cuts[alarm.cut].coupled_m_s) if alarm.kind is AlarmKind.OVERSPEED else None,
         "severe": alarm.kind.severe,
         "t": finite(alarm.time_s),
         "cut": alarm.cut,
     }
 
 
-def words(alarm: Alarm) -> str:
+def words(alarm: Alarm, graph: HumpGraph) -> str:
     """'cut 4 in contact with cut 3 at retarder 411'."""
     told = f"cut {alarm.cut + 1} {TOLD[alarm.kind]}"
     if alarm.ahead is not None:
         told += f" cut {alarm.ahead + 1}"
-    return told if alarm.number is None else f"{told} at {element_name(alarm.number)}"
+    return told if alarm.number is None else f"{told} at {graph.element_called(alarm.number)}"
 
 
 def differences(values: NDArray[np.float64]) -> list[int]:

@@ -53,7 +53,9 @@ def catch_ups(hump: HumpEntry, counts: Mapping[int, int], cuts: int, what: str =
     ends_m = max(layout.at[vertex.number][0] for vertex in hump.graph.vertices)
     upto_m = min(ends_m + 0.15 * ends_m, max(layout.end_m.values()))
     for track, row in layout.row.items():
-        axes.annotate(str(track), (upto_m, row), (4, 0), textcoords="offset points", va="center", fontsize=7)
+        axes.annotate(
+            hump.graph.track_called(track), (upto_m, row), (4, 0), textcoords="offset points", va="center", fontsize=7
+        )
     axes.set_xlim(-0.03 * upto_m, upto_m)
     legend_below(figure, plan_legend(), columns=7)
     return figure
@@ -78,7 +80,9 @@ def draw_discs(axes: Axes, counts: Mapping[int, int], graph: HumpGraph, layout: 
         if isinstance(graph.vertex(number), Retarder):
             continue
         above = (0.0, 0.5 * np.sqrt(area) + 1.0)
-        axes.annotate(str(number), (x, y), above, textcoords="offset points", ha="center", fontsize=6.5, zorder=9)
+        axes.annotate(
+            graph.called(number), (x, y), above, textcoords="offset points", ha="center", fontsize=6.5, zorder=9
+        )
     return discs
 
 

@@ -134,10 +134,10 @@ def draw_band(axes: Axes, cut: TracedCut, colour: str, corner: tuple[float, floa
 
 def name_cut(axes: Axes, cut: TracedCut, colour: str, routes: HumpRoutes) -> None:
     """Number and track of the cut at the crest."""
-    track = routes.routes[cut.wanted].track
-    text = f"{cut.cut + 1} → {track}"
+    wanted, went = (routes.graph.track_called(routes.routes[row].track) for row in (cut.wanted, cut.route))
+    text = f"{cut.cut + 1} → {wanted}"
     if cut.route != cut.wanted:
-        text += f", went to {routes.routes[cut.route].track}"
+        text += f", went to {went}"
     axes.annotate(
         text, (0.0, cut.crest_s), (-4, 0), textcoords="offset points", ha="right", va="center", fontsize=7,
         color=colour, annotation_clip=False,

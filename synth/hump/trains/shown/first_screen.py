@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.hump.element_number import element_name
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import decimals, three_figures
 from synth.hump.trains.humped_trial import HumpedTrial
@@ -91,7 +90,7 @@ def where_caught(result: HumpedTrial) -> str:
     counts = caught_at(routes, result.found)
     if not counts.any():
         return "No cut caught up."
-    places = told_most(counts, [element_name(number) for number in routes.numbers])
+    places = told_most(counts, [routes.graph.element_called(number) for number in routes.numbers])
     return f"Where cuts were misrouted, or ran into the cut ahead: {places}."
 
 
@@ -102,7 +101,7 @@ def where_closest(result: HumpedTrial) -> str:
     if not there.any():
         return "What limits the speed: no two cuts shared an element."
     counts = np.bincount(found.tightest_at[there], minlength=len(routes.numbers))
-    places = told_most(counts, [element_name(number) for number in routes.numbers])
+    places = told_most(counts, [routes.graph.element_called(number) for number in routes.numbers])
     names = result.category_names
     pairs = np.bincount(
         found.tightest_ahead[there] * len(names) + found.tightest_behind[there], minlength=len(names) ** 2

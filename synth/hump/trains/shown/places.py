@@ -22,6 +22,8 @@ COUNTS: Final = (
 )
 """Fields of the outcomes by element."""
 
+ELEMENTS: Final = (Column("number", "element"), Column("name", "name", words=True), *COUNTS)
+
 MISROUTES: Final = (
     "Cuts that came to a switch before it could be thrown behind the cut ahead of them. They follow that cut, and each "
     "counts once, at the first such switch."
@@ -49,7 +51,7 @@ def catch_ups(result: HumpedTrial) -> Iterator[Exhibit]:
         lambda: _pictures().catch_ups(hump, contact, cuts, "contacts"),
     )  # fmt: skip
     rows = element_rows(result.config.routes, found)
-    yield Table("elements", "Cuts by element, where there was one", (Column("number", "element"), *COUNTS), rows)
+    yield Table("elements", "Cuts by element, where there was one", ELEMENTS, rows)
 
 
 def couplings(found: TrainOutcomes, limits: CouplingLimits) -> Iterator[Exhibit]:
@@ -65,7 +67,11 @@ def by_element(routes: HumpRoutes, counts: NDArray[np.int64]) -> dict[int, int]:
 def element_rows(routes: HumpRoutes, found: TrainOutcomes) -> list[Row]:
     """The counts at each element where there is one at all."""
     counts = {column.key: by_element(routes, getattr(found, column.key)) for column in COUNTS}
-    rows = ({"number": number} | {key: each[number] for key, each in counts.items()} for number in routes.numbers)
+    names = routes.graph.names
+    rows = (
+        {"number": number, "name": names.get(number)} | {key: each[number] for key, each in counts.items()}
+        for number in routes.numbers
+    )
     return [row for row in rows if any(row[column.key] for column in COUNTS)]
 
 

@@ -30,6 +30,7 @@ COLUMNS: Final = (
     Column("length_m", "length", "m", decimals(2), spare=3),
     Column("category", "category", words=True, spare=2),
     Column("track", "track"),
+    Column("track_name", "name of the track", words=True),
     Column("hump_speed_m_s", "hump speed", "m/s", decimals(2)),
     Column("time_s", "time", "s", decimals(1)),
     Column("pushed_m", "pushed", "m", decimals(2), spare=2),
