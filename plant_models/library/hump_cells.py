@@ -26,6 +26,7 @@ from plant_models.library.hump_forms import short_text, some_numbers, some_pairs
 from plant_models.library.near_miss import close_name, near_miss
 from plant_models.library.sourced_value import CONFIDENCES
 from plant_models.library.toml_lines import Place
+from plant_models.library.written_units import in_unit, words_for
 
 SOURCED: Final = ("value", "source", "confidence")
 """Keys of a number that tells where it is from."""
@@ -239,9 +240,9 @@ def checked_cell(raw: object, name: str, key: Key, place: Place, origin: Origin,
             found.add(place, f"key {name}.value is missing")
             return bad
         raw = table["value"]
-    value = key.form(raw)
+    value = key.form(in_unit(raw, key.unit) if isinstance(raw, str) else raw)
     if value is None:
-        found.add(place, f"{name} is {shown(raw)}; it must be {form_name(key.form)}")
+        found.add(place, f"{name} is {shown(raw)}; it must be {words_for(raw, key.unit) or form_name(key.form)}")
         return bad
     for sentence in key.range.faults(name, value) if key.range is not None else ():
         found.add(place, sentence)

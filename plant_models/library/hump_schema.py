@@ -21,6 +21,7 @@ from plant_models.library.hump_forms import (
     whole,
 )
 from plant_models.library.sourced_value import CONFIDENCES
+from plant_models.library.written_units import unit_schema
 
 Json = dict[str, Any]
 
@@ -126,6 +127,9 @@ def cell_schema(key: Key) -> Json:
         plain = {**plain, "minimum": key.range.low, "maximum": key.range.high}
     if not key.unit:
         return plain
+    written = unit_schema(key.unit) if key.form in (number, number_or_pairs) else None
+    if written is not None:
+        plain = {"anyOf": [plain, written]}
     sourced = {
         "type": "object",
         "additionalProperties": False,

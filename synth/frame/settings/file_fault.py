@@ -13,6 +13,7 @@ from pydantic_core import ErrorDetails
 
 from plant_models.errors import PlantError
 from plant_models.library.near_miss import near_miss
+from plant_models.library.written_units import words_for
 from synth.frame.input_error import InputError
 from synth.frame.settings.fault_words import ALLOWED, shown
 from synth.frame.settings.section import (
@@ -79,6 +80,8 @@ def allowed(fault: ErrorDetails, root: type[Section]) -> str:
     if kind in ("greater_than_equal", "less_than_equal"):
         limits = setting_limits(field_at(fault["loc"], root))
         return f"from {limits[0]:g} to {limits[1]:g}{share_words(fault, root)}" if limits else fault["msg"]
+    if kind == "float_type" and words_for(fault["input"], setting_unit(field_at(fault["loc"], root))):
+        return words_for(fault["input"], setting_unit(field_at(fault["loc"], root)))
     if kind == "value_error":
         return str(context["error"]).removeprefix("it must be ")
     if kind == "literal_error":

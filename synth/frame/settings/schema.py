@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from typing import Final
+from typing import Any, Final
 
+from plant_models.library.written_units import unit_schema
 from synth.frame.settings.section import Section
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
@@ -12,5 +13,20 @@ DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
 def schema_of(model: type[Section], title: str) -> str:
     """The schema as JSON: keys, types, limits, units, meanings and origins, as they are declared."""
-    found = {"$schema": DIALECT, **model.model_json_schema(), "title": title}
+    found = {"$schema": DIALECT, **with_units(model.model_json_schema()), "title": title}
     return json.dumps(found, indent=1, ensure_ascii=False) + "\n"
+
+
+def with_units(node: Any, unit: str = "") -> Any:
+    """A part of a schema in which numbers may be written with a unit; `unit`: the declared one of those in it."""
+    if isinstance(node, list):
+        return [with_units(each, unit) for each in node]
+    if not isinstance(node, dict):
+        return node
+    declared = node["unit"] if isinstance(node.get("unit"), str) else unit
+    inner = {key: with_units(each, declared) for key, each in node.items()}
+    written = unit_schema(declared)
+    if written is None or inner.get("type") != "number":
+        return inner
+    number = {key: inner.pop(key) for key in ("type", "minimum", "maximum") if key in inner}
+    return {**inner, "anyOf": [number, written]}

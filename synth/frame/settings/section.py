@@ -10,8 +10,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, get_args
 
 from annotated_types import Ge, Le, MaxLen, MinLen
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic.fields import FieldInfo
+
+from plant_models.library.written_units import in_unit
 
 DIMENSIONLESS = "1"
 
@@ -73,7 +75,7 @@ def many(
 
 
 class Section(BaseModel):
-    """A table of the file: unknown keys, wrong types, inf and nan are refused.
+    """A table of the file: unknown keys, wrong types, inf and nan are refused; a number may have a unit of its own.
 
     `MEANT`: words that users write for keys that have another name.
     """
@@ -81,6 +83,15 @@ class Section(BaseModel):
     MEANT: ClassVar[Mapping[str, str]] = {}
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_declared_units(cls, given: Any) -> Any:
+        """Numbers that are written with another unit, in the declared one."""
+        if not isinstance(given, dict):
+            return given
+        units = {key: setting_unit(field) for key, field in cls.model_fields.items()}
+        return {key: in_unit(value, units[key]) if units.get(key) else value for key, value in given.items()}
 
 
 def setting_unit(field: FieldInfo) -> str:
