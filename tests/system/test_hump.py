@@ -57,9 +57,10 @@ def test_routes(command: Command, file: Path) -> None:
         (1, "0", 442.0),
         (2, "1", 402.0),
     ]
-    assert found["switches"] == [{"number": 1, "left_tracks": [1], "right_tracks": [2]}]
+    assert found["switches"] == [{"number": 1, "name": None, "left_tracks": [1], "right_tracks": [2]}]
     first = found["routes"][0]["elements"]
-    assert first[1] == {"number": 1, "at_m": 42.0, "section_m": [36.0, 47.0], "position": 0, "fouling_m": 68.0}
+    told = {"number": 1, "name": None, "at_m": 42.0, "section_m": [36.0, 47.0], "position": 0, "fouling_m": 68.0}
+    assert first[1] == told
     lines = command("hump", "routes", file).out.splitlines()
     assert "signal 201, track 2, code 1: 201 0, 1 right 42, 602 102, end 402" in lines
     assert lines[-1] == "switch 1: left to tracks 1; right to tracks 2"

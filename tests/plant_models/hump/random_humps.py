@@ -48,6 +48,7 @@ class Growing:
 
     def __init__(self, seed: int) -> None:
         self.random = np.random.default_rng(seed)
+        self.for_names = np.random.default_rng((seed, 1))
         self.free = [list(self.random.permutation(np.arange(a, a + 199))) for a in (1, 201, 401, 601)]
         self.tracks = list(self.random.permutation(np.arange(1, 200)))
         self.vertices: list[Vertex] = []
@@ -57,7 +58,7 @@ class Growing:
 
     def name(self) -> str | None:
         """What a yard may call an element, or no name; a number, too."""
-        return [None, "East 4", "12", 'стрелка "103"; 1,5'][self.random.integers(4)]
+        return [None, "East 4", "12", 'стрелка "103"; 1,5'][self.for_names.integers(4)]
 
     def edge(self, to: int | None) -> Edge:
         length = float(self.random.uniform(60.0, 200.0))
