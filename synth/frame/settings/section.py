@@ -13,8 +13,6 @@ from annotated_types import Ge, Le, MaxLen, MinLen
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic.fields import FieldInfo
 
-from plant_models.library.written_units import in_unit
-
 DIMENSIONLESS = "1"
 
 TOOL_DEFAULT = "default of the tool"
@@ -90,6 +88,8 @@ class Section(BaseModel):
         """Numbers that are written with another unit, in the declared one."""
         if not isinstance(given, dict):
             return given
+        from plant_models.library.written_units import in_unit  # the package of the plant has numpy
+
         units = {key: setting_unit(field) for key, field in cls.model_fields.items()}
         return {key: in_unit(value, units[key]) if units.get(key) else value for key, value in given.items()}
 
