@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from plant_models.hump.element_number import element_name
 from synth.frame.command import Limit
 from synth.hump.design.found_design import KEPT_M_S, FoundDesign
 from synth.hump.design_runners import bad_runner, very_good_runner
@@ -25,7 +24,7 @@ def design_limits(found: FoundDesign) -> Iterator[Limit]:
 def of_fall(found: FoundDesign) -> Limit:
     """The bad runner must come into its track."""
     fall, runner = found.unbraked.fall, bad_runner(found.hump.asked)
-    where = f"{fall.into_m:.0f} m into track {fall.route.track}"
+    where = f"{fall.into_m:.0f} m into track {found.hump.routes.graph.track_called(fall.route.track)}"
     who = f"the bad runner ({runner.mass_t:g} t, {runner.resistance_n_per_kn:g} N/kN)"
     if fall.left_m >= 0.0:
         return Limit(f"{who} comes {where} with {fall.left_m:.2f} m of energy head left", True)
@@ -44,7 +43,7 @@ def of_brakes(found: FoundDesign) -> Iterator[Limit]:
             words = (
                 f"up to the exit of position {need.number} the brakes can take {need.there_m:.2f} m of energy head "
                 f"from the very good runner ({runner.mass_t:g} t, {runner.resistance_n_per_kn:g} N/kN) on the way to "
-                f"track {need.track}, which has {need.needed_m:.2f} m there"
+                f"track {found.hump.routes.graph.track_called(need.track)}, which has {need.needed_m:.2f} m there"
             )
             yield Limit(words, need.left_m >= 0.0)
 
@@ -66,10 +65,9 @@ def of_entries(found: FoundDesign) -> Iterator[Limit]:
 def of_intervals(found: FoundDesign) -> Limit:
     """No car may come before the points are right, and the retarder free."""
     worst, asked = found.worst, found.hump.asked
-    pair, _ = worst.tightest
-    where = f"between {BETWEEN[pair]} at {element_name(tightest_element(found))}, to tracks {worst.tracks[0]} and " + (
-        f"{worst.tracks[1]}, pushed at {asked.hump_speed_m_s:g} m/s"
-    )
+    graph, (pair, _) = found.hump.routes.graph, worst.tightest
+    there, tracks = graph.element_called(tightest_element(found)), " and ".join(map(graph.track_called, worst.tracks))
+    where = f"between {BETWEEN[pair]} at {there}, to tracks {tracks}, pushed at {asked.hump_speed_m_s:g} m/s"
     if worst.least_s >= 0.0:
         return Limit(f"the least interval is {worst.least_s:.2f} s longer than needed, {where}", True)
     if math.isinf(worst.least_s):

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from plant_models.hump.element_number import element_name
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import decimals
 from synth.hump.design.design_limits import BETWEEN, tightest_element
@@ -19,6 +18,8 @@ from synth.hump.trains.hump_routes import Mark
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from plant_models.hump import HumpGraph
 
 HOW_TO_READ: Final = (
     "Single cars are pushed over the crest one behind another: a bad runner, a good one, a bad one. The bad ones go to "
@@ -95,7 +96,7 @@ def interval_tile(found: FoundDesign) -> Tile:
     """The least interval."""
     least = found.worst.least_s
     told = f"{least:+.2f} s" if math.isfinite(least) else "stands"
-    at = element_name(tightest_element(found))
+    at = graph_of(found).element_called(tightest_element(found))
     of = f"least margin at {found.hump.asked.hump_speed_m_s:g} m/s, {BETWEEN[found.worst.tightest[0]]}, at {at}"
     return Tile(told, of, least >= 0.0)
 
@@ -103,7 +104,8 @@ def interval_tile(found: FoundDesign) -> Tile:
 def fall_tile(found: FoundDesign) -> Tile:
     """What the bad runner has left."""
     fall = found.unbraked.fall
-    of = f"of energy head left to the bad runner {fall.into_m:.0f} m into track {fall.route.track}"
+    track = graph_of(found).track_called(fall.route.track)
+    of = f"of energy head left to the bad runner {fall.into_m:.0f} m into track {track}"
     return Tile(f"{fall.left_m:+.2f} m", of, fall.left_m >= 0.0)
 
 
@@ -154,9 +156,10 @@ def fall_and_brakes(found: FoundDesign) -> Iterator[Exhibit]:
         "left_m": fall.left_m,
         "stop_m": fall.stop_m if math.isfinite(fall.stop_m) else None,
     }
+    track = graph_of(found).track_called(fall.route.track)
     yield Sentence(
-        f"From the crest to {fall.into_m:.0f} m into track {fall.route.track}, where the bad runner fares worst, the "
-        f"track falls {fall.fall_m:.2f} m; {fall.needed_m:.2f} m are needed.",
+        f"From the crest to {fall.into_m:.0f} m into track {track}, where the bad runner fares worst, the track falls "
+        f"{fall.fall_m:.2f} m; {fall.needed_m:.2f} m are needed.",
         figures,
         brief=True,
     )
@@ -182,7 +185,7 @@ def fall_and_brakes(found: FoundDesign) -> Iterator[Exhibit]:
 
 def triple(found: FoundDesign) -> Iterator[Exhibit]:
     """The worst triple, element by element."""
-    bad, good = found.worst.tracks
+    bad, good = map(graph_of(found).track_called, found.worst.tracks)
     title = f"Bad runners to track {bad}, good one to track {good}; seconds since the first was at the crest"
     yield Table("elements", title, ELEMENTS, list(element_rows(found)), bad=too_close)
     title = "What the positions make of them, none of which meets another"
@@ -214,7 +217,7 @@ def element_rows(found: FoundDesign) -> Iterator[Row]:
         both = column < shared
         parts = both and routes.points[first, column] != routes.points[second, column]
         yield {
-            "element": element_name(routes.numbers[vertex]),
+            "element": routes.graph.element_called(routes.numbers[vertex]),
             "at_m": float(routes.place_m[first, column, Mark.FIRST_IN]),
             "needs_s": float(routes.throw_s[first, column]) if parts else 0.0,
             "bad_in_s": finite(comes[0, column]),
@@ -248,6 +251,11 @@ def pass_rows(found: FoundDesign) -> Iterator[Row]:
             }
 
 
+def graph_of(found: FoundDesign) -> HumpGraph:
+    """The hump, which knows what its elements and tracks are called."""
+    return found.hump.routes.graph
+
+
 def finite(value: float) -> float | None:
     """The number; None for what is never, or nowhere."""
     return float(value) if math.isfinite(value) else None
@@ -265,6 +273,6 @@ def triple_picture(found: FoundDesign) -> Figure:
     from synth.hump.trains.pictures import time_path
     from synth.kernels.cache import guarded
 
-    bad, good = found.worst.tracks
+    bad, good = map(graph_of(found).track_called, found.worst.tracks)
     title = f"Bad runners to track {bad}, a good one to track {good}, {found.hump.asked.hump_speed_m_s:g} m/s"
     return time_path(guarded(found.worst.together), title)
