@@ -135,7 +135,11 @@ MISTAKES = [
     ("track = 6 }", "track = 0 }", "section 606: track is 0; it must be a finite number from 1 to 199"),
     ("number = 608", "number = 607", "section[6] has the number 607, too; numbers must be unique"),
     ("track = 9 }", "track = 10 }", "track 10 ends here and in section 609; a track must end once"),
-    ("track = 11 }", "track = 11, standing_m = '20' }", "section 611: standing_m is '20'; it must be a finite number"),
+    (
+        "track = 11 }",
+        "track = 11, standing_m = '20' }",
+        "section 611: standing_m is '20'; it must be a number in m, or in quotes",
+    ),
     (
         "track = 14 }",
         "track = 14, length_m = 600, next = { to = 1 } }",

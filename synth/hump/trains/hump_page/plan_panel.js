@@ -6,7 +6,7 @@ const CATEGORY_COLOURS = ["#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#222222",
 const COUPLING_COLOURS = ["#009e73", "#f0c000", "#e8740c", "#b3001b"];
 const ALARM = "#d55e00", QUIET = "#767676";
 const BEHIND_CREST_M = 60, BEHIND_LAST_M = 90, TOLD_S = 6, COUPLER_M = 0.6;
-const LEAST_ROW_PX = 9, MOST_ROW_PX = 60, PLAN_PX = 600;
+const LEAST_ROW_PX = 9, MOST_ROW_PX = 60, PLAN_PX = 600, MARGIN_PX = 5;
 
 const colourOf = (category) => CATEGORY_COLOURS[category % CATEGORY_COLOURS.length];
 
@@ -42,7 +42,7 @@ class PlanPanel {
   }
 
   X(m) { return (m - this.from) / (this.to - this.from) * this.width; }
-  Y(row) { return (row + 1.3) * this.row; }
+  Y(row) { return (row + 1.3) * this.row + MARGIN_PX; }
   get halfCut() { return Math.min(0.31 * this.row, 7); }
 
   line([x0, y0, x1, y1], kind) {
@@ -57,7 +57,7 @@ class PlanPanel {
     svg.replaceChildren();
     this.width = svg.clientWidth || 1200;
     this.row = Math.min(Math.max(this.share * PLAN_PX / (plan.rows + 2), LEAST_ROW_PX), MOST_ROW_PX);
-    this.height = Math.ceil((plan.rows + 1.6) * this.row + 18);
+    this.height = Math.ceil((plan.rows + 1.6) * this.row + MARGIN_PX + 18);
     svg.setAttribute("height", this.height);
     svg.style.setProperty("--track", `${Math.min(10, 0.95 * this.row)}px`);
     this.axis();
