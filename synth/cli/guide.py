@@ -19,7 +19,7 @@ TOP: Final = CommandGuide(
     },
     {
         "tune": Shown("tune my.toml -o out", "results.md"),
-        "aim": Shown("aim my-aim.toml -o out/aim", "aim.md"),
+        "aim": Shown("aim --hump my-hump.toml --track 7 -o out/aim", "aim.md"),
         "validate": Shown("validate out --passes 50000 --seed 7", "limits.md"),
         "sensitivity": Shown("sensitivity my.toml -o out/sensitivity", "sensitivity.md"),
         "permissions": Shown("permissions my.toml -o out/permissions", "any-time.md"),
