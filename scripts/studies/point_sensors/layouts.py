@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 
 from synth.retarder.sensors.layout import equal_layout, rule_layout
 from synth.retarder.sensors.layout_plan import LayoutProblem, plan_layouts, plan_passes
@@ -25,8 +24,7 @@ def planned(problem: LayoutProblem, deciding: Sequence[int]) -> tuple[Places, ..
     if not deciding:
         return ()
     passes = plan_passes(seed=1, count=1000)
-    with ThreadPoolExecutor(max_workers=1) as pool:
-        return tuple(each.deciding_m for each in plan_layouts(problem, deciding, passes, pool))
+    return tuple(each.deciding_m for each in plan_layouts(problem, deciding, passes))
 
 
 def by_rule(problem: LayoutProblem) -> Places:

@@ -15,7 +15,7 @@ from plant_models import PointSensors
 from synth.problem.resolution import Resolution
 from synth.retarder.sensors.candidate_places import LayoutCase, candidate_places
 from synth.retarder.sensors.layout import LAST_SECTION_M, equal_layout, first_sensor_m, with_layout
-from synth.retarder.sensors.layout_search import LayoutSearch
+from synth.retarder.sensors.layout_search import ForEach, LayoutSearch
 from synth.retarder.sensors.layout_tables import ExitErrors, LayoutTable, errors_of, polished, solutions
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
@@ -97,11 +97,11 @@ class LayoutProblem:
         """How far ahead of the entrance the first sensor may stand."""
         return float(PLACE_STEP_M * np.ceil(-FARTHEST_AHEAD * self.first_m / PLACE_STEP_M))
 
-    def search(self) -> LayoutSearch:
-        """The search over all places at which sensors may stand."""
+    def search(self, for_each: ForEach = map) -> LayoutSearch:
+        """The search over all places at which sensors may stand; `for_each` of the cases."""
         places = np.arange(-self.farthest_m, self.exit_m - LAST_SECTION_M, PLACE_STEP_M)
         cases = tuple(candidate_places(case, self.sensors, self.farthest_m) for case in self.cases)
-        return LayoutSearch(cases, tuple(places.tolist()), self.first_m, self.exit_m)
+        return LayoutSearch(cases, tuple(places.tolist()), self.first_m, self.exit_m, for_each)
 
     def placed(self, deciding_m: tuple[float, ...]) -> PointSensors:
         """The sensors of a layout, with the one behind the exit of the longest cut."""
@@ -130,11 +130,12 @@ def plan_layouts(
     problem: LayoutProblem,
     counts: Sequence[int],
     passes: PlanPasses,
-    pool: ThreadPoolExecutor,
+    threads: int = 1,
     tell: Tell = silent,
 ) -> tuple[JudgedLayout, ...]:
-    """The best layout found for each number of deciding sensors; the threads of `pool` change nothing of it."""
-    return ended(pool.submit(searched, problem, counts, passes, pool, tell))
+    """The best layout found for each number of deciding sensors; how many `threads` there are changes nothing of it."""
+    with ThreadPoolExecutor(max_workers=threads) as searching, ThreadPoolExecutor(max_workers=threads) as judging:
+        return ended(judging.submit(searched, problem, counts, passes, (searching, judging), tell))
 
 
 def ended(search: Future[dict[int, Future[JudgedLayout]]]) -> tuple[JudgedLayout, ...]:
@@ -143,14 +144,19 @@ def ended(search: Future[dict[int, Future[JudgedLayout]]]) -> tuple[JudgedLayout
 
 
 def searched(
-    problem: LayoutProblem, counts: Sequence[int], passes: PlanPasses, pool: ThreadPoolExecutor, tell: Tell
+    problem: LayoutProblem,
+    counts: Sequence[int],
+    passes: PlanPasses,
+    pools: tuple[ThreadPoolExecutor, ThreadPoolExecutor],
+    tell: Tell,
 ) -> dict[int, Future[JudgedLayout]]:
-    """Hand each layout to `pool` as soon as it is found; what is judged, by number of deciding sensors.
+    """Search on the first pool, and hand each layout to the second as soon as it is found.
 
-    Equal sections are a candidate where they are near the best.
+    What is judged, by number of deciding sensors. Equal sections are a candidate where they are near the best.
     """
+    searching, judging = pools
     judged: dict[int, Future[JudgedLayout]] = {}
-    search = problem.search()
+    search = problem.search(searching.map)
     for layout in search.best_layouts(max(counts)):
         count = len(layout)
         tell(f"places of {count + 1} sensors found")
@@ -159,7 +165,7 @@ def searched(
             cost, equal = search.costs([layout, search.equal(count)])
             if layout != search.equal(count) and equal <= NEAR_BEST * cost:
                 candidates.append(equal_layout(problem.first_m, problem.exit_m, count))
-            judged[count] = pool.submit(told_judged, problem, candidates, passes, tell)
+            judged[count] = judging.submit(told_judged, problem, candidates, passes, tell)
     return judged
 
 

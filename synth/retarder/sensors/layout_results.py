@@ -105,8 +105,9 @@ def layout_results(asked: AskedLayouts, threads: int, tell: Tell = silent) -> La
     The result does not depend on how many `threads` work.
     """
     problem, passes = asked.problem, plan_passes(asked.seed, asked.passes)
-    with ThreadPoolExecutor(max_workers=threads) as pool:
-        search = pool.submit(searched, problem, [number - 1 for number in asked.sensors], passes, pool, tell)
+    with ThreadPoolExecutor(max_workers=threads) as searching, ThreadPoolExecutor(max_workers=threads) as pool:
+        counts = [number - 1 for number in asked.sensors]
+        search = pool.submit(searched, problem, counts, passes, (searching, pool), tell)
         radar = [pool.submit(told_radar, asked, number, passes, tell) for number in range(len(asked.labels))]
         rule = pool.submit(judged_rule, problem, passes, tell)
         anywhere = pool.submit(policy_anywhere, problem.cases[0], problem.sensors, problem.farthest_m)

@@ -6,7 +6,7 @@ of all; for three sensors exhaustive search finds the same (tests).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -19,24 +19,28 @@ from synth.retarder.sensors.layout import equal_layout
 PlaceNumbers = tuple[int, ...]
 """Numbers of the places at which deciding sensors stand, rising."""
 
+ForEach = Callable[[Callable[[CandidatePlaces], list[float]], Sequence[CandidatePlaces]], Iterable[list[float]]]
+"""Calls a function of a case for every case, in their order, as `map` does; that of a pool of threads does it at once."""
+
 STRIDES = (4, 2, 1)
 """By so many places a sensor is moved, the longest first."""
 
-LEAST_GAIN = 1e-4
-"""A move must lower the cost by this part of it."""
+LEAST_GAIN = 5e-3
+"""A round of moves of all sensors must lower the cost by this part of it, else it was the last with its stride."""
 
 
 @dataclass(frozen=True)
 class LayoutSearch:
     """Mean cost of layouts over `cases`, each worked out once; `path_m` (P,): where sensors may stand, rising.
 
-    `first_m`, `exit_m`: of equal layouts.
+    `first_m`, `exit_m`: of equal layouts. `for_each` changes no cost.
     """
 
     cases: tuple[CandidatePlaces, ...]
     path_m: tuple[float, ...]
     first_m: float
     exit_m: float
+    for_each: ForEach = map
     known: dict[PlaceNumbers, float] = field(default_factory=dict, compare=False, repr=False)
 
     def costs(self, layouts: Sequence[PlaceNumbers]) -> list[float]:
@@ -99,19 +103,18 @@ class LayoutSearch:
             yield self.numbers((*places[:kept], *np.interp(parts, np.arange(len(spread)), spread)))
 
     def descended(self, layout: PlaceNumbers) -> PlaceNumbers:
-        """Sensors moved one by one while that pays."""
+        """Sensors moved one by one, round after round, while that pays."""
         best = layout
         for stride in STRIDES:
-            moved = True
-            while moved:
-                moved = False
+            before, gained = self.costs([best])[0], True
+            while gained:
                 for sensor in range(len(layout)):
                     tried = [best, *(shifted(best, sensor, by) for by in (-stride, stride))]
                     if any(each not in self.known for each in tried):
                         self.costs([*tried, *self.asked_next(best, sensor, stride)])
-                    least = self.least(tried)
-                    if self.known[least] < self.known[best] * (1.0 - LEAST_GAIN):
-                        best, moved = least, True
+                    best = self.least(tried)
+                gained = self.known[best] < before * (1.0 - LEAST_GAIN)
+                before = self.known[best]
         return best
 
     def asked_next(self, layout: PlaceNumbers, sensor: int, stride: int) -> list[PlaceNumbers]:
@@ -134,7 +137,7 @@ class LayoutSearch:
 
     def _solve(self, layouts: Sequence[PlaceNumbers]) -> None:
         places = [[self.path_m[number] for number in layout] for layout in layouts]
-        by_case = np.array([case.mean_costs(places) for case in self.cases])
+        by_case = np.array(list(self.for_each(lambda case: case.mean_costs(places), self.cases)))
         self.known.update(zip(layouts, by_case.mean(axis=0).tolist(), strict=True))
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -22,9 +21,7 @@ from synth.retarder.sensors.anywhere import policy_anywhere
 from synth.retarder.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places
 from synth.retarder.sensors.layout import equal_layout, fastest_m_s, first_sensor_m, longest_change_s, rule_layout
 from synth.retarder.sensors.layout_plan import (
-    JudgedLayout,
     LayoutProblem,
-    PlanPasses,
     fewest_for,
     plan_layouts,
     plan_passes,
@@ -108,7 +105,7 @@ def test_of_plans_the_fewest_sensors_are_chosen_whatever_the_threads(plant_22t: 
     """To the bit; and a candidate that is better by its tables is taken, wherever it stands."""
     problem = LayoutProblem((LayoutCase(plant_22t, AIMS),), SENSORS, COARSE)
     passes = plan_passes(1, 1000)
-    plans, again = (planned(problem, passes, threads) for threads in (1, 3))
+    plans, again = (plan_layouts(problem, (4, 2), passes, threads) for threads in (1, 3))
     assert [plan.deciding for plan in plans] == [2, 4]
     for one, other in zip(plans, again, strict=True):
         assert one.deciding_m == other.deciding_m
@@ -117,12 +114,6 @@ def test_of_plans_the_fewest_sensors_are_chosen_whatever_the_threads(plant_22t: 
     assert fewest_for(plans, 0.0) is None
     equal = equal_layout(problem.first_m, problem.exit_m, 2)
     assert problem.judged([equal, plans[0].deciding_m], passes).deciding_m == plans[0].deciding_m
-
-
-def planned(problem: LayoutProblem, passes: PlanPasses, threads: int) -> tuple[JudgedLayout, ...]:
-    """Two and four sensors."""
-    with ThreadPoolExecutor(max_workers=threads) as pool:
-        return plan_layouts(problem, (4, 2), passes, pool)
 
 
 def test_nothing_is_told_of_the_passes_that_were_chosen_on() -> None:
@@ -183,7 +174,7 @@ def test_what_is_shown_of_a_plan(plant_22t: Plant) -> None:
     assert found.wanted_rms_m_s == pytest.approx(1.1 * layouts.rows[-1]["rms_m_s"].value)
     (limit,) = COMMAND.limits(found)
     assert f"an rms of at most {found.wanted_rms_m_s:.4f} m/s" in limit.sentence
-    assert limit.kept is (None if found.chosen is None else found.is_reached(found.chosen)) or not limit.kept
+    assert limit.kept is (False if found.chosen is None else found.is_reached(found.chosen))
     files = {each.name: each.content.decode() for each in exhibits if isinstance(each, File)}
     for row in layouts.rows[:-1]:
         sensors = parse_config(files[row["file"]], row["file"]).sensors
