@@ -20,7 +20,7 @@ PlaceNumbers = tuple[int, ...]
 """Numbers of the places at which deciding sensors stand, rising."""
 
 ForEach = Callable[[Callable[[CandidatePlaces], list[float]], Sequence[CandidatePlaces]], Iterable[list[float]]]
-"""Calls a function of a case for every case, in their order, as `map` does; that of a pool of threads does it at once."""
+"""Calls a function for every case, in their order, as `map` does; that of a pool of threads does it at once."""
 
 STRIDES = (4, 2, 1)
 """By so many places a sensor is moved, the longest first."""
