@@ -21,8 +21,8 @@ def unpriced(settings: ComputerSettings) -> Iterator[str]:
         return
     amounts = [each.key for each in numbers_of(settings) if each.unit.startswith(CURRENCY)]
     missing = [key for key in amounts if not is_given(settings, key)]
-    if "range" not in settings.model_fields_set:
-        missing += [f"[[range]] of {each.input}" for each in settings.range if each.input in amounts]
+    if "range" not in settings.model_fields_set:  # of a number that is given no usual range is taken
+        missing += [f"[[range]] of {each.input}" for each in settings.range if each.input in missing]
     if missing:
         yield (
             f"prices.currency is {own!r}, but these amounts are not given and stay numbers of {usual}: "

@@ -45,7 +45,7 @@ def first(found: LayoutResults) -> Sentence:
     """What to do with the plan."""
     shown = found.shown
     name, number = file_of(shown), shown.deciding + 1
-    text = f"Make tables for {number} sensors: retarder-synth sensors tune {name}."
+    text = f"Make tables for {number} sensors, in this directory: retarder-synth sensors tune {name}."
     if found.chosen is None:
         text = (
             f"Of these numbers {number} sensors have an rms of {shown.errors.rms.value:.4f} m/s, which is more than is "
@@ -111,7 +111,10 @@ def rms_rows(found: LayoutResults, head: Row, rms_m_s: Sequence[Interval]) -> It
 
 
 def links(found: LayoutResults) -> Iterator[File]:
-    """The configuration with each of the layouts, and the own types that it names, each file once."""
+    """The configuration with each of the layouts, and the own types that it names, each file once.
+
+    The page links to what is shown; the table names all.
+    """
     files: dict[str, tuple[bytes, str]] = {}
     for name, layout, file in layouts(found):
         number, told = layout.deciding + 1, layout.errors.rms
@@ -122,7 +125,7 @@ def links(found: LayoutResults) -> Iterator[File]:
         sensors = {**found.source.tree.get("sensors", {}), "path_m": list(found.places_of(layout))}
         source = replace(found.source, place=place, tree={**found.source.tree, "sensors": sensors})
         for path, content in source.files(file).items():
-            files[path] = content, f"{number} sensors, {name}" if path == file else ""
+            files[path] = content, f"The configuration with {number} sensors" if layout is found.shown else ""
     for path, (content, title) in files.items():
         yield File(path, content, title)
 
