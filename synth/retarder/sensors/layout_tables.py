@@ -36,8 +36,8 @@ COARSER = 2.0
 """Times the speed step of a tune: with the polish of a tune it changes the rms of 15 cases by at most 1 %."""
 
 POLISH_TOLERANCE = 2e-2
-"""A polish ends when a step gains less than this part of the cost; that of a tune ends at a tenth of it. The rms of 15
-cases is higher by 2 % for it at 8 sensors, and takes 0.6 times as long."""
+"""A polish ends when a step gains less than this part of the cost; that of a tune ends at a tenth of it. Against a
+quarter of it the rms of 15 cases is 2 % higher with 8 sensors, and the tables take 0.6 times as long."""
 
 RADAR_FRICTIONS = 4
 """Scenarios of the friction for the lines of the radar; of the running resistance they take the mean. The speed step is
