@@ -176,11 +176,13 @@ def no_types(option: str, noun: str, name: str) -> tuple[str, str]:
 
 
 def sensors_file(name: str) -> tuple[str, str]:
-    """As `asked_for`: a configuration with point sensors, of the position `name`."""
+    """As `asked_for`: a configuration with point sensors, of the position `name` or as the file `name` has it."""
     from plant_models.library import BUILT_IN, POSITIONS
-    from synth.retarder.configuration.point_sensors.template import default_sensors_toml
+    from synth.retarder.configuration.point_sensors.template import default_sensors_toml, filled_sensors_toml
     from synth.retarder.configuration.position_choice import require_held
 
+    if name.endswith(".toml"):
+        return "configuration", filled_sensors_toml(Path(name))
     require_held("retarder-synth init: --sensors", POSITIONS, name, BUILT_IN)
     return "configuration", default_sensors_toml(name)
 

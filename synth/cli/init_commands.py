@@ -18,7 +18,7 @@ FILES = {
     "car": ("cars", "File of a car type."),
     "sensor": ("sensors", "File of a radar."),
     "wheel_sensor": ("wheel_sensors", "File of a point speed sensor."),
-    "sensors": ("point sensors", "Configuration with point sensors, of a position."),
+    "sensors": ("point sensors", "Configuration with point sensors, of a position or a file."),
     "weight_categories": ("weight_categories", "File of a set of weight categories."),
     "aim": ("aim", "Aim configuration. With the name of a track or car mix: its file."),
     "hump": ("hump", "Hump trial configuration. With the name of a hump: its file."),

@@ -14,6 +14,7 @@ from synth.computer.economics.economic_case import EconomicCase
 from synth.computer.economics.hump_rates import HumpChange, HumpRates
 from synth.computer.economics.uncertainty.ranges import LogNormal, Measured, Range, Triangular, Uniform
 from synth.computer.settings import ComputerSettings, RatesSettings
+from synth.computer.unpriced import is_given
 from synth.computer.usual_money import USUAL_CHANGE, USUAL_RANGES, RangeSettings
 
 if TYPE_CHECKING:
@@ -71,7 +72,10 @@ def asked_case(settings: ComputerSettings, figures: HumpFigures) -> EconomicCase
 
 
 def asked_ranges(settings: ComputerSettings, figures: HumpFigures) -> dict[str, Range]:
-    """Uncertain inputs by key; those of simulated differences are within their intervals. `PlantError`."""
+    """Uncertain inputs by key; those of simulated differences are within their intervals. `PlantError`.
+
+    A number that the configuration gives, without any range, is certain.
+    """
     made: dict[str, Range] = {}
     if figures.found is not None:
         from synth.computer.economics.hump_day_change import ranges_of_change
@@ -82,6 +86,8 @@ def asked_ranges(settings: ComputerSettings, figures: HumpFigures) -> dict[str, 
     for each in settings.range:
         if own_change and each in USUAL_RANGES and each.law == "measured":
             continue
+        if "range" not in settings.model_fields_set and is_given(settings, each.input):
+            continue  # the usual range is about the usual value
         require(each.input not in told, f"range: {each.input!r} is given twice")
         require_input(each.input)
         told.add(each.input)

@@ -74,9 +74,9 @@ def show(found: ComputerResults) -> Iterator[Chapter]:
     from synth.computer.shown_money import money
     from synth.computer.shown_sizing import reliability, sizing
 
-    yield Chapter("How fast", tuple(sizing(found)))
-    yield Chapter("How reliable", tuple(reliability(found)))
     yield Chapter("What it pays", tuple(money(found)))
+    yield Chapter("How reliable", tuple(reliability(found)))
+    yield Chapter("How fast", tuple(sizing(found)))
 
 
 COMMAND = Command(

@@ -1,50 +1,97 @@
-"""Whether a control computer keeps its limits: waits, losses of a year, pay-back."""
+"""Whether a control computer keeps its limits: how fast it is, how reliable, and what it pays."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 
-from synth.computer.computer_results import ComputerResults
+from synth.computer.computer_results import ComputerResults, UncertainMoney
 from synth.frame.command import Limit
+from synth.frame.exhibits import shown_value
+from synth.frame.interval import Interval
+from synth.frame.printed_numbers import amount, per_cent, three_figures
+
+MOST_NEVER, HALF = 0.05, 0.5
+"""Money is judged good where at most so large a share of the draws never pays back, bad where more than half never do;
+between them the inputs are not known well enough."""
 
 
 def computer_limits(results: ComputerResults) -> Iterator[Limit]:
-    """The limits of the configuration."""
-    yield wait_limit(results)
-    yield from money_limits(results)
+    """Speed, reliability, money: one sentence each, with the limits of the configuration."""
+    yield speed_limit(results)
+    yield reliability_limit(results)
+    yield money_limit(results)
 
 
-def wait_limit(results: ComputerResults) -> Limit:
+def speed_limit(results: ComputerResults) -> Limit:
     """The processor is as fast as the allowed waits need."""
     service = results.config.settings.service
     needed = results.sized.needed_op_s[service.discipline]
     return Limit(
-        f"the allowed waits need {needed:,.0f} op/s, and the processor does {service.speed_op_s:,.0f}",
+        f"speed: the allowed waits need {needed:,.0f} op/s, and the processor does {service.speed_op_s:,.0f}",
         results.sized.waits_allowed,
     )
 
 
-def money_limits(results: ComputerResults) -> Iterator[Limit]:
-    """Losses and pay-back, where the configuration limits them."""
-    asked, upkeep = results.config.settings.acceptance, results.config.settings.reliability
-    if asked.loss_per_year is not None:
-        loss = upkeep.loss_per_year()
-        yield Limit(
-            f"failures lose {loss:.4g} a year, at most {asked.loss_per_year:g} asked", loss <= asked.loss_per_year
-        )
-    if asked.pay_back_years is not None:
-        yield pay_back_limit(results, asked.pay_back_years)
+def reliability_limit(results: ComputerResults) -> Limit:
+    """A computer is ready as long as it must be, and failures cost no more than is allowed."""
+    most, upkeep = results.config.settings.acceptance.loss_per_year, results.config.settings.reliability
+    currency, loss, required = results.config.case.prices.currency, upkeep.loss_per_year(), upkeep.required_availability
+    ready, computers = results.reliable.duplex_availability, "of two computers one is"
+    if upkeep.structure == "single":
+        ready, computers = results.reliable.single_availability, "the computer is"
+    allowed = "" if most is None else f", at most {amount(most)} asked"
+    return Limit(
+        f"reliability: {computers} ready in {per_cent_of_time(ready)} of the time, {per_cent_of_time(required)} "
+        f"required; failures lose {amount(loss)} {currency} a year{allowed}",
+        ready >= required and (most is None or loss <= most),
+    )
 
 
-def pay_back_limit(results: ComputerResults, most_years: float) -> Limit:
-    """The pay-back, in 95 of 100 draws where inputs are uncertain."""
+def per_cent_of_time(share: float) -> str:
+    """A share near 1, to a thousandth of a per cent."""
+    return f"{100.0 * share:.3f} %"
+
+
+def money_limit(results: ComputerResults) -> Limit:
+    """The investment pays back, in time where that is asked for, and in 95 of 100 draws where inputs are uncertain."""
+    most, currency = results.config.settings.acceptance.pay_back_years, results.config.case.prices.currency
     if results.money is None:
-        years = results.economics.pay_back.years
-        told = "never" if years is None else f"in {years:.3g} years"
-        return Limit(f"it pays back {told}, at most {most_years:g} asked", years is not None and years <= most_years)
-    figures = next(each for each in results.money.figures if each.name == "pay_back_years")
-    slow = figures.quantiles[-1]
-    told = "never" if math.isinf(slow.value) else f"{slow.value:.3g}"
-    kept = True if slow.high95 <= most_years else False if slow.low95 > most_years else None
-    return Limit(f"95 of 100 draws pay back in {told} years at most, {most_years:g} asked", kept)
+        effect, years = results.economics.effect_per_year, results.economics.pay_back.years
+        told = "never pays back" if years is None else f"pays back in {three_figures(years)} years"
+        kept = years is not None and (most is None or years <= most)
+        return Limit(f"money: it brings {amount(effect)} {currency} a year and {told}{asked_years(most)}", kept)
+    low, middle, high = (each.value for each in quantiles_of(results.money, "effect_per_year"))
+    _, half, slow = quantiles_of(results.money, "pay_back_years")
+    never = next(each.never for each in results.money.figures if each.name == "pay_back_years")
+    return Limit(
+        f"money: it brings {amount(middle)} {currency} a year in the median, {amount(low)} to {amount(high)} in 90 of "
+        f"100 draws; it pays back {when(half)} in the median and never in {shown_value(never, per_cent)} of {never.n} "
+        f"draws; 95 of 100 pay back {when(slow)}{asked_years(most)}",
+        pays_back(never) if most is None else in_time(slow, most),
+    )
+
+
+def quantiles_of(money: UncertainMoney, name: str) -> tuple[Interval, ...]:
+    """5, 50 and 95 % of an output."""
+    return next(each.quantiles for each in money.figures if each.name == name)
+
+
+def when(years: Interval) -> str:
+    """A pay-back time in words; that of the slowest draws may never come."""
+    return "never" if math.isinf(years.value) else f"within {three_figures(years.value)} years"
+
+
+def asked_years(most: float | None) -> str:
+    """The limit of the pay-back in words."""
+    return "" if most is None else f", at most {most:g} years asked"
+
+
+def pays_back(never: Interval) -> bool | None:
+    """By the share of the draws that never pay back."""
+    return True if never.high95 <= MOST_NEVER else False if never.low95 > HALF else None
+
+
+def in_time(slow: Interval, most_years: float) -> bool | None:
+    """By the time in which 95 of 100 draws pay back."""
+    return True if slow.high95 <= most_years else False if slow.low95 > most_years else None

@@ -17,6 +17,7 @@ from synth.computer.economics.uncertainty.ranges import Range
 from synth.computer.long_work import long_work
 from synth.computer.settings import ComputerSettings
 from synth.computer.sizing.task import TaskMix
+from synth.computer.unpriced import unpriced
 from synth.frame.command import Head
 from synth.frame.input_error import InputError
 from synth.frame.settings.file_fault import in_file
@@ -90,7 +91,7 @@ def head_of(settings: ComputerSettings, hump: HumpEntry, figures: HumpFigures, r
         canonical_json=canonical_json(tree).decode(),
         parameters=parameters,
         output=settings.output,
-        warnings=(*range_warnings(parameters), *long_work(settings, ranges)),
+        warnings=(*range_warnings(parameters), *long_work(settings, ranges), *unpriced(settings)),
         reads=figures.reads,
     )
 

@@ -11,17 +11,17 @@ from synth.computer.computer_results import ComputerResults, UncertainMoney
 from synth.computer.economics.savings import Item, total
 from synth.computer.economics.uncertainty.monte_carlo import OutputFigures
 from synth.computer.economics.uncertainty.sobol import SobolIndex
-from synth.computer.shown_sizing import FIGURES
+from synth.computer.unpriced import unpriced
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table, shown_value
 from synth.frame.interval import Interval
-from synth.frame.printed_numbers import decimals, per_cent, six_figures, three_figures, whole
+from synth.frame.printed_numbers import amount, decimals, per_cent
 
 
 def or_never(value: float) -> str:
-    """Three figures; a time that never comes has none."""
+    """Three figures of an amount; a time that never comes has none."""
     if math.isinf(value):
         return "never" if value > 0.0 else "at once"
-    return three_figures(value)
+    return amount(value)
 
 
 ITEMS = (
@@ -29,7 +29,12 @@ ITEMS = (
     Column("quantity", "quantity"),
     Column("unit", "unit", words=True),
     Column("price", "price"),
-    Column("amount", "amount", form=whole),
+    Column("amount", "amount", form=amount),
+)
+FIGURES = (
+    Column("figure", "figure", words=True),
+    Column("value", "value", form=amount),
+    Column("unit", "unit", words=True),
 )
 WORK = (Column("figure", "of a day", words=True), Column("today", "today"), Column("new", "with the new control"))
 DRAWS = (
@@ -37,7 +42,7 @@ DRAWS = (
     Column("q05", "5 %", form=or_never),
     Column("q50", "median", form=or_never),
     Column("q95", "95 %", form=or_never),
-    Column("mean", "mean"),
+    Column("mean", "mean", form=amount),
     Column("never", "never", form=per_cent),
     Column("draws", "draws"),
 )
@@ -57,14 +62,19 @@ SOBOL = (
 
 
 def money(found: ComputerResults) -> Iterator[Exhibit]:
-    """Savings item by item, the pay-back, and what uncertain inputs leave open."""
+    """What follows for the money, what uncertain inputs leave open, then savings item by item."""
     economics = found.economics
+    yield effect(found)
+    for warning in unpriced(found.config.settings):
+        yield Sentence(f"Warning: {warning}.")
+    if found.money is not None:
+        yield from over_draws(found.money)
+    yield Table("economics", "Figures of the economics", FIGURES, list(figure_rows(found)))
     yield from items("savings", "Savings of a year", economics.savings)
     yield from items("capital", "Capital that is set free", economics.capital)
-    yield from figures(found)
     yield Table("work", "The hump today and with the new control", WORK, list(work_rows(found)))
     if found.money is not None:
-        yield from uncertain(found, found.money)
+        yield from by_input(found, found.money)
 
 
 def items(name: str, title: str, held: Sequence[Item]) -> Iterator[Exhibit]:
@@ -74,25 +84,26 @@ def items(name: str, title: str, held: Sequence[Item]) -> Iterator[Exhibit]:
     yield Table(name, title, ITEMS, rows)
 
 
-def figures(found: ComputerResults) -> Iterator[Exhibit]:
-    """What follows for the money."""
+def effect(found: ComputerResults) -> Sentence:
+    """What follows for the money at the configured values."""
     economics, settings = found.economics, found.config.settings
-    currency, rate = settings.prices.currency, economics.internal_rate
-    units = {"pay_back_rate_per_year": "1/a", "pay_back_years": "a", "discounted_pay_back_years": "a"}
-    rows = [
-        {"figure": name.replace("_", " "), "value": value, "unit": units.get(name, currency)}
-        for name, value in economics.figures().items()
-    ]
-    rows.append({"figure": "internal rate", "value": rate.per_year, "unit": "1/a"})
-    yield Table("economics", "Figures of the economics", FIGURES, rows)
-    loss = settings.reliability.loss_per_year()
-    yield Sentence(
-        f"Effect of a year: {whole(economics.effect_per_year)} {currency}, losses by failures of {whole(loss)} "
+    currency, loss = settings.prices.currency, settings.reliability.loss_per_year()
+    return Sentence(
+        f"Effect of a year: {amount(economics.effect_per_year)} {currency}, losses by failures of {amount(loss)} "
         f"{currency} taken off. {economics.pay_back.statement} Net present value over {settings.terms.years} years: "
-        f"{whole(economics.net_present_value)} {currency}. {rate.statement}",
+        f"{amount(economics.net_present_value)} {currency}. {economics.internal_rate.statement}",
         {"failure_loss_per_year": loss},
         brief=True,
     )
+
+
+def figure_rows(found: ComputerResults) -> Iterator[Row]:
+    """The figures of the economics."""
+    economics, currency = found.economics, found.config.settings.prices.currency
+    units = {"pay_back_rate_per_year": "1/a", "pay_back_years": "a", "discounted_pay_back_years": "a"}
+    for name, value in economics.figures().items():
+        yield {"figure": name.replace("_", " "), "value": value, "unit": units.get(name, currency)}
+    yield {"figure": "internal rate", "value": economics.internal_rate.per_year, "unit": "1/a"}
 
 
 def work_rows(found: ComputerResults) -> Iterator[Row]:
@@ -102,17 +113,20 @@ def work_rows(found: ComputerResults) -> Iterator[Row]:
         yield {"figure": name.replace("_", " "), "today": value, "new": new[name]}
 
 
-def uncertain(found: ComputerResults, over: UncertainMoney) -> Iterator[Exhibit]:
-    """Quantiles, impossible draws, shares of variance."""
-    case = found.config.case
+def over_draws(over: UncertainMoney) -> Iterator[Exhibit]:
+    """Quantiles, and draws that are impossible."""
     impossible = over.draws.impossible
     yield Table("draws", "Over all uncertain inputs", DRAWS, [draw_row(each) for each in over.figures], brief=True)
     yield Sentence(
         f"{over.draws.n} draws. Of these are impossible: {shown_value(impossible, per_cent)}, mostly "
-        " by overload of the hump; they are left out. Brackets: 95 % intervals of the draws.",
+        "by overload of the hump; they are left out. Brackets: 95 % intervals of the draws.",
         {"draws": over.draws.n, "impossible": impossible,
          "why_impossible": [{"sentence": text, "draws": n} for text, n in over.draws.found.faults]},
     )  # fmt: skip
+
+
+def by_input(found: ComputerResults, over: UncertainMoney) -> Iterator[Exhibit]:
+    """Traffic, each input alone, and shares of variance."""
     yield Chart(
         "computer-traffic",
         "Pay-back over traffic",
@@ -125,11 +139,11 @@ def uncertain(found: ComputerResults, over: UncertainMoney) -> Iterator[Exhibit]
         "Which input matters",
         "Each uncertain input alone goes from its 5 % to its 95 % quantile. The widest bar is the number to find out "
         "first.",
-        lambda: _pictures().tornado_bars(over.tornado, case.prices.currency),
+        lambda: _pictures().tornado_bars(over.tornado, found.config.case.prices.currency),
     )
     middle = {"tornado_at_medians": over.tornado.at_medians}
     yield Table("tornado", f"{over.tornado.output.replace('_', ' ')}, each input alone", BARS, bars_of(over))
-    yield Sentence(f"With every input at its median: {six_figures(over.tornado.at_medians)}.", middle)
+    yield Sentence(f"With every input at its median: {amount(over.tornado.at_medians)}.", middle)
     if over.sobol:
         ranked = sorted(over.sobol, key=lambda index: (index.output, -index.total))
         title = "Share of the variance by input (Sobol indices, 95 % intervals)"

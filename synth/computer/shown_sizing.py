@@ -11,7 +11,7 @@ from synth.computer.sizing.inputs_outputs import source_channels, total_channels
 from synth.computer.sizing.memory_need import Memory
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
-from synth.frame.printed_numbers import per_cent, six_figures, whole
+from synth.frame.printed_numbers import amount, per_cent, six_figures, whole
 
 WAITS = (
     Column("task", "task", words=True),
@@ -49,21 +49,22 @@ CHANNELS = (
     Column("digital_out", "digital out"),
     Column("analog_out", "analog out"),
 )
-FIGURES = (
+RELIABILITY = (
     Column("figure", "figure", words=True),
     Column("value", "value", form=six_figures),
+    Column("amount", "money", form=amount),
     Column("unit", "unit", words=True),
 )
 
 
 def sizing(found: ComputerResults) -> Iterator[Exhibit]:
-    """Waits, speeds, controllers, channels, words and memory."""
+    """Controllers of today, then the computer of the 1970s: waits, speeds, channels, words and memory."""
     sized, service = found.sized, found.config.settings.service
+    rows = [controller_row(each) for each in sized.controllers]
+    yield Table("controllers", "Controllers at the track", CONTROLLERS, rows, brief=True, bad=is_late)
     title = f"Waits at {service.speed_op_s:,.0f} op/s; long: above {service.long_wait_s:g} s"
     yield Table("waits", title, WAITS, [wait_row(each) for each in sized.waits], brief=True)
     yield Table("needed_speed", "Speed that is needed", SPEEDS, list(speed_rows(found)), brief=True)
-    rows = [controller_row(each) for each in sized.controllers]
-    yield Table("controllers", "Controllers at the track", CONTROLLERS, rows, brief=True, bad=is_late)
     yield Table("channels", "Inputs and outputs", CHANNELS, list(channel_rows(sized)))
     yield memory_line(sized)
     yield Chart(
@@ -148,7 +149,7 @@ def memory_line(sized: SizedComputer) -> Sentence:
 
 def reliability(found: ComputerResults) -> Iterator[Exhibit]:
     """One computer and two."""
-    yield Table("reliability", "Reliability", FIGURES, list(reliability_rows(found)))
+    yield Table("reliability", "Reliability", RELIABILITY, list(reliability_rows(found)))
     if found.reliable.why_none:
         yield Sentence(found.reliable.why_none)
     yield Chart(
@@ -177,7 +178,7 @@ def reliability_rows(found: ComputerResults) -> Iterator[Row]:
         ("best interval of one, by the calendar", ready.best_calendar_h, "h"),
         (f"longest period of two for {required:g}", ready.longest_period_h, "h"),
     ):
-        yield {"figure": figure, "value": value, "unit": unit}
+        yield {"figure": figure, "amount" if unit == money else "value": value, "unit": unit}
 
 
 def _pictures() -> Any:

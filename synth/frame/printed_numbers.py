@@ -48,6 +48,17 @@ def three_figures(value: float) -> str:
     return f"{value:,.0f}" if abs(value) >= 1000.0 else f"{value:.3g}"
 
 
+def amount(value: float) -> str:
+    """Three figures of an amount of money: 312, 9.12k, 1.92M."""
+    if not math.isfinite(value):
+        return three_figures(value)
+    rounded = float(f"{value:.3g}")
+    for factor, letter in ((1e6, "M"), (1e3, "k")):
+        if abs(rounded) >= factor:
+            return f"{three_figures(rounded / factor)}{letter}"
+    return f"{rounded:g}"
+
+
 def whole(value: float) -> str:
     """A number without decimals, its thousands apart."""
     return f"{value:,.0f}" if math.isfinite(value) else three_figures(value)

@@ -6,18 +6,16 @@ Numbers that the passes do not tell stay as they were, and stay assumed.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, Final
+from typing import Final
 
 from synth.frame.settings.toml_file import Tree
-from synth.frame.settings.toml_text import toml_text
 from synth.logs import unknowns as asked
-from synth.logs.config_source import ConfigSource
 from synth.logs.configured_numbers import configured_numbers
 from synth.logs.estimate import Estimate
 from synth.logs.identifiability import Finding, findings_of
+from synth.retarder.configuration.config_source import ConfigSource
 from synth.retarder.configuration.plant_settings import DEFAULT_CUTS
 
-TYPES: Final = "types"
 DIGITS: Final = 6
 
 
@@ -63,13 +61,3 @@ def with_numbers(
 def rounded(value: float) -> float:
     """To so many digits as nobody measures."""
     return float(f"{value:.{DIGITS}g}")
-
-
-def config_files(source: ConfigSource, name: str) -> dict[str, bytes]:
-    """The files that tell `source`, by their paths in the folder of the configuration `name`."""
-    tree: dict[str, Any] = dict(source.tree)
-    if source.library.own:
-        tree["library"] = [f"{TYPES}/"]
-    files = {f"{TYPES}/{each.kind.folder}/{each.name}.toml": each.text.encode() for each in source.library.own}
-    head = f"# {source.place[:1].upper()}{source.place[1:]}.\n"
-    return {**files, name: (head + toml_text(tree)).encode("utf-8")}

@@ -12,12 +12,11 @@ from synth.frame.exhibits import Chart, Column, Exhibit, File, Row, Sentence, Ta
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import four_figures
 from synth.logs import unknowns as asked
-from synth.logs.config_source import ConfigSource
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.identifiability import Finding
-from synth.logs.identified_config import config_files
 from synth.logs.identify import Identified
 from synth.logs.residual_tests import MOTION, ResidualTest
+from synth.retarder.configuration.config_source import ConfigSource
 from tuning_tables.pass_log.path_resets import path_resets_m
 
 CONFIG: Final = "config.toml"
@@ -215,7 +214,7 @@ def verdict(test: ResidualTest, is_wrong: bool) -> str:
 def files(identified: ConfigSource) -> Iterator[Exhibit]:
     """The configuration with the numbers, and the own types that it names."""
     yield Sentence(f"{CONFIG} is the configuration with the numbers that are told, each with its origin.")
-    for name, content in config_files(identified, CONFIG).items():
+    for name, content in identified.files(CONFIG).items():
         yield File(name, content)
 
 

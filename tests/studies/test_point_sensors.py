@@ -11,7 +11,7 @@ import pytest
 from plant_models import PointSensors
 from scripts.studies.point_sensors.fault_losses import fault_rows
 from scripts.studies.point_sensors.findings import PointSensorWorth
-from scripts.studies.point_sensors.layouts import equal_sections
+from scripts.studies.point_sensors.layouts import equal_sections, planned
 from scripts.studies.point_sensors.rows import FaultRow, ManyRow, SensorRow
 from scripts.studies.point_sensors.sensor_table import AXLES, SensorTable, tabulated, unfinished_share
 from scripts.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
@@ -21,7 +21,7 @@ from synth.frame.input_error import InputError
 from synth.problem.resolution import Resolution
 from synth.retarder.sensors.candidate_places import LayoutCase, candidate_places
 from synth.retarder.sensors.layout import equal_layout, with_layout
-from synth.retarder.sensors.layout_plan import LayoutProblem, best_places, found_layouts
+from synth.retarder.sensors.layout_plan import LayoutProblem
 from synth.retarder.sensors.tuned_passages import PassageChains, TunedPassages, passage_chains, tuned_passages
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample
@@ -124,14 +124,14 @@ def test_the_unfinished_share_is_of_the_passages_heard() -> None:
 def test_planned_layouts_can_be_tables_and_beat_equal_sections_by_the_cost_searched(site: Site, axles: str) -> None:
     kind = PointSensors((0.0,), axles=AXLES[axles])
     problem = LayoutProblem((LayoutCase(site.plant, (site.aim,)),), kind, COARSE)
-    (places,) = found_layouts(problem, [3])
+    (places,) = planned(problem, [3])
     assert places[0] < 0.0
     assert list(places) == sorted(places)
     every = candidate_places(problem.cases[0], kind, 6.0)
     (equal,) = equal_sections(problem, [3])
-    planned, equally = every.mean_costs([places, equal])
-    assert planned < equally
-    assert found_layouts(problem, []) == best_places(problem, []) == ()
+    found, equally = every.mean_costs([places, equal])
+    assert found < equally
+    assert planned(problem, []) == ()
 
 
 def test_sites_are_named() -> None:

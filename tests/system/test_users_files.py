@@ -79,7 +79,7 @@ class Writing:
 DIRECTORIES = (
     Writing(("tune", "yard.toml"), "report.html", quick=True),
     Writing(("sensors", "tune", "points.toml"), "report.html"),
-    Writing(("sensors", "plan", "yard.toml"), "sensors.toml"),
+    Writing(("sensors", "plan", "yard.toml"), "sensors-by-rule.toml"),
     Writing(("permissions", "yard.toml"), "summary.json"),
     Writing(("sensitivity", "yard.toml", "--table", "book.h5"), "sheets/overall.csv"),
     Writing(("sweep", "run", "sweep.toml"), "config.toml"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from synth.retarder.sensors.layout import equal_layout, rule_layout
-from synth.retarder.sensors.layout_plan import LayoutProblem
+from synth.retarder.sensors.layout_plan import LayoutProblem, plan_layouts, plan_passes
 
 Places = tuple[float, ...]
 """Of the deciding sensors, m from the entrance, rising."""
@@ -17,6 +17,14 @@ Layouts = Callable[[LayoutProblem, Sequence[int]], tuple[Places, ...]]
 def equal_sections(problem: LayoutProblem, deciding: Sequence[int]) -> tuple[Places, ...]:
     """One ahead as the rule has it, the others in equal sections from the entrance on."""
     return tuple(equal_layout(problem.first_m, problem.exit_m, count) for count in deciding)
+
+
+def planned(problem: LayoutProblem, deciding: Sequence[int]) -> tuple[Places, ...]:
+    """The best found, as `sensors plan` has it."""
+    if not deciding:
+        return ()
+    passes = plan_passes(seed=1, count=1000)
+    return tuple(each.deciding_m for each in plan_layouts(problem, deciding, passes))
 
 
 def by_rule(problem: LayoutProblem) -> Places:

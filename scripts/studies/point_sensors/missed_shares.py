@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 from plant_models import PointSensors
+from scripts.studies.point_sensors.layouts import planned
 from scripts.studies.point_sensors.rows import MissedRow
 from scripts.studies.point_sensors.sensor_table import AXLES, tabulated
 from scripts.studies.point_sensors.sites import Site
 from scripts.studies.point_sensors.worth import tuned_at
 from synth.problem.resolution import Resolution
 from synth.retarder.sensors.candidate_places import LayoutCase
-from synth.retarder.sensors.layout_plan import LayoutProblem, best_places
+from synth.retarder.sensors.layout_plan import LayoutProblem
 from synth.simulation.exit_statistics import ExitStatistics, exit_statistics
 from synth.simulation.passage_controller import of_table
 from synth.simulation.random_passes import RandomPasses
@@ -27,7 +28,7 @@ def missed_row(
     """
     kind = replace(PointSensors((0.0,), axles=AXLES[axles]), missed_share=share)
     problem = LayoutProblem((LayoutCase(site.plant, (site.aim,)),), kind, resolution)
-    (places,) = best_places(problem, [sensors - 1])
+    (places,) = planned(problem, [sensors - 1])
     made = tabulated(site, tuned_at(problem, places))
     controller, draws = of_table(made.table, tracking=True), made.loop.draws(passes)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from plant_models import PointSensors
-from scripts.studies.point_sensors.layouts import Layouts, Places, by_rule, equal_sections
+from scripts.studies.point_sensors.layouts import Layouts, Places, by_rule, equal_sections, planned
 from scripts.studies.point_sensors.rows import RadarRow, SensorRow, Told
 from scripts.studies.point_sensors.sensor_table import AXLES, tabulated, unfinished_share
 from scripts.studies.point_sensors.sites import Site
@@ -15,8 +15,8 @@ from scripts.studies.tuned_table import tuned_table
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.retarder.rounded_table import predict
 from synth.retarder.sensors.candidate_places import LayoutCase
-from synth.retarder.sensors.layout_plan import LayoutProblem, best_places
-from synth.retarder.sensors.tuned_passages import TunedPassages, passage_chains
+from synth.retarder.sensors.layout_plan import LayoutProblem
+from synth.retarder.sensors.tuned_passages import TunedPassages, passage_chains, tuned_passages
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
@@ -24,6 +24,7 @@ from synth.simulation.passage_sample import PassageSample
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.chain.chain import check_chain
+from synth.solver.chain.sensor_passages import with_point_sensors
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ def radar_row(site: Site, passes: RandomPasses) -> tuple[RadarRow, ExitSample]:
 
 
 def sensor_rows(
-    given: Compared, axles: str, sensors: Sequence[int], to_plan: Sequence[int], plan: Layouts = best_places
+    given: Compared, axles: str, sensors: Sequence[int], to_plan: Sequence[int], plan: Layouts = planned
 ) -> Iterator[MadeLayout]:
     """A row for every layout; `sensors` are counted with the one behind the exit, which decides nothing.
 
@@ -88,8 +89,10 @@ def sensor_rows(
 
 def tuned_at(problem: LayoutProblem, places: Places) -> TunedPassages:
     """The only table of a layout for one case and one aim."""
-    ((tuned,),) = problem.judged(places).tuned
-    return tuned
+    (case,), sensors = problem.cases, problem.placed(places)
+    chains = passage_chains(with_point_sensors(case.plant, sensors), sensors, problem.resolution)
+    (aim,) = case.aims
+    return tuned_passages(chains, aim)
 
 
 def run_of(given: Compared, tuned: TunedPassages) -> PassageSample:

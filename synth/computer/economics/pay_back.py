@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from plant_models.errors import require_between
+from synth.frame.printed_numbers import amount
 
 TRAPEZNIKOV_INTEREST_PER_YEAR = 0.25
 """Simple interest a year on what is invested, in the formula of the source."""
@@ -54,8 +55,8 @@ def pay_back(
         return PayBack(
             None,
             rate,
-            f"It never pays back: the effect is {effect_per_year:.6g} a year, and {investment:.6g} at "
-            f"{interest_per_year:.4g} a year asks for more than {needed:.6g}.",
+            f"It never pays back: the effect is {amount(effect_per_year)} a year, and {amount(investment)} at "
+            f"{interest_per_year:.4g} a year asks for more than {amount(needed)}.",
         )
     return PayBack(1.0 / rate, rate, f"It pays back in {1.0 / rate:.3g} years.")
 
@@ -67,5 +68,5 @@ def without_investment(investment: float, effect_per_year: float) -> PayBack:
     return PayBack(
         None,
         float("-inf"),
-        f"It never pays back: it costs {-investment:.6g} less, but {-effect_per_year:.6g} more each year.",
+        f"It never pays back: it costs {amount(-investment)} less, but {amount(-effect_per_year)} more each year.",
     )

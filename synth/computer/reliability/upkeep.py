@@ -42,8 +42,13 @@ class Upkeep(Section):
         0.05, "1", 0.0, 1.0, "share of failures that hit both computers at once", f"{JUDGEMENT}: 0.01 to 0.1 are usual"
     )
     required_availability: float = setting(
-        0.9999, "1", 0.01, 0.999999, "availability that two computers must keep", f"{JUDGEMENT}: an hour in a year"
-    )
+        0.9999,
+        "1",
+        0.01,
+        0.999999,
+        "share of the time in which a computer must be ready",
+        f"{JUDGEMENT}: an hour in a year",
+    )  # fmt: skip
     unnoticed_per_h: float = setting(
         5000.0, "currency/h", 0.0, 1e12, "loss of an hour in which nobody knows of the failure",
         f"{JUDGEMENT}: between a first and a second position that stay released (study control-computer)",

@@ -11,12 +11,12 @@ import numpy as np
 
 from plant_models import Plant, PlantError
 from synth.frame.input_error import InputError
-from synth.logs.config_source import ConfigSource
 from synth.logs.estimate import Estimate
 from synth.logs.holm import rejected
 from synth.logs.identified_config import with_numbers
 from synth.logs.retune.tuned_books import Case, plants_of
 from synth.logs.unknowns import values_at
+from synth.retarder.configuration.config_source import ConfigSource
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.controllers import TableController
 from synth.simulation.replicates import student_quantile

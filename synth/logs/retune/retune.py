@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 
-from synth.logs.config_source import ConfigSource
 from synth.logs.estimate import Estimate, estimate
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.identified_config import identified
 from synth.logs.retune.predicted_gain import CaseGain, GainOrder, better, likely_plants, predicted_gains
 from synth.logs.retune.tuned_books import Case, cases_of, class_setups, finished, tuned_tables
 from synth.logs.unknowns import unknowns_of
+from synth.retarder.configuration.config_source import ConfigSource
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.failed_case import FailedCase
 from synth.retarder.watcher import Teller, Watcher

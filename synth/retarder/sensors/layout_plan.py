@@ -1,11 +1,13 @@
-"""How many point sensors, and where: the best layout found for each number, judged by the tables that it gives."""
+"""How many point sensors, and where: the best layout found for each number, judged by the tables that it gives.
+
+What is chosen, is chosen on passes of its own; what is told of it, is of others, which nothing else uses.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -13,9 +15,10 @@ from plant_models import PointSensors
 from synth.problem.resolution import Resolution
 from synth.retarder.sensors.candidate_places import LayoutCase, candidate_places
 from synth.retarder.sensors.layout import LAST_SECTION_M, equal_layout, first_sensor_m, with_layout
-from synth.retarder.sensors.layout_search import LayoutSearch, Tell, silent
-from synth.retarder.sensors.tuned_passages import TunedPassages, passage_chains, tuned_passages
-from synth.solver.chain.sensor_passages import with_point_sensors
+from synth.retarder.sensors.layout_search import ForEach, LayoutSearch
+from synth.retarder.sensors.layout_tables import ExitErrors, LayoutTable, errors_of, polished, solutions
+from synth.simulation.random_passes import RandomPasses
+from synth.simulation.stratified_passes import stratified_passes
 
 PLACE_STEP_M = 0.5
 """Sensors may stand at multiples of it from the entrance: about the distance of the sleepers."""
@@ -23,37 +26,55 @@ PLACE_STEP_M = 0.5
 FARTHEST_AHEAD = 1.5
 """The first sensor may stand so many times as far ahead as the rule asks for."""
 
+NEAR_BEST = 1.5
+"""Equal sections that cost at most so many times as much as the layout found are compared with it by their tables."""
+
+CHOOSING_PASSES = 2_000
+FIRST_CHOOSING = 1_000_000
+"""Number of the first pass to choose on: no figure is told from so many passes."""
+
+Tell = Callable[[str], None]
+"""Is told a sentence when a step has ended."""
+
+
+def silent(_sentence: str) -> None:
+    """Nobody wants to know."""
+
+
+@dataclass(frozen=True)
+class PlanPasses:
+    """Passes to choose on, and others to tell figures from."""
+
+    choosing: RandomPasses
+    final: RandomPasses
+
+
+def plan_passes(seed: int, count: int) -> PlanPasses:
+    """`count` passes for figures, the first of the row of `seed`, and those to choose on, far behind them."""
+    return PlanPasses(stratified_passes(seed, FIRST_CHOOSING, CHOOSING_PASSES), stratified_passes(seed, 0, count))
+
 
 @dataclass(frozen=True)
 class JudgedLayout:
-    """Places of the deciding sensors, and the tables that they give in every case and for every aim, in their order."""
+    """Places of the deciding sensors, and their tables for every case and aim, in their order.
+
+    `chosen_by_m_s`: rms over all tables on the passes to choose on; `errors`: on the final ones.
+    """
 
     deciding_m: tuple[float, ...]
-    tuned: tuple[tuple[TunedPassages, ...], ...]
-
-    @property
-    def rms_m_s(self) -> float:
-        """Root of the mean predicted square error over all cases and aims."""
-        squares = [each.rms_m_s**2 for case in self.tuned for each in case]
-        return float(np.sqrt(np.mean(squares)))
-
-
-@dataclass(frozen=True)
-class PlannedLayout:
-    """For one number of sensors: the better of the layout found and of equal sections, and equal sections."""
-
-    best: JudgedLayout
-    equal: JudgedLayout
+    tables: tuple[LayoutTable, ...]
+    chosen_by_m_s: float
+    errors: ExitErrors
 
     @property
     def deciding(self) -> int:
         """Number of sensors that decide; one more stands behind the exit."""
-        return len(self.best.deciding_m)
+        return len(self.deciding_m)
 
 
 @dataclass(frozen=True)
 class LayoutProblem:
-    """What a layout is for: the cases, the sensors (all but their places), the grid that tables are made on."""
+    """What a layout is for: the cases, the sensors (all but their places), the grid that tables are tuned on."""
 
     cases: tuple[LayoutCase, ...]
     sensors: PointSensors
@@ -76,59 +97,93 @@ class LayoutProblem:
         """How far ahead of the entrance the first sensor may stand."""
         return float(PLACE_STEP_M * np.ceil(-FARTHEST_AHEAD * self.first_m / PLACE_STEP_M))
 
-    def judged(self, deciding_m: tuple[float, ...]) -> JudgedLayout:
-        """The tables of a layout in every case, tuned and predicted."""
-        return JudgedLayout(deciding_m, tuple(self._tuned(case, deciding_m) for case in self.cases))
+    def search(self, for_each: ForEach = map) -> LayoutSearch:
+        """The search over all places at which sensors may stand; `for_each` of the cases."""
+        places = np.arange(-self.farthest_m, self.exit_m - LAST_SECTION_M, PLACE_STEP_M)
+        cases = tuple(candidate_places(case, self.sensors, self.farthest_m) for case in self.cases)
+        return LayoutSearch(cases, tuple(places.tolist()), self.first_m, self.exit_m, for_each)
 
-    def _tuned(self, case: LayoutCase, deciding_m: tuple[float, ...]) -> tuple[TunedPassages, ...]:
-        sensors = with_layout(self.sensors, deciding_m, max(each.plant.exit_m for each in self.cases))
-        chains = passage_chains(with_point_sensors(case.plant, sensors), sensors, self.resolution)
-        return tuple(tuned_passages(chains, aim) for aim in case.aims)
+    def placed(self, deciding_m: tuple[float, ...]) -> PointSensors:
+        """The sensors of a layout, with the one behind the exit of the longest cut."""
+        return with_layout(self.sensors, deciding_m, max(case.plant.exit_m for case in self.cases))
+
+    def judged(self, candidates: Sequence[tuple[float, ...]], passes: PlanPasses) -> JudgedLayout:
+        """The best of the candidates, by their tables before any polish, with its polished tables."""
+        best, found = None, np.inf
+        for layout in candidates:
+            sensors = self.placed(layout)
+            made = [pair for case in self.cases for pair in solutions(case, sensors, self.resolution)]
+            rms_m_s = np.inf
+            if len(candidates) > 1:
+                rms_m_s = errors_of([table for table, _ in made], passes.choosing).rms.value
+            if best is None or rms_m_s < found:
+                best, found = (layout, made), rms_m_s
+        if best is None:
+            raise ValueError("layout plan: no layout is given")
+        layout, made = best
+        tables = tuple(polished(*pair) for pair in made)
+        chosen_by_m_s = errors_of(tables, passes.choosing).rms.value
+        return JudgedLayout(layout, tables, chosen_by_m_s, errors_of(tables, passes.final))
 
 
 def plan_layouts(
-    problem: LayoutProblem, counts: Sequence[int], threads: int = 1, tell: Tell = silent
-) -> tuple[PlannedLayout, ...]:
-    """The best layout found for each number of deciding sensors, never worse than equal sections by its prediction."""
-    asked = [*found_layouts(problem, counts, threads, tell)]
-    asked += [equal_layout(problem.first_m, problem.exit_m, count) for count in counts]
-    with ThreadPoolExecutor(max_workers=threads) as pool:
-        judged = list(pool.map(partial(told_judged, problem, tell), asked))
-    pairs = zip(judged[: len(counts)], judged[len(counts) :], strict=True)
-    return tuple(PlannedLayout(min(pair, key=lambda each: each.rms_m_s), pair[1]) for pair in pairs)
+    problem: LayoutProblem,
+    counts: Sequence[int],
+    passes: PlanPasses,
+    threads: int = 1,
+    tell: Tell = silent,
+) -> tuple[JudgedLayout, ...]:
+    """The best layout found for each number of deciding sensors; how many `threads` there are changes nothing of it."""
+    with ThreadPoolExecutor(max_workers=threads) as searching, ThreadPoolExecutor(max_workers=threads) as judging:
+        return ended(judging.submit(searched, problem, counts, passes, (searching, judging), tell))
+
+
+def ended(search: Future[dict[int, Future[JudgedLayout]]]) -> tuple[JudgedLayout, ...]:
+    """What `searched` has handed out, when all of it is judged, by number."""
+    return tuple(each.result() for _, each in sorted(search.result().items()))
+
+
+def searched(
+    problem: LayoutProblem,
+    counts: Sequence[int],
+    passes: PlanPasses,
+    pools: tuple[ThreadPoolExecutor, ThreadPoolExecutor],
+    tell: Tell,
+) -> dict[int, Future[JudgedLayout]]:
+    """Search on the first pool, and hand each layout to the second as soon as it is found.
+
+    What is judged, by number of deciding sensors. Equal sections are a candidate where they are near the best.
+    """
+    searching, judging = pools
+    judged: dict[int, Future[JudgedLayout]] = {}
+    search = problem.search(searching.map)
+    for layout in search.best_layouts(max(counts)):
+        count = len(layout)
+        tell(f"places of {count + 1} sensors found")
+        if count in counts:
+            candidates = [search.places_m(layout)]
+            cost, equal = search.costs([layout, search.equal(count)])
+            if layout != search.equal(count) and equal <= NEAR_BEST * cost:
+                candidates.append(equal_layout(problem.first_m, problem.exit_m, count))
+            judged[count] = judging.submit(told_judged, problem, candidates, passes, tell)
+    return judged
+
+
+def told_judged(
+    problem: LayoutProblem, candidates: Sequence[tuple[float, ...]], passes: PlanPasses, tell: Tell
+) -> JudgedLayout:
+    """`LayoutProblem.judged`, and told of."""
+    found = problem.judged(candidates, passes)
+    tell(f"{found.deciding + 1} sensors, the first at {found.deciding_m[0]:g} m: rms {found.errors.rms.value:.4f} m/s")
+    return found
 
 
 def steps_of_plan(counts: Sequence[int]) -> int:
     """How many steps `plan_layouts` tells of."""
-    return max(counts) + 2 * len(counts)
+    return max(counts) + len(counts)
 
 
-def told_judged(problem: LayoutProblem, tell: Tell, deciding_m: tuple[float, ...]) -> JudgedLayout:
-    """A layout judged, and told of."""
-    found = problem.judged(deciding_m)
-    tell(f"{len(deciding_m) + 1} sensors, the first at {deciding_m[0]:g} m: rms {found.rms_m_s:.4f} m/s predicted")
-    return found
-
-
-def best_places(problem: LayoutProblem, counts: Sequence[int]) -> tuple[tuple[float, ...], ...]:
-    """Places of the deciding sensors of the best plan for each of their numbers."""
-    return tuple(plan.best.deciding_m for plan in plan_layouts(problem, counts))
-
-
-def found_layouts(
-    problem: LayoutProblem, counts: Sequence[int], threads: int = 1, tell: Tell = silent
-) -> tuple[tuple[float, ...], ...]:
-    """Places of the deciding sensors, for each of their numbers, of least expected cost before any polish."""
-    if not counts:
-        return ()
-    places = np.arange(-problem.farthest_m, problem.exit_m - LAST_SECTION_M, PLACE_STEP_M)
-    cases = tuple(candidate_places(case, problem.sensors, problem.farthest_m) for case in problem.cases)
-    search = LayoutSearch(cases, tuple(places.tolist()), problem.first_m, problem.exit_m, threads)
-    found = search.best_layouts(counts, tell)
-    return tuple(search.places_m(found[count]) for count in counts)
-
-
-def fewest_for(plans: Sequence[PlannedLayout], rms_m_s: float) -> PlannedLayout | None:
-    """The plan of the fewest sensors whose predicted rms is at most `rms_m_s`; None if none is."""
-    enough = [plan for plan in plans if plan.best.rms_m_s <= rms_m_s]
+def fewest_for(plans: Sequence[JudgedLayout], rms_m_s: float) -> JudgedLayout | None:
+    """The plan of the fewest sensors whose rms is at most `rms_m_s` on the passes to choose on; None if none is."""
+    enough = [plan for plan in plans if plan.chosen_by_m_s <= rms_m_s]
     return min(enough, key=lambda plan: plan.deciding, default=None)

@@ -1,4 +1,4 @@
-"""A plan of point sensors beside what it is compared with: equal sections, the rule, and the radar."""
+"""A plan of point sensors beside what it is compared with: the rule, and the radar."""
 
 from __future__ import annotations
 
@@ -7,22 +7,26 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from plant_models import Plant
-from synth.problem.aim import Aim
-from synth.problem.resolution import Resolution, finer_for_check
+from synth.frame.interval import Interval
 from synth.retarder.case_result import PolicyMap
+from synth.retarder.configuration.config_source import ConfigSource
 from synth.retarder.sensors.anywhere import policy_anywhere
-from synth.retarder.sensors.candidate_places import LayoutCase
-from synth.retarder.sensors.layout import rule_layout, with_layout
-from synth.retarder.sensors.layout_plan import JudgedLayout, LayoutProblem, PlannedLayout, fewest_for, plan_layouts
-from synth.retarder.sensors.layout_search import Tell
-from synth.solver.chain.chain import check_chain, persistent_chain
-from synth.solver.resolved_density import resolved_density
-from synth.solver.tuned_lines import tuned_lines
-
-RADAR_DEGREE = 3
-"""Of the polynomial lines of the radar's tables."""
+from synth.retarder.sensors.layout import rule_layout
+from synth.retarder.sensors.layout_plan import (
+    JudgedLayout,
+    LayoutProblem,
+    PlanPasses,
+    Tell,
+    ended,
+    fewest_for,
+    plan_passes,
+    searched,
+    silent,
+    steps_of_plan,
+)
+from synth.retarder.sensors.layout_tables import ExitErrors, radar_errors
 
 NEAR_RADAR = 1.1
 """Times the radar's rms is wanted where no rms is asked for."""
@@ -30,73 +34,112 @@ NEAR_RADAR = 1.1
 
 @dataclass(frozen=True)
 class LayoutResults:
-    """Plans by number of sensors, rising; the layout by the rule; the radar's predicted rms by case and aim.
+    """Plans by number of sensors, rising; the layout by the rule; the radar's errors on the same final passes.
 
-    `labels`: of the cases. `anywhere`: what a regulator would command that could decide anywhere, in the first case for
-    its first aim. `wanted_rms_m_s`: as asked for, or as the radar has it. `chosen`: the plan of the fewest
-    sensors that reach it, None if none does.
+    `source`: the configuration that asked. `labels`: of the cases. `anywhere`: what a regulator would command that
+    could decide anywhere, in the first case for its first aim. `asked_rms_m_s`: None where 1.1 times the radar's is
+    wanted. `chosen`: the plan of the fewest sensors that reach what is wanted on the passes to choose on, None if none
+    does.
     """
 
+    source: ConfigSource
     problem: LayoutProblem
     labels: tuple[str, ...]
-    plans: tuple[PlannedLayout, ...]
+    plans: tuple[JudgedLayout, ...]
     rule: JudgedLayout
-    radar_rms_m_s: tuple[tuple[float, ...], ...]
+    radar: ExitErrors
     anywhere: PolicyMap
-    wanted_rms_m_s: float
-    chosen: PlannedLayout | None
+    asked_rms_m_s: float | None
+    chosen: JudgedLayout | None
 
     @property
-    def shown(self) -> PlannedLayout:
+    def shown(self) -> JudgedLayout:
         """The plan that is drawn: the chosen one, else the one of most sensors."""
         return self.chosen or self.plans[-1]
 
     @property
-    def radar_mean_rms_m_s(self) -> float:
-        """Root of the mean square over all cases and aims."""
-        return root_mean_square(self.radar_rms_m_s)
+    def wanted_rms_m_s(self) -> float:
+        """As asked for, or as the radar has it on the final passes."""
+        return NEAR_RADAR * self.radar.rms.value if self.asked_rms_m_s is None else self.asked_rms_m_s
+
+    def is_reached(self, layout: JudgedLayout) -> bool | None:
+        """Whether a layout has what is wanted on the final passes; None where its 95 % interval holds the limit.
+
+        The radar's rms is compared pass by pass.
+        """
+        told: Interval = layout.errors.rms
+        limit = self.wanted_rms_m_s
+        if self.asked_rms_m_s is None:
+            told, limit = layout.errors.over(self.radar), NEAR_RADAR
+        return True if told.high95 <= limit else False if told.low95 > limit else None
 
     def places_of(self, layout: JudgedLayout) -> tuple[float, ...]:
         """The places of all sensors of a layout, with the one behind the exit of the longest cut."""
-        exit_m = max(case.plant.exit_m for case in self.problem.cases)
-        return with_layout(self.problem.sensors, layout.deciding_m, exit_m).path_m
+        return self.problem.placed(layout.deciding_m).path_m
 
 
-def root_mean_square(rms_m_s: Sequence[Sequence[float]]) -> float:
-    """Of all cases and aims."""
-    return float(np.sqrt(np.mean([rms**2 for case in rms_m_s for rms in case])))
+@dataclass(frozen=True)
+class AskedLayouts:
+    """A problem of all cut classes and targets, the labels of the classes, and what is asked.
+
+    `source`: the configuration; `sensors`: numbers of them, the one behind the exit counted.
+    """
+
+    source: ConfigSource
+    problem: LayoutProblem
+    labels: tuple[str, ...]
+    sensors: tuple[int, ...]
+    rms_m_s: float | None
+    seed: int
+    passes: int
+
+    @property
+    def steps(self) -> int:
+        """How many steps `layout_results` tells of: those of the plan, the rule, the radar's classes."""
+        return steps_of_plan([number - 1 for number in self.sensors]) + 1 + len(self.labels)
 
 
-def layout_results(
-    problem: LayoutProblem,
-    labels: Sequence[str],
-    sensors: Sequence[int],
-    wanted_rms_m_s: float | None,
-    threads: int,
-    tell: Tell,
-) -> LayoutResults:
-    """Plans for each of these numbers of `sensors`, the one behind the exit counted, with what stands beside them."""
-    plans = plan_layouts(problem, [number - 1 for number in sensors], threads, tell)
+def layout_results(asked: AskedLayouts, threads: int, tell: Tell = silent) -> LayoutResults:
+    """Plans for each number of sensors, with what stands beside them.
+
+    The result does not depend on how many `threads` work.
+    """
+    problem, passes = asked.problem, plan_passes(asked.seed, asked.passes)
+    with ThreadPoolExecutor(max_workers=threads) as searching, ThreadPoolExecutor(max_workers=threads) as pool:
+        counts = [number - 1 for number in asked.sensors]
+        search = pool.submit(searched, problem, counts, passes, (searching, pool), tell)
+        radar = [pool.submit(told_radar, asked, number, passes, tell) for number in range(len(asked.labels))]
+        rule = pool.submit(judged_rule, problem, passes, tell)
+        anywhere = pool.submit(policy_anywhere, problem.cases[0], problem.sensors, problem.farthest_m)
+        plans = ended(search)
+        choosing, final = radar_on([each.result() for each in radar], passes)
+        wanted = NEAR_RADAR * choosing.rms.value if asked.rms_m_s is None else asked.rms_m_s
+        chosen = fewest_for(plans, wanted)
+        return LayoutResults(
+            asked.source, problem, asked.labels, plans, rule.result(), final, anywhere.result(), asked.rms_m_s, chosen
+        )
+
+
+def judged_rule(problem: LayoutProblem, passes: PlanPasses, tell: Tell) -> JudgedLayout:
+    """The layout by the rule, for the slowest aim and the longest cut."""
     slowest = min(aim.target_speed_m_s for case in problem.cases for aim in case.aims)
     longest = max(problem.cases, key=lambda case: case.plant.exit_m)
-    rule = problem.judged(rule_layout(longest.plant, problem.sensors, slowest))
-    with ThreadPoolExecutor(max_workers=threads) as pool:
-        radar = tuple(pool.map(lambda case: radar_rms(case, problem.resolution), problem.cases))
-    tell("the layout by the rule and the radar's tables tuned")
-    anywhere = policy_anywhere(problem.cases[0], problem.sensors, problem.farthest_m)
-    wanted = NEAR_RADAR * root_mean_square(radar) if wanted_rms_m_s is None else wanted_rms_m_s
-    chosen = fewest_for(plans, wanted)
-    return LayoutResults(problem, tuple(labels), plans, rule, radar, anywhere, wanted, chosen)
+    found = problem.judged([rule_layout(longest.plant, problem.sensors, slowest)], passes)
+    tell(f"{found.deciding + 1} sensors by the rule: rms {found.errors.rms.value:.4f} m/s")
+    return found
 
 
-def radar_rms(case: LayoutCase, resolution: Resolution) -> tuple[float, ...]:
-    """Predicted rms of the radar's table for every aim, its regulator as the plant has it."""
-    return tuple(radar_rms_for(case.plant, aim, resolution) for aim in case.aims)
+def told_radar(asked: AskedLayouts, number: int, passes: PlanPasses, tell: Tell) -> tuple[NDArray[np.float64], ...]:
+    """`radar_errors` of the case `number`, and told of."""
+    found = radar_errors(asked.problem.cases[number], asked.problem.resolution, (passes.choosing, passes.final))
+    tell(f"the radar's lines for {asked.labels[number]} found")
+    return found
 
 
-def radar_rms_for(plant: Plant, aim: Aim, resolution: Resolution) -> float:
-    """Predicted rms of the polished polynomial lines of one aim."""
-    lines = tuned_lines(persistent_chain(plant, resolution), aim, RADAR_DEGREE).best
-    check = check_chain(plant, finer_for_check(resolution))
-    density = resolved_density(check, lines.at(check.grid.path_m), aim.target_speed_m_s)
-    return density.rms_m_s(aim.target_speed_m_s)
+def radar_on(by_case: Sequence[tuple[NDArray[np.float64], ...]], passes: PlanPasses) -> tuple[ExitErrors, ExitErrors]:
+    """The radar's errors over all cases, on the passes to choose on and on the final ones."""
+    choosing, final = zip(*by_case, strict=True)
+    return (
+        ExitErrors(np.concatenate(choosing), passes.choosing.weight),
+        ExitErrors(np.concatenate(final), passes.final.weight),
+    )

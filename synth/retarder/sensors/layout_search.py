@@ -1,4 +1,4 @@
-"""The layout of least expected cost for a number of sensors: from two starts, descent place by place.
+"""The layout of least expected cost for a number of sensors: from the best of a few starts, descent place by place.
 
 The cost is compared on the coarse chains of `candidate_places`. Nothing proves that the descent ends in the best layout
 of all; for three sensors exhaustive search finds the same (tests).
@@ -6,8 +6,7 @@ of all; for three sensors exhaustive search finds the same (tests).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -17,38 +16,31 @@ from plant_models.point_sensors import SHORTEST_SECTION_M
 from synth.retarder.sensors.candidate_places import CandidatePlaces
 from synth.retarder.sensors.layout import equal_layout
 
-Tell = Callable[[str], None]
-"""Is told a sentence when a step has ended."""
-
 PlaceNumbers = tuple[int, ...]
-"""PlaceNumbers of the places at which deciding sensors stand, rising."""
+"""Numbers of the places at which deciding sensors stand, rising."""
 
-STRIDES = (6, 3, 1)
+ForEach = Callable[[Callable[[CandidatePlaces], list[float]], Sequence[CandidatePlaces]], Iterable[list[float]]]
+"""Calls a function for every case, in their order, as `map` does; that of a pool of threads does it at once."""
+
+STRIDES = (4, 2, 1)
 """By so many places a sensor is moved, the longest first."""
 
-STARTS_AHEAD = 2
-"""Descents from equal sections that may begin before the descent to fewer sensors has ended: they keep threads busy."""
-
-LEAST_GAIN = 1e-4
-"""A move must lower the cost by this part of it."""
-
-
-def silent(_sentence: str) -> None:
-    """Nobody wants to know."""
+LEAST_GAIN = 5e-3
+"""A round of moves of all sensors must lower the cost by this part of it, else it was the last with its stride."""
 
 
 @dataclass(frozen=True)
 class LayoutSearch:
     """Mean cost of layouts over `cases`, each worked out once; `path_m` (P,): where sensors may stand, rising.
 
-    `first_m`, `exit_m`: of equal layouts.
+    `first_m`, `exit_m`: of equal layouts. `for_each` changes no cost.
     """
 
     cases: tuple[CandidatePlaces, ...]
     path_m: tuple[float, ...]
     first_m: float
     exit_m: float
-    threads: int = 1
+    for_each: ForEach = map
     known: dict[PlaceNumbers, float] = field(default_factory=dict, compare=False, repr=False)
 
     def costs(self, layouts: Sequence[PlaceNumbers]) -> list[float]:
@@ -59,6 +51,10 @@ class LayoutSearch:
         for first in range(0, len(possible), self.together):
             self._solve(possible[first : first + self.together])
         return [self.known[each] for each in layouts]
+
+    def least(self, layouts: Sequence[PlaceNumbers]) -> PlaceNumbers:
+        """The layout of least cost; the first of several."""
+        return layouts[int(np.argmin(self.costs(layouts)))]
 
     @property
     def together(self) -> int:
@@ -73,25 +69,24 @@ class LayoutSearch:
         """The numbers of the places next to these."""
         return tuple(int(np.argmin(np.abs(np.array(self.path_m) - place))) for place in places_m)
 
-    def best_layouts(self, counts: Sequence[int], tell: Tell = silent) -> dict[int, PlaceNumbers]:
-        """The best layout found for each of the `counts` of deciding sensors; each number up to the most is told."""
-        found: dict[int, PlaceNumbers] = {}
-        equal: dict[int, Future[PlaceNumbers]] = {}
-        most = max(counts)
-        with ThreadPoolExecutor(max_workers=self.threads) as pool:
-            for count in range(1, most + 1):
-                for soon in range(len(equal) + 1, min(count + STARTS_AHEAD, most) + 1):
-                    start = self.numbers(equal_layout(self.first_m, self.exit_m, soon))
-                    equal[soon] = pool.submit(self.descended, start)
-                descents = [equal[count]]
-                if count > 1:
-                    inserted = self.inserted(found[count - 1])
-                    start = inserted[int(np.argmin(self.costs(inserted)))]
-                    descents.append(pool.submit(self.descended, start))
-                ends = [each.result() for each in descents]
-                found[count] = ends[int(np.argmin(self.costs(ends)))]
-                tell(f"places of {count + 1} sensors found")
-        return {count: found[count] for count in counts}
+    def best_layouts(self, most: int) -> Iterator[PlaceNumbers]:
+        """The best layout found of one deciding sensor, of two, and so on up to `most`.
+
+        A descent begins from the best layout that has one sensor more than the one before; and from equal sections
+        where these cost less.
+        """
+        found: PlaceNumbers = ()
+        for count in range(1, most + 1):
+            starts = [self.equal(count)]
+            if found:
+                grown = self.least([*self.inserted(found), *self.spread(found)])
+                starts = [grown] if self.least([grown, *starts]) == grown else [*starts, grown]
+            found = self.least([self.descended(each) for each in starts])
+            yield found
+
+    def equal(self, count: int) -> PlaceNumbers:
+        """The places next to equal sections."""
+        return self.numbers(equal_layout(self.first_m, self.exit_m, count))
 
     def inserted(self, layout: PlaceNumbers) -> list[PlaceNumbers]:
         """Layouts with one more sensor, in the middle of a section, before the first or behind the last."""
@@ -99,21 +94,27 @@ class LayoutSearch:
         new = {(a + b) // 2 for a, b in pairwise(ends)} - set(layout)
         return [tuple(sorted((*layout, number))) for number in sorted(new)]
 
+    def spread(self, layout: PlaceNumbers) -> Iterator[PlaceNumbers]:
+        """Layouts with one more sensor, spread as those of `layout` are: all of them, or all but the first."""
+        places = self.places_m(layout)
+        for kept in range(min(2, len(places) - 1)):
+            spread = places[kept:]
+            parts = np.linspace(0.0, len(spread) - 1.0, len(spread) + 1)
+            yield self.numbers((*places[:kept], *np.interp(parts, np.arange(len(spread)), spread)))
+
     def descended(self, layout: PlaceNumbers) -> PlaceNumbers:
-        """Sensors moved one by one while that pays."""
+        """Sensors moved one by one, round after round, while that pays."""
         best = layout
         for stride in STRIDES:
-            moved = True
-            while moved:
-                moved = False
+            before, gained = self.costs([best])[0], True
+            while gained:
                 for sensor in range(len(layout)):
                     tried = [best, *(shifted(best, sensor, by) for by in (-stride, stride))]
                     if any(each not in self.known for each in tried):
                         self.costs([*tried, *self.asked_next(best, sensor, stride)])
-                    costs = self.costs(tried)
-                    least = int(np.argmin(costs))
-                    if costs[least] < costs[0] - LEAST_GAIN * abs(costs[0]):
-                        best, moved = tried[least], True
+                    best = self.least(tried)
+                gained = self.known[best] < before * (1.0 - LEAST_GAIN)
+                before = self.known[best]
         return best
 
     def asked_next(self, layout: PlaceNumbers, sensor: int, stride: int) -> list[PlaceNumbers]:
@@ -136,7 +137,7 @@ class LayoutSearch:
 
     def _solve(self, layouts: Sequence[PlaceNumbers]) -> None:
         places = [[self.path_m[number] for number in layout] for layout in layouts]
-        by_case = np.array([case.mean_costs(places) for case in self.cases])
+        by_case = np.array(list(self.for_each(lambda case: case.mean_costs(places), self.cases)))
         self.known.update(zip(layouts, by_case.mean(axis=0).tolist(), strict=True))
 
 

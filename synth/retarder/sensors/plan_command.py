@@ -10,36 +10,42 @@ from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.printed_numbers import counted
 from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.config_source import source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.sensors.plan_options import PlanOptions
 
 if TYPE_CHECKING:
-    from synth.retarder.sensors.layout_plan import LayoutProblem
-    from synth.retarder.sensors.layout_results import LayoutResults
+    from synth.retarder.sensors.layout_results import AskedLayouts, LayoutResults
 
 LIMITS_OF_USE = (
-    "The rms is predicted of the model with the parameters of this page. Assumed ones are guesses.",
+    "The rms is that of the model with the parameters of this page. Assumed ones are guesses.",
     "Sensors may stand at multiples of half a metre. What hinders them on the track is not known here.",
     "Every sensor is taken to work. What a failed one costs is told by 'sensors tune'.",
+    "Nothing proves that the layouts found are the best of all.",
 )
 
 
 @dataclass(frozen=True)
 class AskedPlan:
-    """A problem of all cut classes and targets, the labels of the classes, and what is asked of the plan."""
+    """The configuration, what is asked of it, and how many threads work."""
 
     config: ResolvedConfig
-    problem: LayoutProblem
-    labels: tuple[str, ...]
-    options: PlanOptions
+    layouts: AskedLayouts
+    workers: int
 
 
 def resolve(asked: Asked[ResolvedConfig, PlanOptions]) -> AskedPlan:
     """The problem of a configuration."""
     from synth.retarder.sensors.layout_order import layout_problem
+    from synth.retarder.sensors.layout_results import AskedLayouts
 
-    return AskedPlan(asked.settings, *layout_problem(asked.settings), asked.options)
+    config, options = asked.settings, asked.options
+    problem, labels = layout_problem(config)
+    source = source_of_text(asked.text, asked.place)
+    seed = config.validation.seed
+    layouts = AskedLayouts(source, problem, labels, options.sensors, options.rms_m_s, seed, options.passes)
+    return AskedPlan(config, layouts, options.workers)
 
 
 def head(asked: AskedPlan) -> Head:
@@ -49,9 +55,7 @@ def head(asked: AskedPlan) -> Head:
 
 def steps(asked: AskedPlan) -> Steps:
     """Each number of sensors, each layout, and what stands beside them."""
-    from synth.retarder.sensors.layout_plan import steps_of_plan
-
-    return Steps(steps_of_plan([number - 1 for number in asked.options.sensors]) + 1, "planning", "steps")
+    return Steps(asked.layouts.steps, "planning", "steps")
 
 
 def compute(asked: AskedPlan, work: Work) -> LayoutResults:
@@ -59,13 +63,13 @@ def compute(asked: AskedPlan, work: Work) -> LayoutResults:
     from synth.retarder.first_run import compiled_beside
     from synth.retarder.sensors.layout_results import layout_results
 
-    options, progress = asked.options, work.progress
-    classes = counted(len(asked.problem.cases), "cut class", "cut classes")
-    progress.note(f"looking for the places of up to {max(options.sensors)} sensors, for {classes}")
+    layouts, progress = asked.layouts, work.progress
+    classes = counted(len(layouts.problem.cases), "cut class", "cut classes")
+    progress.note(
+        f"looking for the places of up to {max(layouts.sensors)} sensors, for {classes}, in {layouts.steps} steps"
+    )
     with compiled_beside(progress.note):
-        return layout_results(
-            asked.problem, asked.labels, options.sensors, options.rms_m_s, options.workers, progress.done
-        )
+        return layout_results(layouts, asked.workers, progress.done)
 
 
 def limits(found: LayoutResults) -> Iterator[Limit]:
@@ -73,15 +77,20 @@ def limits(found: LayoutResults) -> Iterator[Limit]:
     wanted = f"an rms of at most {found.wanted_rms_m_s:.4f} m/s"
     if found.chosen is None:
         yield Limit(f"none of these numbers of sensors gives {wanted}", False)
-    else:
-        yield Limit(f"{found.chosen.deciding + 1} sensors are the fewest that give {wanted}", True)
+        return
+    told = found.chosen.errors.rms
+    yield Limit(
+        f"{found.chosen.deciding + 1} sensors are the fewest chosen for {wanted}; they give {told.value:.4f} "
+        f"[{told.low95:.4f}, {told.high95:.4f}] m/s on {told.n} other passes of every table",
+        found.is_reached(found.chosen),
+    )
 
 
 def show(found: LayoutResults) -> Iterator[Chapter]:
     """What is shown of it."""
-    from synth.retarder.sensors.plan_shown import plan
+    from synth.retarder.sensors.plan_shown import chapters
 
-    yield Chapter("Layouts", tuple(plan(found)))
+    return chapters(found)
 
 
 COMMAND = Command(

@@ -12,18 +12,18 @@ from plant_models import deciding_passages
 from synth.frame.picture.house_style import BLUE, GREY, INK, VERMILLION, dress, mark_zones
 from synth.retarder.case_result import PolicyMap
 from synth.retarder.command_panels import DOWN, HATCH, HOLD, UP, command_image, label_panels, stage_panels
-from synth.retarder.sensors.tuned_passages import TunedPassages
+from synth.retarder.sensors.layout_tables import LayoutTable
 
 BELOW_TARGET_M_S, ABOVE_FASTEST_M_S = 1.0, 0.4
 
 
-def plan_map(subject: str, policy: PolicyMap, tuned: TunedPassages) -> Figure:
+def plan_map(subject: str, policy: PolicyMap, table: LayoutTable) -> Figure:
     """A panel for each stage: colours for the command that a regulator would give that could decide anywhere, upright
     lines for the passages at which this one decides, marks for its switching speeds one stage up and down."""
-    stages = tuned.plant.top_stage + 1
+    stages = table.plant.top_stage + 1
     figure, grid = stage_panels("Sensors over the best command", subject, stages)
     for stage in range(stages):
-        draw_stage(grid.flat[stage], policy, tuned, stage)
+        draw_stage(grid.flat[stage], policy, table, stage)
     label_panels(grid, stages)
     box = grid.flat[stages].get_position()
     figure.legend(
@@ -33,16 +33,16 @@ def plan_map(subject: str, policy: PolicyMap, tuned: TunedPassages) -> Figure:
     return figure
 
 
-def draw_stage(axes: Axes, policy: PolicyMap, tuned: TunedPassages, stage: int) -> None:
+def draw_stage(axes: Axes, policy: PolicyMap, table: LayoutTable, stage: int) -> None:
     """One panel."""
-    plant, switching = tuned.plant, tuned.speeds.switching_m_s
+    plant, switching = table.plant, table.speeds.switching_m_s
     ends_m = float(policy.path_m[0]), plant.exit_m
-    low = max(0.0, tuned.aim.target_speed_m_s - BELOW_TARGET_M_S)
+    low = max(0.0, table.aim.target_speed_m_s - BELOW_TARGET_M_S)
     high = plant.entry.high_m_s + ABOVE_FASTEST_M_S
     pixels = round(axes.bbox.width), round(axes.bbox.height)
     image = command_image(policy, stage, ends_m, (low, high), pixels)
     axes.imshow(image, extent=(*ends_m, low, high), origin="lower", aspect="auto", interpolation="none")
-    path_m = np.array([each.path_m for each in deciding_passages(tuned.sensors, plant.cut, plant.exit_m)])
+    path_m = np.array([each.path_m for each in deciding_passages(table.sensors, plant.cut, plant.exit_m)])
     axes.vlines(path_m, low, high, color=INK, linewidth=0.7, zorder=3)
     for parted, mark, colour in ((stage - 1, "v", BLUE), (stage, "^", VERMILLION)):
         if 0 <= parted < switching.shape[2]:

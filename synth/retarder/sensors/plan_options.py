@@ -38,4 +38,7 @@ class PlanOptions(Options):
     rms_m_s: float | None = number_option(
         "--rms", "M_S", None, 1e-4, 10.0, "Wanted rms, m/s; 1.1 times the radar's unless given."
     )
+    passes: int = number_option(
+        "--passes", "N", 4000, 1000, 50_000, "Passes of every table that figures are told from."
+    )
     workers: int = number_option("--workers", "N", 2, 1, 256, "Layouts tried at a time.")

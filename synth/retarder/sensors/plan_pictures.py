@@ -12,7 +12,6 @@ from synth.frame.picture.house_style import (
     GREY,
     INK,
     ORANGE,
-    VERMILLION,
     dress,
     legend_below,
     logarithmic_y,
@@ -25,46 +24,47 @@ from synth.retarder.sensors.plan_map import plan_map
 
 def shown_plan(results: LayoutResults) -> Figure:
     """The chosen plan, else that of most sensors, over the best command of its first case."""
-    tuned = results.shown.best.tuned[0][0]
-    subject = f"{results.labels[0]} to {tuned.aim.target_speed_m_s:g} m/s, {results.shown.deciding + 1} sensors"
-    return plan_map(subject, results.anywhere, tuned)
+    table = results.shown.tables[0]
+    subject = f"{results.labels[0]} to {table.aim.target_speed_m_s:g} m/s, {results.shown.deciding + 1} sensors"
+    return plan_map(subject, results.anywhere, table)
 
 
 def rms_over_number(results: LayoutResults) -> Figure:
-    """Planned layouts, equal sections, the rule, and the radar as a level line."""
+    """Planned layouts with their 95 % intervals, the rule, and the radar as a level line."""
     figure = new_figure(8.4, 4.6, "What sensors and places give", subject_of(results))
     place(figure, left=0.8, right=0.3, bottom=1.15, top=0.85)
     axes = figure.subplots()
-    dress(axes, "", "sensors, the one behind the exit included", "predicted rms, m/s")
+    dress(axes, "", "sensors, the one behind the exit included", "rms, m/s")
     numbers = [plan.deciding + 1 for plan in results.plans]
-    planned = [plan.best.rms_m_s for plan in results.plans]
-    equal = [plan.equal.rms_m_s for plan in results.plans]
-    rule = len(results.rule.deciding_m) + 1, results.rule.rms_m_s
-    axes.plot(numbers, equal, color=VERMILLION, marker="s", linestyle="--", markersize=5, linewidth=1.5)
-    axes.plot(numbers, planned, color=BLUE, marker="o", markersize=5, linewidth=1.5)
-    axes.plot(*rule, color=GREEN, marker="D", markersize=7, linestyle="none")
-    axes.axhline(results.radar_mean_rms_m_s, color=INK, linestyle=":", linewidth=1.3)
-    logarithmic_y(axes, [*planned, *equal, rule[1], results.radar_mean_rms_m_s])
-    axes.set_xticks(sorted({*numbers, rule[0]}))
+    planned = [plan.errors.rms for plan in results.plans]
+    rule, radar = results.rule.errors.rms, results.radar.rms
+    at_rule = results.rule.deciding + 1
+    values = [each.value for each in planned]
+    axes.vlines(numbers, [each.low95 for each in planned], [each.high95 for each in planned], color=BLUE, linewidth=1.5)
+    axes.vlines([at_rule], [rule.low95], [rule.high95], color=GREEN, linewidth=1.5)
+    axes.plot(numbers, values, color=BLUE, marker="o", markersize=5, linewidth=1.5)
+    axes.plot(at_rule, rule.value, color=GREEN, marker="D", markersize=7, linestyle="none")
+    axes.axhline(radar.value, color=INK, linestyle=":", linewidth=1.3)
+    logarithmic_y(axes, [*values, rule.value, radar.value])
+    axes.set_xticks(sorted({*numbers, at_rule}))
     handles = [
         Line2D([], [], color=BLUE, marker="o", label="planned"),
-        Line2D([], [], color=VERMILLION, marker="s", linestyle="--", label="equal sections"),
         Line2D([], [], color=GREEN, marker="D", linestyle="none", label="by the rule"),
         Line2D([], [], color=INK, linestyle=":", label="radar"),
     ]
     if results.chosen is not None:
-        at = results.chosen.deciding + 1, results.chosen.best.rms_m_s
+        at = results.chosen.deciding + 1, results.chosen.errors.rms.value
         axes.plot(*at, color=ORANGE, marker="o", markersize=13, markerfacecolor="none", linestyle="none")
         handles.append(Line2D([], [], color=ORANGE, marker="o", markersize=10, markerfacecolor="none",
                               linestyle="none", label="chosen"))  # fmt: skip
-    legend_below(figure, handles, columns=5)
+    legend_below(figure, handles, columns=4)
     return figure
 
 
 def places_by_number(results: LayoutResults) -> Figure:
     """A row of marks for each number of sensors."""
-    rows = [(str(plan.deciding + 1), plan.best, BLUE) for plan in results.plans]
-    rows.append((f"{len(results.rule.deciding_m) + 1}, by the rule", results.rule, GREEN))
+    rows = [(str(plan.deciding + 1), plan, BLUE) for plan in results.plans]
+    rows.append((f"{results.rule.deciding + 1}, by the rule", results.rule, GREEN))
     figure = new_figure(9.6, 1.9 + 0.3 * len(rows), "Where the sensors stand", subject_of(results))
     place(figure, left=1.25, right=0.3, bottom=0.95, top=0.85)
     axes = figure.subplots()

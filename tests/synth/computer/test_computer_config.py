@@ -73,6 +73,30 @@ def test_work_without_end_is_told_before_it_begins(text: str, words: str) -> Non
     assert told.startswith(words)
 
 
+def test_amounts_that_are_not_given_in_a_currency_of_ones_own_are_told() -> None:
+    """Those alone: none where the currency is the usual one, or where all of them are given."""
+    assert not resolved('[prices]\ncurrency = "EUR"\nper_car = 1.0\n').head.warnings
+    (told,) = resolved('[prices]\ncurrency = "GEL"\nper_car = 40000.0\n').head.warnings
+    assert "prices.per_car_h" in told
+    assert ", prices.per_car," not in told
+    assert "reliability.unnoticed_per_h" in told
+    assert "[[range]] of reliability.unnoticed_per_h" in told
+    amounts = [each.key for each in resolved("").head.parameters if each.unit.startswith("currency")]
+    own = [key.split(".") for key in amounts if not key.startswith("range.")]
+    sections = {section: [key for at, key in own if at == section] for section, _ in own}
+    lines = [f"[{section}]\n" + "".join(f"{key} = 9.0\n" for key in keys) for section, keys in sections.items()]
+    given = "range = []\n" + "".join(lines).replace("[prices]\n", '[prices]\ncurrency = "GEL"\n')
+    assert not [each for each in resolved(given).head.warnings if "currency" in each]
+
+
+def test_a_number_that_is_given_without_a_range_is_certain() -> None:
+    """So no draw is of the usual investment where there is another one."""
+    assert "terms.investment" in resolved("").ranges
+    assert "terms.investment" not in resolved("[terms]\ninvestment = 1e8\n").ranges
+    ranged = '[terms]\ninvestment = 1e8\n[[range]]\ninput = "terms.investment"\nlow = 9e7\nhigh = 2e8\n'
+    assert list(resolved(ranged).ranges) == ["terms.investment"]
+
+
 def test_what_is_only_shown_changes_no_hash_and_numbers_do() -> None:
     built_in = resolved("").head
     assert resolved('title = "x"\n[output]\nplots = false\n').head.sha256 == built_in.sha256

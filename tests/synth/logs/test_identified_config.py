@@ -12,12 +12,12 @@ from scripts.studies.identification.truths import text_of_classes
 from synth.cli.type_template import type_toml
 from synth.frame.input_error import InputError
 from synth.logs import unknowns as asked
-from synth.logs.config_source import ConfigSource, config_source
 from synth.logs.estimate import Estimate
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.identifiability import findings_of
-from synth.logs.identified_config import config_files, identified
+from synth.logs.identified_config import identified
 from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.configuration.config_source import ConfigSource, config_source
 
 OWN = """library = ["types/"]
 [position]
@@ -32,7 +32,7 @@ targets_m_s = [3.0]
 
 def written(source: ConfigSource, folder: Path) -> Path:
     """The configuration as files."""
-    for name, content in config_files(source, "config.toml").items():
+    for name, content in source.files("config.toml").items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(content)
     return folder / "config.toml"

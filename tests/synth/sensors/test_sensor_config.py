@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
 from plant_models import every_axle
 from synth.frame.input_error import InputError
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.point_sensors.template import DUMPER_POSITION, default_sensors_toml
+from synth.retarder.configuration.point_sensors.template import (
+    DUMPER_POSITION,
+    default_sensors_toml,
+    filled_sensors_toml,
+)
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 
 PLACES = "[sensors]\npath_m = [-5.0, 2.0, 9.0]\n"
@@ -126,3 +131,17 @@ def test_what_init_prints_reads_back(position: str) -> None:
         assert [(c.cut.axles, c.cut.mass_t) for c in config.cuts] == [(4, 22.0), (6, 32.0)]
         plants = [config.sensors.serving(plant) for _, plant in config.plants()]
         assert config.sensors.sensors.path_m[-1] > max(plant.exit_m for plant in plants)  # the last one logs
+
+
+def test_a_file_with_sensors_is_printed_with_every_default_and_reads_back_the_same(tmp_path: Path) -> None:
+    short = (
+        '[position]\nname = "rnz-2m-park"\n[sensors]\npath_m = [-3.0, 5.0, 30.0]\n[targets]\nexit_speeds_m_s = [1.5]\n'
+    )
+    path = tmp_path / "sensors-3.toml"
+    path.write_text(short, encoding="utf-8")
+    printed = filled_sensors_toml(path)
+    assert parse_config(printed, "printed").sha256 == parse_config(short, "short").sha256
+    assert "missed_share" in printed
+    path.write_text("", encoding="utf-8")
+    with pytest.raises(InputError, match="there is no section"):
+        filled_sensors_toml(path)

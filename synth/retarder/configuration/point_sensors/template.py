@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Final
 
 from plant_models.library import PositionEntry
+from synth.frame.input_error import InputError
 from synth.frame.settings.template import template
-from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.config_file import parse_config, valid_settings
+from synth.retarder.configuration.config_source import config_source
 from synth.retarder.configuration.config_template import known_of
 from synth.retarder.configuration.plant_settings import DEFAULT_CUTS, CutSettings, PositionSettings
 from synth.retarder.configuration.point_sensors.settings import PointSensorSettings
@@ -49,6 +52,21 @@ def default_sensors_toml(position_name: str = DUMPER_POSITION) -> str:
     )
     config = resolve(settings, "retarder-synth init")
     return template(settings, "Configuration with point sensors", "sensors tune", known_of(config), entry.notes)
+
+
+def filled_sensors_toml(path: Path) -> str:
+    """The configuration at `path`, as `sensors plan` leaves one, with every default and comment.
+
+    `InputError` for any fault, where it has no sensors, and where it names own types, which lie beside it.
+    """
+    source = config_source(path)
+    settings, config = valid_settings(source.tree, source.place), source.resolved()
+    if settings.sensors is None:
+        raise InputError(f"{path}: there is no section [sensors]; 'retarder-synth sensors plan' leaves such files")
+    if source.library.own:
+        raise InputError(f"{path}: it names types of your own; copy the file with its folder of types instead")
+    known, notes = known_of(config), config.retarder.notes
+    return template(settings, "Configuration with point sensors", "sensors tune", known, notes)
 
 
 def usual_places(entry: PositionEntry) -> tuple[float, ...]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import pytest
 
-from synth.logs.config_source import ConfigSource, source_of_text
 from synth.logs.identified_config import with_numbers
 from synth.logs.retune.tuned_books import Case, class_setups, tuned_tables
+from synth.retarder.configuration.config_source import ConfigSource, source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.watcher import Teller
 from tests.corpus import Corpus

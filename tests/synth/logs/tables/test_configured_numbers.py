@@ -10,10 +10,10 @@ import pytest
 from plant_models import Plant, PlantError, PressingForce, RollingResistance
 from plant_models.motion import braked_axles, mean_braked_axles
 from synth.frame.input_error import InputError
-from synth.logs.config_source import ConfigSource, source_of_text
 from synth.logs.configured_numbers import configured_numbers
-from synth.logs.identified_config import config_files, with_numbers
+from synth.logs.identified_config import with_numbers
 from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.config_source import ConfigSource, source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 
 from .conftest import TEXT
@@ -81,7 +81,7 @@ def test_the_written_configuration_is_the_plant_with_the_numbers(source: ConfigS
     middle = float(np.mean([mean_braked_axles(plant.position, plant.cut) for plant in before.values()]))
     expected = {label: rounded(in_memory(plant, middle)) for label, plant in before.items()}
     assert len({plant.cut.category for plant in before.values()}) == 2
-    again = parse_config(config_files(told, "config.toml")["config.toml"].decode(), "config.toml")
+    again = parse_config(told.files("config.toml")["config.toml"].decode(), "config.toml")
     assert dict(again.plants()) == expected
     assert dict(told.resolved().plants()) == expected
     assert again.sha256 == told.resolved().sha256 != source.resolved().sha256

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, Final
 
 from plant_models.library import BUILT_IN, Library
 from synth.frame.settings.settings_file import BUILT_IN as BUILT_IN_PLACE
 from synth.frame.settings.toml_file import Tree, read_text, toml_tree
+from synth.frame.settings.toml_text import toml_text
 from synth.retarder.configuration.config_file import valid_settings
 from synth.retarder.configuration.own_types import with_own_types
 from synth.retarder.configuration.resolved_config import ResolvedConfig, resolve
+
+TYPES: Final = "types"
+"""The folder of own types beside a configuration that is written."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +34,15 @@ class ConfigSource:
     def resolved(self) -> ResolvedConfig:
         """Every default filled in."""
         return resolve(valid_settings(self.tree, self.place), self.place, self.library)
+
+    def files(self, name: str) -> dict[str, bytes]:
+        """The files that tell it, by their paths in the folder of the configuration `name`; `place` is its head."""
+        tree: dict[str, Any] = dict(self.tree)
+        if self.library.own:
+            tree["library"] = [f"{TYPES}/"]
+        files = {f"{TYPES}/{each.kind.folder}/{each.name}.toml": each.text.encode() for each in self.library.own}
+        head = f"# {self.place[:1].upper()}{self.place[1:]}.\n"
+        return {**files, name: (head + toml_text(tree)).encode("utf-8")}
 
 
 def config_source(path: Path | None) -> ConfigSource:
