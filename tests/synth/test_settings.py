@@ -235,7 +235,8 @@ def test_every_fault_is_told_in_a_line_of_its_own() -> None:
         parse_config(text, "my.toml")
     assert caught.value.sentences == (
         "my.toml: cut[0].mas_t = 22 is an unknown key; did you mean mass_t?",
-        "my.toml: grid.path_step_m is 'x'; it must be a number",
+        "my.toml: grid.path_step_m is 'x'; it must be a number in m, or in quotes a number with one of the units m, "
+        "ft, yd",
         "my.toml: grid.path_levels is 99; it must be from 1 to 9",
     )
     wrong = "targets.exit_speeds_m_s = [9]\n" + CUT.replace("22", "99") + CUT + CUT.replace("gondola", "gondla")
