@@ -16,7 +16,7 @@ from synth.hump.trains.forecast import Given
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.humping import Hump, humped
 from synth.hump.trains.interval_control import ProgramSpeeds
-from synth.hump.trains.known_cuts import KnownCuts
+from synth.hump.trains.known_cuts import KnownCuts, Runners, known_as
 from synth.hump.trains.route_rolling import RouteRolling, rolling_on
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
@@ -139,21 +139,7 @@ def known_exactly(
         np.where(good, hump.allowed_m_s, np.inf), np.where(good, np.sqrt(hump.allowed_m_s**2 + of_last), np.inf)
     )
     resistance = trains.drawn.resistance_n_per_kn
-    return KnownCuts(
-        rolls=rolls,
-        trains=trains.trains,
-        cuts=trains.cuts,
-        route=trains.route,
-        category=trains.category,
-        length_m=trains.length_m,
-        first_axle_m=trains.first_axle_m,
-        last_axle_m=trains.last_axle_m,
-        mean_n_per_kn=resistance,
-        good_n_per_kn=resistance,
-        bad_n_per_kn=resistance,
-        aim=aim,
-        braked_m2_s2=braked,
-    )
+    return known_as(trains, rolls, Runners(resistance, resistance, resistance), aim, braked)
 
 
 def margins_s(triples: Triples, plan: TrainPlan) -> Floats:

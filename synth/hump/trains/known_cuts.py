@@ -73,7 +73,24 @@ def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, braked_m2_s2: Flo
     """`trains` as they are known before they roll on `ways`; `aim` (rows,): what they will be aimed with;
     `braked_m2_s2` (rows, positions)."""
     drawn = expected(trains)
-    rolls = rolling_on(ways, trains.population, drawn, threads)
+    runners = Runners(
+        drawn.resistance_n_per_kn, runner_n_per_kn(trains, drawn, GOOD), runner_n_per_kn(trains, drawn, BAD)
+    )
+    return known_as(trains, rolling_on(ways, trains.population, drawn, threads), runners, aim, braked_m2_s2)
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Runners:
+    """Resistances (rows,) that a control reckons with: of mean, good and bad cuts, N/kN."""
+
+    mean_n_per_kn: Floats
+    good_n_per_kn: Floats
+    bad_n_per_kn: Floats
+
+
+def known_as(trains: TrainCuts, rolls: Rolls, runners: Runners, aim: Given, braked_m2_s2: Floats) -> KnownCuts:
+    """`trains`, which are expected to roll as in `rolls` with the resistances of `runners`."""
     return KnownCuts(
         rolls=rolls,
         trains=trains.trains,
@@ -83,9 +100,9 @@ def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, braked_m2_s2: Flo
         length_m=trains.length_m,
         first_axle_m=trains.first_axle_m,
         last_axle_m=trains.last_axle_m,
-        mean_n_per_kn=drawn.resistance_n_per_kn,
-        good_n_per_kn=runner_n_per_kn(trains, drawn, GOOD),
-        bad_n_per_kn=runner_n_per_kn(trains, drawn, BAD),
+        mean_n_per_kn=runners.mean_n_per_kn,
+        good_n_per_kn=runners.good_n_per_kn,
+        bad_n_per_kn=runners.bad_n_per_kn,
         aim=aim,
         braked_m2_s2=braked_m2_s2,
     )
