@@ -108,22 +108,18 @@ class LayoutProblem:
         return with_layout(self.sensors, deciding_m, max(case.plant.exit_m for case in self.cases))
 
     def judged(self, candidates: Sequence[tuple[float, ...]], passes: PlanPasses) -> JudgedLayout:
-        """The best of the candidates, by their tables before any polish, with its polished tables."""
-        best, found = None, np.inf
-        for layout in candidates:
-            sensors = self.placed(layout)
-            made = [pair for case in self.cases for pair in solutions(case, sensors, self.resolution)]
-            rms_m_s = np.inf
-            if len(candidates) > 1:
-                rms_m_s = errors_of([table for table, _ in made], passes.choosing).rms.value
-            if best is None or rms_m_s < found:
-                best, found = (layout, made), rms_m_s
-        if best is None:
-            raise ValueError("layout plan: no layout is given")
-        layout, made = best
-        tables = tuple(polished(*pair) for pair in made)
-        chosen_by_m_s = errors_of(tables, passes.choosing).rms.value
-        return JudgedLayout(layout, tables, chosen_by_m_s, errors_of(tables, passes.final))
+        """The best of the candidates, by their tables."""
+        made = [(layout, self.tables_at(layout)) for layout in candidates]
+        rms_m_s = [errors_of(tables, passes.choosing).rms.value for _, tables in made]
+        best = int(np.argmin(rms_m_s))
+        layout, tables = made[best]
+        return JudgedLayout(layout, tables, rms_m_s[best], errors_of(tables, passes.final))
+
+    def tables_at(self, layout: tuple[float, ...]) -> tuple[LayoutTable, ...]:
+        """The tables of all cases with these deciding sensors."""
+        sensors = self.placed(layout)
+        made = (pair for case in self.cases for pair in solutions(case, sensors, self.resolution))
+        return tuple(polished(*pair) for pair in made)
 
 
 def plan_layouts(
