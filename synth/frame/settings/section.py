@@ -88,10 +88,13 @@ class Section(BaseModel):
         """Numbers that are written with another unit, in the declared one."""
         if not isinstance(given, dict):
             return given
+        units = {key: setting_unit(field) for key, field in cls.model_fields.items()}
+        written = {key for key, value in given.items() if units.get(key) and isinstance(value, str | list | dict)}
+        if not written:
+            return given
         from plant_models.library.written_units import in_unit  # the package of the plant has numpy
 
-        units = {key: setting_unit(field) for key, field in cls.model_fields.items()}
-        return {key: in_unit(value, units[key]) if units.get(key) else value for key, value in given.items()}
+        return {key: in_unit(value, units[key]) if key in written else value for key, value in given.items()}
 
 
 def setting_unit(field: FieldInfo) -> str:

@@ -29,8 +29,8 @@ def of_fall(found: FoundDesign) -> Limit:
     if fall.left_m >= 0.0:
         return Limit(f"{who} comes {where} with {fall.left_m:.2f} m of energy head left", True)
     return Limit(
-        f"{who} stops {fall.stop_m:.0f} m behind the crest and does not come {where}: {-fall.left_m:.2f} m of fall "
-        f"lack of {fall.needed_m:.2f} m that are needed",
+        f"{who} stops {fall.stop_m:.0f} m behind the crest and does not come {where}: {fall.needed_m:.2f} m of fall "
+        f"are needed, and there are {fall.fall_m:.2f} m",
         False,
     )
 

@@ -14,7 +14,6 @@ from tuning_tables.canonical import canonical_json
 OF_TRIAL: Final = (
     "hump.",
     "position.",
-    "roles.",
     "exit_speeds.usable_share",
     "couplings.allowed_m_s",
     "hump_speed.early_s",

@@ -11,7 +11,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.hump.design.hump_under_test import HumpUnderTest
 from synth.hump.design.intervals import Intervals, intervals, least_margins_s
 from synth.hump.design.runners_unbraked import Unbraked, unbraked
-from synth.hump.design.triples import Triples, margins_s, triples
+from synth.hump.design.triples import CARS, GOOD, Triples, margins_s, triples
 from synth.hump.trains.asked_trial import AskedTrial
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import TrainPlan
@@ -62,9 +62,9 @@ class WorstTriple:
 
 @dataclass(frozen=True)
 class Entries:
-    """Of position `number`, over all pairs of tracks: `fastest_m_s` at which a car comes to it in the test;
-    `allowed_m_s`, infinite for no limit; `beyond_m_s`: by how much the good runner leaves it faster than commanded at
-    most."""
+    """Of position `number`, over all pairs of tracks: `fastest_m_s` at which a car comes to it in the test, 0
+    where none comes; `allowed_m_s`, infinite for no limit; `beyond_m_s`: by how much the good runner leaves it faster
+    than commanded at most."""
 
     number: int
     fastest_m_s: float
@@ -109,13 +109,14 @@ def entries(hump: HumpUnderTest, found: Intervals) -> tuple[Entries, ...]:
     """Of all positions."""
     cars = triples(hump, found.pairs)
     alone = cars.alone(cars.planned(np.full(len(cars), hump.asked.hump_speed_m_s)))
-    entry, beyond = alone.entry_m_s[:, 0], alone.exit_m_s[:, 0] - alone.command_m_s[:, 0]
+    entry = alone.entry_m_s[:, 0]
+    beyond = (alone.exit_m_s[:, 0] - alone.command_m_s[:, 0])[GOOD::CARS]
     return tuple(
         Entries(
             number=place + 1,
-            fastest_m_s=float(np.nanmax(entry[:, place])),
+            fastest_m_s=float(np.fmax.reduce(entry[:, place], initial=0.0)),
             allowed_m_s=allowed_m_s(hump, place),
-            beyond_m_s=float(np.nanmax(beyond[:, place])),
+            beyond_m_s=float(np.fmax.reduce(beyond[:, place], initial=0.0)),
         )
         for place in range(hump.routes.positions)
     )

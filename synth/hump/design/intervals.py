@@ -10,16 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.frame.settings.section import setting_limits
+from synth.hump.configuration.design_settings import DesignSettings
 from synth.hump.design.hump_under_test import HumpUnderTest
 from synth.hump.design.triples import Triples, margins_s, pairs_of, triples
 from synth.hump.trains.hump_routes import HumpRoutes
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-SLOWEST_M_S: Final = 0.3
-FASTEST_M_S: Final = 4.0
-"""Hump speeds that are tried."""
 
 NEARLY_M_S: Final = 0.01
 """How exactly the highest hump speed is found."""
@@ -132,13 +130,20 @@ def depths(routes: HumpRoutes, pairs: Ints) -> Ints:
     return np.asarray((is_switch & (np.arange(routes.elements) < shared[:, None])).sum(axis=1))
 
 
+def tried_m_s() -> tuple[float, float]:
+    """Lowest and highest hump speed that is tried: those that a test may have."""
+    limits = setting_limits(DesignSettings.model_fields["hump_speed_m_s"])
+    assert limits is not None
+    return limits
+
+
 def highest_speeds_m_s(cars: AllTriples, worst: Ints) -> Floats:
     """The highest hump speed (levels,) at which no triple of a level has a margin below 0, NaN for none.
 
     A triple that is the `worst` (levels,) at some speed bounds that of its level; where another one is below 0 at the
     bound, that one bounds it further.
     """
-    highest = np.full(len(worst), FASTEST_M_S)
+    highest = np.full(len(worst), tried_m_s()[1])
     while True:
         highest = np.fmin(highest, bound_m_s(cars.fine.chosen(worst), highest))
         margins = cars.least_margins_s(highest)
@@ -150,8 +155,8 @@ def highest_speeds_m_s(cars: AllTriples, worst: Ints) -> Floats:
 
 def bound_m_s(cars: Triples, most_m_s: Floats) -> Floats:
     """The highest speed (t,) up to `most_m_s` (t,), to `NEARLY_M_S`, at which the margin of each triple is not below
-    0; `SLOWEST_M_S` where it is below at every speed. A margin is taken to fall with the speed."""
-    low, high = np.full(len(cars), SLOWEST_M_S), most_m_s
+    0; the lowest that is tried where it is below at every speed. A margin is taken to fall with the speed."""
+    low, high = np.full(len(cars), tried_m_s()[0]), most_m_s
     low = np.where(least_margins_s(cars, high) >= 0.0, high, low)
     while (high - low).max() > NEARLY_M_S:
         middle = 0.5 * (low + high)

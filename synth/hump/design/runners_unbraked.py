@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
-
 from plant_models.hump import Route
 from plant_models.library import load_car
 from synth.hump.checking.places import RolledRoute, speed_at
@@ -46,7 +44,7 @@ class PositionNeed:
 
     `comes_m_s`: speed of the runner at its entrance where nothing brakes it. `needed_m`: energy head that it has at the
     exit, and that brakes must take so that it stops there; `there_m`: what the brakes up to there are counted upon to
-    take, `own_m` of it by this position. `last`: whether no other position follows on some way.
+    take, `own_m` of it by this position. `last`: whether no other position follows on that way.
     """
 
     number: int
@@ -124,7 +122,8 @@ def position_needs(rolled: Sequence[RolledRoute], hump: HumpUnderTest) -> tuple[
     for row, each in enumerate(rolled):
         count = int(hump.routes.positions_of[row])
         for place in range(count):
-            enters, leaves = (speed_at(each.good, float(at)) or 0.0 for at in ends_m(hump, row, place))
+            ends_m = hump.routes.entrance_m[row, place], hump.routes.exit_m[row, place]
+            enters, leaves = (speed_at(each.good, float(at_m)) or 0.0 for at_m in ends_m)
             need = PositionNeed(
                 number=place + 1,
                 track=each.route.track,
@@ -136,8 +135,3 @@ def position_needs(rolled: Sequence[RolledRoute], hump: HumpUnderTest) -> tuple[
             )
             found.setdefault(place, []).append(need)
     return tuple(min(needs, key=lambda need: (not need.last, need.left_m)) for _, needs in sorted(found.items()))
-
-
-def ends_m(hump: HumpUnderTest, row: int, place: int) -> np.ndarray:
-    """Entrance and exit of a position on the route of a `row`."""
-    return np.array([hump.routes.entrance_m[row, place], hump.routes.exit_m[row, place]])

@@ -30,6 +30,9 @@ Ints = NDArray[np.int64]
 CARS: Final = 3
 """Of a triple."""
 
+GOOD: Final = 1
+"""Which of them is the good runner."""
+
 PAIRS: Final = ((0, 1), (1, 2), (0, 2))
 """Its cuts, (ahead, behind), between which there is an interval: bad–good, good–bad, bad–bad."""
 

@@ -20,7 +20,7 @@ OF_POPULATION: Final = ("cuts", "cars_mean", "most_cars", "category_shares", "tr
 OF_DRAWN_TRACKS: Final = {"tracks.free_low", "tracks.free_high"}
 """What the hump file tells in their place where cars stand as it tells."""
 
-BESIDE_ONE_SPEED: Final = {"constant_m_s", "slow_down_s"}
+BESIDE_ONE_SPEED: Final = {"constant_m_s", "early_s", "slow_down_s"}
 """Of [hump_speed], what counts where there is one speed for all cuts; it stands in place of the rest."""
 
 CHANGES_NO_TRAIN: Final = ("trains.number", "acceptance.")

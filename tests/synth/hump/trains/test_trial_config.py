@@ -94,6 +94,13 @@ def test_what_changes_trains_changes_their_hash(text: str) -> None:
     assert resolved(text).trains_sha256 != load_trial(None).trains_sha256
 
 
+def test_what_a_plan_at_one_speed_depends_on_is_in_the_hash() -> None:
+    """Exit speeds of such a plan come from a first sweep that keeps `early_s`; the least interval has no part in it."""
+    one = "[hump_speed]\nconstant_m_s = 2.2\n"
+    assert resolved(f"{one}early_s = 4.0").trains_sha256 != resolved(one).trains_sha256
+    assert resolved(f"{one}least_s = 4.0").trains_sha256 == resolved(one).trains_sha256
+
+
 def test_the_same_hump_by_name_path_and_in_a_configuration(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text(hump_text(Path("medium")), encoding="utf-8")
