@@ -1,4 +1,4 @@
-"""The tables of docs/table-format.md that follow from the declared members: one for each kind of table.
+"""The tables of docs/reference/table-format.md that follow from the declared members: one for each kind of table.
 
 `python -m scripts.format_page` writes them anew into the page, between the marks that stand there.
 """
@@ -14,7 +14,7 @@ from tuning_tables.declared.members import LeafMember, SectionMember, members_of
 from tuning_tables.table_kinds import KINDS
 from tuning_tables.units import NO_UNIT, unit_of
 
-PAGE: Final = Path(__file__).parents[1] / "docs" / "table-format.md"
+PAGE: Final = Path(__file__).parents[1] / "docs" / "reference" / "table-format.md"
 MARKED: Final = re.compile(r"(<!-- members: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 HEAD: Final = "| key | is | unit | allowed |\n|---|---|---|---|\n"
 

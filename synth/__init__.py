@@ -1,4 +1,4 @@
-"""retarder-synth from Python: from a problem to a validated table. See docs/python.md.
+"""retarder-synth from Python: from a problem to a validated table. See docs/how-to/python.md.
 
 Importing this package is instant: what a name stands for is imported when it is first used.
 """

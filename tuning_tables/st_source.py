@@ -1,6 +1,6 @@
 """Tables as IEC 61131-3 Structured Text: the types, the rules, the data, the choice, and a self-test.
 
-How it is used stands in docs/structured-text.md.
+How it is used stands in docs/reference/structured-text.md.
 """
 
 from __future__ import annotations

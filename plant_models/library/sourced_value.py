@@ -11,7 +11,7 @@ Value = float | tuple[float, ...] | tuple[tuple[float, float], ...]
 """A number, a list of numbers, or a list of pairs."""
 
 CONFIDENCES = ("H", "M-H", "M", "L-M", "L")
-"""High, medium, low; docs/sources.md says what they stand for."""
+"""High, medium, low; docs/reference/sources.md says what they stand for."""
 
 JUDGEMENT = "engineering judgement"
 """How the source of a value begins that nobody can be cited for."""

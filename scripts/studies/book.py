@@ -59,7 +59,7 @@ class Changed:
 
 @dataclass(frozen=True)
 class Row:
-    """One case of the book, in m/s and as shares; what the figures mean: docs/results.md."""
+    """One case of the book, in m/s and as shares; what the figures mean: docs/reference/results.md."""
 
     label: str
     target_m_s: float

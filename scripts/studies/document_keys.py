@@ -1,6 +1,6 @@
 """The keys of a configuration for its page: what a declaration says of each, in a table.
 
-Between <!-- keys NAME --> and <!-- end --> stands that of the configuration NAME.
+Between <!-- keys NAME --> and <!-- end --> stands that of the configuration NAME, and where its sources are.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import Final
 from pydantic.fields import FieldInfo
 
 from plant_models.library import load_wheel_sensor
+from plant_models.library.source import CITATION
 from scripts.studies.markdown_table import table
 from synth.aim.configuration.settings import AimFileSettings
 from synth.aim.configuration.template import usual_aim
@@ -23,13 +24,19 @@ from synth.hump.configuration.settings import HumpTrialSettings
 from synth.hump.configuration.template import usual_trial
 from synth.hump.making.short_file import NEEDED
 from synth.hump.making.short_hump import EXAMPLE
+from synth.retarder.configuration.config_template import known_of
 from synth.retarder.configuration.point_sensors.settings import DEFAULT_WHEEL_SENSOR, PointSensorSettings
+from synth.retarder.configuration.resolved_config import resolve
+from synth.retarder.configuration.settings import Settings
+from synth.retarder.sweep.sweep_settings import SweepTable
 
 DECLARED: Final[dict[str, Callable[[], tuple[Section, Usual]]]] = {
     "aim": lambda: (AimFileSettings(), usual_aim()),
     "computer": lambda: (ComputerSettings(), NOTHING),
     "hump": lambda: (HumpTrialSettings(), usual_trial()),
     "short-hump": lambda: (EXAMPLE.model_copy(update=dict.fromkeys((*NEEDED, "tracks", "position"))), NOTHING),
+    "sweep": lambda: (SweepTable(), NOTHING),
+    "tune": lambda: (Settings(), known_of(resolve(Settings(), "the default configuration"))),
     "sensors": lambda: (
         PointSensorSettings.model_construct(path_m=()),
         told_numbers(load_wheel_sensor(DEFAULT_WHEEL_SENSOR).provenance),
@@ -40,9 +47,11 @@ DECLARED: Final[dict[str, Callable[[], tuple[Section, Usual]]]] = {
 HEAD = ("key", "unless given", "unit", "allowed", "is", "from")
 
 
-def keys_of(name: str) -> str:
-    """The table of the keys of the configuration `name` as Markdown."""
-    return table(f"keys {name}", HEAD, rows_of(*DECLARED[name](), "")).markdown()
+def keys_of(name: str, sources: str) -> str:
+    """The keys of the configuration `name` as Markdown; `sources`: the page of the sources, as it is linked."""
+    text = table(f"keys {name}", HEAD, rows_of(*DECLARED[name](), "")).markdown()
+    links = "".join(f"[{cited}]: {sources}#{cited}\n" for cited in sorted(set(CITATION.findall(text))))
+    return f"{text}\n{links}" if links else text
 
 
 def rows_of(section: Section, usual: Usual, path: str) -> Iterator[tuple[str, ...]]:

@@ -1,7 +1,8 @@
 """The pictures of the documentation, drawn from the kept results of studies.
 
-Behind <!-- picture STUDY NAME --> a page shows a picture of that study, docs/STUDY-NAME.svg. A newer matplotlib draws
-the same picture with other bytes; so the file ends with a digest of what is drawn, and that is compared.
+Behind <!-- picture STUDY NAME --> a page shows a picture of that study, STUDY-NAME.svg of any folder. A newer
+matplotlib draws the same picture with other bytes; so the file ends with a digest of what is drawn, and that is
+compared.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterable, Iterator
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,11 +28,11 @@ def pictures_of(path: Path) -> Iterator[tuple[str, str, Path]]:
     """(study, picture, file) of every marked picture of the page `path`. Raises `InputError` where it shows none."""
     for found in _MARKED.finditer(path.read_text(encoding="utf-8")):
         study, name = found["study"], found["name"]
-        if found["file"] != f"{study}-{name}.svg":
+        if PurePosixPath(found["file"] or "").name != f"{study}-{name}.svg":
             raise InputError(
                 f"{path}: the line after <!-- picture {study} {name} --> must show {study}-{name}.svg, with a text"
             )
-        yield study, name, path.with_name(found["file"])
+        yield study, name, path.parent / found["file"]
 
 
 def digest_of(figure: Figure) -> str:

@@ -1,27 +1,34 @@
 """The tables of the documentation, from the kept results of studies.
 
-In a checkout docs/studies holds NAME.json, the result of a run with default options, for every study that a document
-shows. Between <!-- study NAME TABLE --> and <!-- end --> stands that table of it; between <!-- studies --> and
-<!-- end --> the list of all studies. Pictures: `document_pictures`; keys of a configuration: `document_keys`.
+In a checkout docs/studies holds NAME.json, the result of a run with default options, for every study that the
+documentation shows; docs/data/NAME.md holds all its tables, folded (`data_page`). A document shows a table of few rows
+itself: between <!-- study NAME TABLE --> and <!-- end -->. Between <!-- studies --> and <!-- end --> stands the list of
+all studies. Pictures: `document_pictures`; keys of a configuration: `document_keys`.
 """
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 from plant_models.library.near_miss import near_miss
+from scripts.studies.data_page import data_page
 from scripts.studies.document_keys import keys_of
 from scripts.studies.document_pictures import is_stale, pictures_of, write_picture
 from scripts.studies.markdown_table import table
 from scripts.studies.named_study import study_named
 from scripts.studies.registry import STUDIES
 from scripts.studies.result import Result, read_result
+from scripts.studies.study import Study
 from synth.frame.input_error import InputError
 
-KEPT = Path("docs/studies")
+PAGES = Path("docs")
+KEPT = PAGES / "studies"
+DATA = PAGES / "data"
+SOURCES = PAGES / "reference" / "sources.md"
 END = "<!-- end -->"
 
 _MARKED = re.compile(
@@ -31,11 +38,12 @@ _MARKED = re.compile(
 
 
 def documents(root: Path) -> Iterator[Path]:
-    """README.md and every page of docs/. Raises `InputError` where `root` is no checkout."""
+    """README.md and every page of docs/ that is written by hand. Raises `InputError` where `root` is no checkout."""
     if not (root / KEPT).is_dir():
         raise InputError(f"{root}: there is no {KEPT} here; run the command in a checkout of retarder-synth")
     yield root / "README.md"
-    yield from sorted((root / "docs").glob("*.md"))
+    pages = (root / PAGES).rglob("*.md")
+    yield from sorted(page for page in pages if page.parent != root / DATA)
 
 
 def kept(root: Path, name: str) -> Path:
@@ -46,14 +54,15 @@ def kept(root: Path, name: str) -> Path:
 def filled(path: Path, root: Path) -> str:
     """The text of the document `path` with every marked table as the kept results have it. Raises `InputError`."""
     text = path.read_text(encoding="utf-8")
+    sources = os.path.relpath(root / SOURCES, path.parent)
 
     def new(found: re.Match[str]) -> str:
         if not text.startswith(END, found.end()):
             raise InputError(f"{path}: the table after {found[0].splitlines()[0]} has no {END} behind it; add it")
         if found["list"]:
-            return f"<!-- studies -->\n{listed()}"
+            return f"<!-- studies -->\n{listed(path.parent, root)}"
         if found["keys"]:
-            return f"<!-- keys {found['keys']} -->\n{keys_of(found['keys'])}"
+            return f"<!-- keys {found['keys']} -->\n{keys_of(found['keys'], sources)}"
         return (
             f"<!-- study {found['study']} {found['table']} -->\n{table_of(root, path, found['study'], found['table'])}"
         )
@@ -75,25 +84,44 @@ def result_of(root: Path, name: str) -> Result:
     return read_result(study_named(name), kept(root, name))
 
 
-def listed() -> str:
-    """All studies: name, question, time, page."""
+def listed(folder: Path, root: Path) -> str:
+    """All studies, for a page in `folder`: name, question, time, all its tables, the page that reads them."""
 
-    def link(page: str) -> str:
-        return f"[{page.partition('.')[0].replace('-', ' ')}]({page})" if page else ""
+    def link(text: str, file: Path, anchor: str = "") -> str:
+        return f"[{text}]({os.path.relpath(file, folder)}{anchor})"
 
-    rows = ((f"`{s.name}`", s.question, s.duration, link(s.page)) for s in STUDIES)
-    return table("studies", ("study", "answers", "takes", "stands in"), rows).markdown()
+    def row(study: Study) -> tuple[str, ...]:
+        data = link("tables", data_file(root, study.name)) if kept(root, study.name).is_file() else ""
+        page, mark, anchor = study.page.partition("#")
+        reads = link(Path(page).stem.replace("-", " "), root / PAGES / page, mark + anchor) if page else ""
+        return f"`{study.name}`", study.question, study.duration, data, reads
+
+    return table("studies", ("study", "answers", "takes", "found", "read in"), map(row, STUDIES)).markdown()
+
+
+def data_file(root: Path, name: str) -> Path:
+    """Where all tables of the study `name` stand."""
+    return root / DATA / f"{name}.md"
+
+
+def texts(root: Path) -> Iterator[tuple[Path, str]]:
+    """Every page of the documentation with tables, and what should stand in it."""
+    for path in documents(root):
+        yield path, filled(path, root)
+    for result in sorted((root / KEPT).glob("*.json")):
+        yield data_file(root, result.stem), data_page(result_of(root, result.stem))
 
 
 def written(root: Path) -> list[Path]:
     """Fill all documents; those that changed."""
     result_of.cache_clear()
     changed = []
-    for path in documents(root):
-        text = filled(path, root)
-        if text != path.read_text(encoding="utf-8"):
+    for path, text in texts(root):
+        if not path.is_file() or text != path.read_text(encoding="utf-8"):
+            path.parent.mkdir(exist_ok=True)
             path.write_text(text, encoding="utf-8")
             changed.append(path)
+    for path in documents(root):
         for study, name, file in pictures_of(path):
             result = result_of(root, study)
             if is_stale(file, result, name):
@@ -107,9 +135,10 @@ def stale(root: Path) -> list[str]:
     result_of.cache_clear()
     mend = "'retarder-synth study --document' writes them"
     found = []
-    for path in documents(root):
-        if filled(path, root) != path.read_text(encoding="utf-8"):
+    for path, text in texts(root):
+        if not path.is_file() or text != path.read_text(encoding="utf-8"):
             found.append(f"{path.relative_to(root)}: its tables are not those of {KEPT}; {mend}")
+    for path in documents(root):
         found += [
             f"{file.relative_to(root)}: this is not the picture that {KEPT}/{study}.json gives; {mend}"
             for study, name, file in pictures_of(path)

@@ -1,4 +1,4 @@
-"""How a book holds its tables, by docs/table-format.md: type, axes and unit of every dataset, and what fills gaps."""
+"""How a book holds its tables, by docs/reference/table-format.md: type, axes, unit of every dataset, fills of gaps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers of weight categories in tables and controller code, as docs/table-format.md fixes them."""
+"""Numbers of weight categories in tables and controller code, as docs/reference/table-format.md fixes them."""
 
 from __future__ import annotations
 

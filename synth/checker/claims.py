@@ -29,7 +29,7 @@ from synth.checker.statistics import (
 )
 
 RMS_ALLOWANCE: Final = 0.04
-"""Relative systematic error of the coarse simulation's rms (measured: docs/verification.md)."""
+"""Relative systematic error of the coarse simulation's rms (measured: docs/explanation/verification.md)."""
 RMS_ALLOWANCE_M_S: Final = 0.001
 BIAS_ALLOWANCE: Final = 0.1
 """Of the rms; the bias of the coarse simulation, and that of the solver's grid."""

@@ -1,8 +1,8 @@
 """The estimator of a table: its data, and what a controller computes with them, in float32.
 
 Every sum, product and quotient is rounded to binary32 by storing and loading it. The order of the operations is that of
-docs/table-format.md, "The recursion"; the arithmetic, the search for the break and the handling of readings are this
-program's own.
+docs/reference/table-format.md, "The recursion"; the arithmetic, the search for the break and the handling of readings
+are this program's own.
 """
 
 from __future__ import annotations

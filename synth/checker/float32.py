@@ -102,7 +102,7 @@ def decide(
     v_m_s: float,
     rise_m_s: tuple[float, float] = (0.0, 0.0),
 ) -> int:
-    """The stage to command: the rule of docs/table-format.md for (lower, upper) `lines` of stages 0, 1, …
+    """The stage to command: the rule of docs/reference/table-format.md for (lower, upper) `lines` of stages 0, 1, …
 
     `farthest`: how many stages one command may go. `rise_m_s`: what the pressure adds to the two lines of the stage, as
     `rises` gives it; 0 for a table without slopes.

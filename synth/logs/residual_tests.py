@@ -43,7 +43,7 @@ LAWS: Final = {
     asked.RESISTANCE_BY_SPEED: Effect("running resistance changes with speed", "% a m/s", 10.0),
 }
 """These move the median exit speed of the default tables by about 0.01 m/s at most, a tenth of what acceptance allows
-for the rms (docs/identify.md has the figures)."""
+for the rms (docs/how-to/identify.md has the figures)."""
 
 MOTION: Final = Effect("surprises of the speed go together from reading to reading", "m/s", 0.01)
 """The same 0.01 m/s."""

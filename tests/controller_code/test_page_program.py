@@ -18,7 +18,7 @@ from tuning_tables import decide_for
 from tuning_tables.c_source import c_files
 from tuning_tables.table_book import TableBook
 
-PAGE = Path(__file__).parents[2] / "docs" / "controllers.md"
+PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "controllers.md"
 ASK = """
 int commanded(unsigned number, int stage, float s_m, float v_m_s)
 {

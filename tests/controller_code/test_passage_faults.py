@@ -101,5 +101,5 @@ def test_the_self_test_finds_a_wrong_controller(
 
 
 def test_the_page_tells_how_many_faults_are_put_into_it() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "controllers.md").read_text("utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "how-to" / "controllers.md").read_text("utf-8")
     assert f"{len(MUTANTS)} faults put into the C" in page

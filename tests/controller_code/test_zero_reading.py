@@ -10,7 +10,7 @@ from tuning_tables.estimator import begin, unseen_samples
 from tuning_tables.rule import decide_for, speed_for
 from tuning_tables.st_source import TABLE_FILE, st_files
 
-PAGE = Path(__file__).parents[2] / "docs" / "controllers.md"
+PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "controllers.md"
 
 
 def test_zero_is_believed_and_lowers() -> None:

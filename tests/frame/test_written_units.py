@@ -83,7 +83,7 @@ def test_every_declared_number_may_be_written_with_its_units(
 
 
 def test_the_page_tells_all_of_them() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "hump-trials.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "how-to" / "hump-trials.md").read_text(encoding="utf-8")
     for unit, written in UNITS.items():
         assert f"| {unit} | {', '.join(f'`{name}`' for name in written)} |\n" in page
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from scripts.studies.documents import KEPT, documents, filled, listed, result_of, stale, written
+from scripts.studies.documents import DATA, KEPT, filled, listed, result_of, stale, written
 from scripts.studies.registry import STUDIES
 from synth.frame.input_error import InputError
 
@@ -20,10 +20,21 @@ def test_every_marked_table_is_that_of_its_study() -> None:
     assert stale(ROOT) == []
 
 
-def test_kept_results_are_those_of_known_studies_and_are_shown() -> None:
+def test_kept_results_are_those_of_known_studies_and_have_a_page() -> None:
     assert set(KEPT_NAMES) <= {study.name for study in STUDIES}
-    shown = set(re.findall(r"<!-- study (\S+) ", "".join(p.read_text(encoding="utf-8") for p in documents(ROOT))))
-    assert shown == set(KEPT_NAMES)
+    assert sorted(path.stem for path in (ROOT / DATA).glob("*.md")) == KEPT_NAMES
+
+
+def test_a_page_of_data_is_written_where_it_is_missing(checkout: Path) -> None:
+    missing = checkout / DATA / f"{KEPT_NAMES[0]}.md"
+    text = missing.read_text(encoding="utf-8")
+    missing.unlink()
+    assert stale(checkout) == [
+        f"{missing.relative_to(checkout)}: its tables are not those of docs/studies; "
+        "'retarder-synth study --document' writes them"
+    ]
+    assert written(checkout) == [missing]
+    assert missing.read_text(encoding="utf-8") == text
 
 
 @pytest.mark.parametrize("name", KEPT_NAMES)
@@ -34,8 +45,8 @@ def test_a_kept_result_was_run_with_the_options_of_the_documentation(name: str) 
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    (tmp_path / "docs").mkdir()
-    shutil.copytree(ROOT / KEPT, tmp_path / KEPT)
+    for folder in (KEPT, DATA):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
     (tmp_path / "README.md").write_text("nothing\n", encoding="utf-8")
     return tmp_path
 
@@ -55,7 +66,8 @@ def test_a_stale_table_is_found_and_mended(checkout: Path) -> None:
         "docs/page.md: its tables are not those of docs/studies; 'retarder-synth study --document' writes them"
     ]
     assert written(checkout) == [path]
-    expected = f"before\n{mark}{each.markdown()}<!-- end -->\n<!-- studies -->\n{listed()}<!-- end -->\nafter\n"
+    studies = f"<!-- studies -->\n{listed(path.parent, checkout)}<!-- end -->\n"
+    expected = f"before\n{mark}{each.markdown()}<!-- end -->\n{studies}after\n"
     assert path.read_text(encoding="utf-8") == expected
     assert stale(checkout) == []
     assert written(checkout) == []

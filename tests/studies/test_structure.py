@@ -11,7 +11,7 @@ import pytest
 
 from plant_models import Approach, Plant
 from scripts.studies.document_pictures import pictures_of
-from scripts.studies.documents import KEPT, result_of, stale, written
+from scripts.studies.documents import DATA, KEPT, result_of, stale, written
 from scripts.studies.structure.study import (
     SENSORS,
     WIRED_TOLERANCE_M_S,
@@ -35,6 +35,7 @@ from synth.simulation.structure.radar_diagram import radar_diagram
 from tests.synth.test_control_system import table_for
 
 ROOT = Path(__file__).parents[2]
+PICTURES = Path("docs/pictures")
 
 
 def apart_m_s(plant: Plant, change: Callable[[Diagram], Diagram], entry_u: float = 0.5) -> float:
@@ -109,18 +110,19 @@ def test_the_documents_show_the_parts_that_there_are() -> None:
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    (tmp_path / "docs").mkdir()
-    shutil.copytree(ROOT / KEPT, tmp_path / KEPT)
+    for folder in (KEPT, DATA):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
+    (tmp_path / PICTURES).mkdir()
     (tmp_path / "README.md").write_text("nothing\n", encoding="utf-8")
     return tmp_path
 
 
 def test_a_stale_picture_is_found_and_drawn_anew(checkout: Path) -> None:
     page = checkout / "docs" / "page.md"
-    page.write_text("<!-- picture structure radar -->\n![text](structure-radar.svg)\n", encoding="utf-8")
-    file = checkout / "docs" / "structure-radar.svg"
+    page.write_text("<!-- picture structure radar -->\n![text](pictures/structure-radar.svg)\n", encoding="utf-8")
+    file = checkout / PICTURES / "structure-radar.svg"
     told = [
-        "docs/structure-radar.svg: this is not the picture that docs/studies/structure.json gives; "
+        "docs/pictures/structure-radar.svg: this is not the picture that docs/studies/structure.json gives; "
         "'retarder-synth study --document' writes them"
     ]
     assert stale(checkout) == told
@@ -128,7 +130,7 @@ def test_a_stale_picture_is_found_and_drawn_anew(checkout: Path) -> None:
     assert stale(checkout) == []
     assert written(checkout) == []
     drawn = file.read_text(encoding="utf-8")
-    assert drawn == (ROOT / "docs" / "structure-radar.svg").read_text(encoding="utf-8")
+    assert drawn == (ROOT / PICTURES / "structure-radar.svg").read_text(encoding="utf-8")
     file.write_text(drawn.replace("drawn: ", "drawn: 0"), encoding="utf-8")
     assert stale(checkout) == told
 

@@ -14,8 +14,10 @@ from plant_models.library.source import CITATION, sources_from_toml
 from synth.retarder.configuration.config_template import default_config_toml
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "sources.md").read_text(encoding="utf-8")
-PAGES = {path.name: path.read_text(encoding="utf-8") for path in (ROOT / "docs").glob("*.md")}
+PAGE = (ROOT / "docs" / "reference" / "sources.md").read_text(encoding="utf-8")
+PAGES = {
+    path.name: path.read_text(encoding="utf-8") for path in (ROOT / "docs").rglob("*.md") if path.parent.name != "data"
+}
 LIBRARY = [path for path in (ROOT / "plant_models" / "library").rglob("*.toml") if path.name != "sources.toml"]
 
 NOBODY_CAN_OPEN = re.compile(

@@ -196,7 +196,7 @@ def test_the_example_of_the_readme_runs_and_makes_the_table_of_the_default_book(
 
 @pytest.mark.long
 def test_the_examples_of_the_page_run(tmp_path: Path) -> None:
-    printed = run(blocks("docs/python.md"), tmp_path)
+    printed = run(blocks("docs/how-to/python.md"), tmp_path)
     assert "within ±" in printed
     assert {path.name for path in tmp_path.iterdir()} == {"lines.png", "passes.png", "table.json"}
 

@@ -1,4 +1,5 @@
-"""docs/table-format.md states the estimator: its text, run as it stands, gives every bit of the golden tracks.
+"""docs/reference/table-format.md states the estimator: its text, run as it stands, gives every bit of the golden
+tracks.
 
 Nothing here knows the estimator of this project: the filter is what the page says, the numbers are those of the JSON
 file, the tracks those of the exported CSV file.
@@ -26,7 +27,7 @@ from tests.controller_code.sample_book import approaching_book, estimating_book
 from tuning_tables import TableBook, to_json
 from tuning_tables.c_source import c_files
 
-PAGE = Path(__file__).parents[2] / "docs" / "table-format.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "table-format.md"
 STATE = (
     "begun", "s", "v", "xi", "x", "P11", "P12", "P13", "P22", "P23", "P33", "unseen", "reading", "repeated", "count",
     "doubted",

@@ -1,4 +1,4 @@
-"""docs/table-format.md, decisions at any time: its example, its answers and its text are right."""
+"""docs/reference/table-format.md, decisions at any time: its example, its answers and its text are right."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tuning_tables import ControllerTable, decide_for, from_json, to_json
 from tuning_tables.golden_vectors import golden_vectors, line_speeds
 from tuning_tables.rule import rises_at
 
-PAGE = (Path(__file__).parents[2] / "docs" / "table-format.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "table-format.md").read_text(encoding="utf-8")
 SECTION = PAGE.partition("\n## Decisions at any time")[2].partition("\n## ")[0]
 ANSWERS = {"lower": -1, "hold": 0, "raise": 1}
 

@@ -28,8 +28,8 @@ ARITHMETIC: Final = (
     "rounding once, as 53 >= 2 * 24 + 2 (Figueroa 1995). Constants that are compared or calculated with stand in VAR "
     "CONSTANT as REAL, because many compilers hold a bare literal in double precision. Loops are WHILE loops, because "
     "compilers differ in a FOR of one pass, or of none.",
-    "Which compilers have run it, and which have not, stands in docs/structured-text.md. Run the self-test on the "
-    "controller.",
+    "Which compilers have run it, and which have not, stands in docs/reference/structured-text.md. Run the self-test "
+    "on the controller.",
 )
 
 SELECT_NOTE: Final = (

@@ -12,7 +12,8 @@ It is the steady state of a Kalman filter for a mean that walks at random: gain 
 deviation of b is spread √K, of which t is the double. The shrinkage is the non-negative garrote (Breiman 1995): it is
 continuous, does nothing below t, and leaves t²/b above it, where a soft threshold would leave t for ever.
 
-All arithmetic is float32, one rounding an operation, in the order written; docs/correction.md states it, and proves
+All arithmetic is float32, one rounding an operation, in the order written; docs/explanation/correction.md states it,
+and proves
 |c| <= limit and |c' - c| <= step.
 """
 

@@ -23,7 +23,7 @@ from synth.aim.scene import AimScene
 Floats = NDArray[np.float64]
 
 EXIT_STD_M_S = 0.03
-"""What the exported tables reach at other positions (docs/results.md)."""
+"""What the exported tables reach at other positions (docs/reference/results.md)."""
 
 ANEMOMETER_STD_M_S = 0.5
 """What the wind of a cut is uncertain by where an anemometer tells the wind of the hour; assumed."""

@@ -1,7 +1,7 @@
 """The same rolls in numpy, all cuts at once: what a careful user would write.
 
-Written from the equations of docs/rolling.md without a look at the kernel: Heun's rule in the energy, steps of one
-length, falls by interpolation in a table for each type of car.
+Written from the equations of docs/explanation/rolling.md without a look at the kernel: Heun's rule in the energy, steps
+of one length, falls by interpolation in a table for each type of car.
 """
 
 from __future__ import annotations

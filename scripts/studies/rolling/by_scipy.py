@@ -1,4 +1,4 @@
-"""The equation of motion of one cut in time, written from docs/rolling.md axle by axle, and solved by scipy."""
+"""The equation of motion of one cut in time, written from docs/explanation/rolling.md axle by axle; solved by scipy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An aim table read from its JSON document, as docs/aim-table.md has it."""
+"""An aim table read from its JSON document, as docs/reference/aim-table.md has it."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from synth.checker.float32 import rounded
 
 
 def exit_speed(aim: Aim, cars: int, distance_m: float, resistance: float) -> float | None:
-    """The exit speed in m/s that docs/aim-table.md gives for a cut; None for no answer."""
+    """The exit speed in m/s that docs/reference/aim-table.md gives for a cut; None for no answer."""
     d, w = rounded(distance_m), rounded(resistance)
     if not aim.cars[0] <= cars <= aim.cars[-1] or not math.isfinite(d) or d < rounded(aim.distances_m[0]):
         return None

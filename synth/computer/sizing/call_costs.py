@@ -62,7 +62,7 @@ def c_costs() -> CallCosts:
 
 
 def st_costs() -> CallCosts:
-    """Operations of the exported Structured Text, counted in its parse tree (docs/structured-text.md).
+    """Operations of the exported Structured Text, counted in its parse tree (docs/reference/structured-text.md).
 
     `select`: between two tables in a book of 6, then each of 9 tables more, and the copy of an estimator of 16 breaks,
     the difference of the two loads: put together, not counted in one. `aim`: the choice of the aim table, its load, and
@@ -74,5 +74,5 @@ def st_costs() -> CallCosts:
         select=1596 + 9 * 9 + 524 - 338,
         aim=178 + 2178 + 399,
         intact=None,
-        source="operations of Structured Text as executed: docs/structured-text.md",
+        source="operations of Structured Text as executed: docs/reference/structured-text.md",
     )

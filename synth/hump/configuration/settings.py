@@ -35,7 +35,9 @@ class TrainSettings(CountedTrains):
 
     one_wind_a_train: bool = choice(False, "one draw of the wind a train; false: one a cut")
     list: str | None = choice(
-        None, "in place of cuts, cars and shares one sorting list again and again (docs/hump-trials.md)", "train.csv"
+        None,
+        "in place of cuts, cars and shares one sorting list again and again (docs/how-to/hump-trials.md)",
+        "train.csv",
     )
     cuts: int = setting(40, "1", 2, 999, "cuts of a train", f"{JUDGEMENT}: a train of 70 cars or so")
     cars_mean: float = setting(
@@ -227,7 +229,8 @@ class HumpTrialSettings(TopKeys):
     MEANT: ClassVar = dict.fromkeys(("exit_speed_m_s", "exit_m_s", "exit_speed"), "position.exit_m_s")
 
     hump: str = choice(
-        DEFAULT_HUMP, f"the hump; one of {', '.join(hump_names())}, or the path of your own file (docs/hump-file.md)"
+        DEFAULT_HUMP,
+        f"the hump; one of {', '.join(hump_names())}, or the path of your own file (docs/reference/hump-file.md)",
     )
     lead: int | None = choice(
         None, "signal at the crest that trains come over; left out: the first of the hump file", 201

@@ -30,7 +30,7 @@ def hump_toml(short: ShortHump, name: str) -> str:
 
 def head_lines(short: ShortHump, name: str) -> Iterator[str]:
     """What the file is."""
-    yield f"# Made by 'retarder-synth hump make' from {name}; docs/hump-file.md tells every key."
+    yield f"# Made by 'retarder-synth hump make' from {name}; docs/reference/hump-file.md tells every key."
     yield f'format = "{FORMAT}"'
     yield f"version = {VERSION}"
     yield f"title = {value_text(short.title)}"

@@ -1,4 +1,4 @@
-"""One step of a roll in the energy e = v²/2, sixteen cuts side by side (method: docs/rolling.md).
+"""One step of a roll in the energy e = v²/2, sixteen cuts side by side (method: docs/explanation/rolling.md).
 
 What the track gives, and what does not depend on the speed, enters by exact differences along a step. Means of v and v²
 are those of an energy that is linear along the step, and to first order of what the track adds to that; so the root of

@@ -13,6 +13,6 @@ class TopKeys(Section):
 
     title: Title | None = choice(None, "title of the page", "…")
     library: tuple[str, ...] = many(
-        (), 0, 20, "folders", "folders with your own types (docs/own-types.md)", example=["my-types/"]
+        (), 0, 20, "folders", "folders with your own types (docs/how-to/own-types.md)", example=["my-types/"]
     )
     weight_categories: str = named_type(YARD_CATEGORIES, WEIGHT_CATEGORIES, "the weight categories")

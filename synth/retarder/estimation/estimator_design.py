@@ -31,7 +31,7 @@ LOST_SPEED_STD_M_S = 0.2
 
 UNLIKELY_STDS = 2.4
 """Of the friction of any day: a cut beyond it is not of the table's category. How often that is said
-wrongly stands in docs/radar-faults.md."""
+wrongly stands in docs/explanation/radar-faults.md."""
 
 SECTIONS = 10
 """Of the path, each with figures of its own for the error of an estimate."""

@@ -9,7 +9,7 @@ from synth.hump.hump_file import parse_hump
 from synth.hump.making.hump_toml import hump_toml
 from synth.hump.making.short_file import read_short_hump
 
-PAGE = (Path(__file__).parents[3] / "docs" / "hump-file.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "hump-file.md").read_text(encoding="utf-8")
 
 
 def test_the_files_on_the_page() -> None:

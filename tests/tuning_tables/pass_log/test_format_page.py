@@ -1,4 +1,4 @@
-"""docs/pass-log.md names every column, unit and attribute, and its examples read as it says."""
+"""docs/reference/pass-log.md names every column, unit and attribute, and its examples read as it says."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tuning_tables.pass_log.hdf5_columns import FORMAT
 from tuning_tables.pass_log.log_columns import COLUMNS
 from tuning_tables.pass_log.log_mapping import PATHS, UNITS, LogMapping, read_mapping
 
-PAGE = (Path(__file__).parents[3] / "docs" / "pass-log.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "pass-log.md").read_text(encoding="utf-8")
 
 
 def block(language: str) -> str:

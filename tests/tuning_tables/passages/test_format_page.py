@@ -1,4 +1,4 @@
-"""docs/table-format.md, decisions at sensor passages: its example, its steps and its text are right."""
+"""docs/reference/table-format.md, decisions at sensor passages: its example, its steps and its text are right."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tuning_tables.programs.passage_table import NONE
 from tuning_tables.programs.tracker import begin_cut, believed_passage
 from tuning_tables.table_kinds import KINDS
 
-PAGE = (Path(__file__).parents[3] / "docs" / "table-format.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "table-format.md").read_text(encoding="utf-8")
 SECTION = PAGE.partition("## Decisions at sensor passages")[2].partition("## HDF5 book")[0]
 
 

@@ -1,4 +1,4 @@
-"""The figures of docs/structured-text.md: operations executed by the parse tree, and bytes of its variables."""
+"""The figures of docs/reference/structured-text.md: operations executed by the parse tree, bytes of its variables."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
 
-PAGE = Path(__file__).parents[3] / "docs" / "structured-text.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "structured-text.md"
 BYTES = {"REAL": 4, "INT": 2, "BOOL": 1}
 
 

@@ -12,7 +12,7 @@ from tests.controller_code.weighed_cuts import SAMPLES, TARGET_M_S, braked_by, w
 from tests.tuning_tables.st.evaluator import Program
 from tuning_tables.st_source import TABLE_FILE, st_files
 
-PAGE = Path(__file__).parents[3] / "docs" / "structured-text.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "structured-text.md"
 CUTS = 300
 CATEGORIES = range(1, 6)
 HEAD = """

@@ -178,7 +178,7 @@ def test_a_wrong_block_is_found_by_the_small_self_test(before: str, after: str) 
 
 
 def test_the_page_tells_what_is_asked_here() -> None:
-    page = (Path(__file__).parents[3] / "docs" / "controllers.md").read_text("utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "how-to" / "controllers.md").read_text("utf-8")
     assert f"{FEW // 1000} 000 questions to the rules of each kind" in page
     assert f"with `scripts/test --long` {MANY // 10**6} 000 000" in page
     assert f"{len(CHANGES)} in the Structured Text" in page

@@ -13,7 +13,7 @@ from synth.hump.control.machine_record import WIDTHS
 from synth.hump.control.sorting_list_file import COLUMNS
 
 ROOT = Path(__file__).parents[4]
-PAGE = (ROOT / "docs/hump-control.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/explanation/hump-control.md").read_text(encoding="utf-8")
 
 
 def test_the_example_runs(tmp_path: Path) -> None:
