@@ -19,7 +19,7 @@ CERTAINTY: Final = 2.0
 """Standard deviations of b that are not believed: t = 2 spread √K."""
 
 CLIP: Final = 3.0
-"""Spreads at which a surprise is clipped: 0.3 % of normal exits are."""
+"""Spreads at which an innovation is clipped: 0.3 % of normal exits are."""
 
 LEAST_LIMIT_M_S, LARGEST_LIMIT_M_S = 0.01, 0.5
 

@@ -67,10 +67,10 @@ class Row:
     rms: Measure
     p95: Measure
     p99: Measure
-    out_of_brake: Measure
+    brake_saturated: Measure
     rms_within: Measure
     predicted_rms_m_s: float
-    honesty: Measure
+    prediction_ratio: Measure
     regret: Measure | None
     best_baseline: str
     baseline_rms: Measure
@@ -88,7 +88,7 @@ class Results(Findings):
 
     def tables(self) -> Mapping[str, MarkdownTable]:
         """`results` and `off-nominal`: a row a case; `summary`: a row a class."""
-        heads = ("case", "feasible", "rms", "95 of 100 within ±", "99 of 100 within ±", "out of brake, in 10 000",
+        heads = ("case", "feasible", "rms", "95 of 100 within ±", "99 of 100 within ±", "brake saturated, in 10 000",
                  "rms of the others", "predicted rms", "predicted / simulated", "regret",
                  "best baseline")  # fmt: skip
         conditions = dict.fromkeys(each.name for row in self.rows for each in row.off_nominal)
@@ -115,7 +115,7 @@ class Results(Findings):
 
 def short_cell(row: Row) -> str:
     """'0.1382 [0.1354, 0.1412]°; 182'."""
-    return f"{row.rms.cell(4)}{'' if row.feasible else '°'}; {few(1e4 * row.out_of_brake.value)}"
+    return f"{row.rms.cell(4)}{'' if row.feasible else '°'}; {few(1e4 * row.brake_saturated.value)}"
 
 
 def changed_cells(row: Row, conditions: tuple[str, ...]) -> tuple[str, ...]:
@@ -126,11 +126,11 @@ def changed_cells(row: Row, conditions: tuple[str, ...]) -> tuple[str, ...]:
 
 def cells(row: Row) -> tuple[str, ...]:
     """The cells of one case."""
-    most, (low, high) = 1e4 * row.out_of_brake.value, (1e4 * end for end in row.out_of_brake.ci95)
+    most, (low, high) = 1e4 * row.brake_saturated.value, (1e4 * end for end in row.brake_saturated.ci95)
     return (
         f"{row.label} to {row.target_m_s:g} m/s", "yes" if row.feasible else "no", row.rms.cell(4), row.p95.cell(3),
         row.p99.cell(3), f"{few(most)} [{few(low)}, {few(high)}]", row.rms_within.cell(4),
-        f"{row.predicted_rms_m_s:.4f}", row.honesty.cell(3),
+        f"{row.predicted_rms_m_s:.4f}", row.prediction_ratio.cell(3),
         ABSENT if row.regret is None else row.regret.cell(3),
         f"{row.baseline_rms.cell(4)} ({row.best_baseline})",
     )  # fmt: skip
@@ -158,10 +158,10 @@ def row_of(case: CaseResult, verdict: CaseVerdict) -> Row:
         rms=Measure(found.rms_m_s, found.rms_ci95_m_s),
         p95=Measure(found.p95_m_s, found.p95_ci95_m_s),
         p99=Measure(found.p99_m_s, found.p99_ci95_m_s),
-        out_of_brake=Measure(power.out_of_brake, power.out_of_brake_ci95),
+        brake_saturated=Measure(power.brake_saturated, power.brake_saturated_ci95),
         rms_within=Measure(power.rms_within_m_s, power.rms_within_ci95_m_s),
         predicted_rms_m_s=table.predicted_rms_m_s,
-        honesty=Measure(table.honesty, table.honesty_ci95),
+        prediction_ratio=Measure(table.prediction_ratio, table.prediction_ratio_ci95),
         regret=Measure(compared.regret, compared.regret_ci95) if compared.has_reference else None,
         best_baseline=best.name,
         baseline_rms=Measure(best.statistics.rms_m_s, best.statistics.rms_ci95_m_s),

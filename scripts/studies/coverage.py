@@ -47,7 +47,7 @@ MOST_BLOCKS = 1000
 
 STATISTICS = {"rms": "rms_m_s", "bias": "bias_m_s", "95 of 100": "p95_m_s", "99 of 100": "p99_m_s",
               "over-speed": "overspeed", "switchings": "switchings"}  # fmt: skip
-BRAKE_POWER = {"out of brake": "out_of_brake", "rms of others": "rms_within_m_s"}
+BRAKE_POWER = {"brake saturated": "brake_saturated", "rms of others": "rms_within_m_s"}
 RATIO, VERIFY = "rms / rms of the solver's lines", "rms of verify"
 
 ASKED_AT_DEFAULT, ASKED = (0.92, 0.98), (0.90, 1.0)

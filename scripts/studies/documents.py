@@ -42,8 +42,8 @@ def documents(root: Path) -> Iterator[Path]:
     if not (root / KEPT).is_dir():
         raise InputError(f"{root}: there is no {KEPT} here; run the command in a checkout of retarder-synth")
     yield root / "README.md"
-    pages = (root / PAGES).rglob("*.md")
-    yield from sorted(page for page in pages if page.parent != root / DATA)
+    made = {data_file(root, result.stem) for result in (root / KEPT).glob("*.json")}
+    yield from sorted(page for page in (root / PAGES).rglob("*.md") if page not in made)
 
 
 def kept(root: Path, name: str) -> Path:

@@ -1,4 +1,4 @@
-"""Passes that end near the target, apart from the rare cuts that run out of brake power whatever the lines."""
+"""Passes that end near the target, apart from the rare cuts that saturate the brake whatever the lines."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from synth.simulation.passes import ExitSample
 
 NEAR_M_S = 0.3
-"""Cuts farther off than this have run out of brake power, and no line can mend that."""
+"""Cuts farther off than this have saturated the brake, and no line can mend that."""
 
 
 @dataclass(frozen=True)

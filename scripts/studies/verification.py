@@ -21,7 +21,7 @@ from scripts.studies.markdown_table import Interval, MarkdownTable, around, tabl
 from scripts.studies.options import option
 from scripts.studies.side_by_side import THREADS
 from scripts.studies.study import Findings, Method, Tell
-from synth.checker.claims import Honesty, own_faults, simulated_faults
+from synth.checker.claims import PredictionRatio, own_faults, simulated_faults
 from synth.checker.coarse_simulation import Passes, simulate
 from synth.checker.low_friction import GROUP
 from synth.checker.statistics import figures_of
@@ -38,7 +38,7 @@ from tuning_tables import write_json
 
 FACTORS = (1.0, 0.5, 0.8, 1.25)
 SEED = 11
-USUAL_HONESTY = Honesty(0.9, 1.1)
+USUAL_PREDICTION_RATIO = PredictionRatio(0.9, 1.1)
 """Where the configuration sets no limit."""
 
 
@@ -112,21 +112,28 @@ def row_of(directory: Path, options: Options, name: str) -> Row:
     """The shares of the table in the file `name`."""
     summary = read_summary(directory / "summary.json")
     read = read_table((directory / "tables" / name).read_bytes())
-    pool, honesty = simulate(summary.plant(read), read, options.pool, SEED), summary.honesty() or USUAL_HONESTY
+    pool, prediction_ratio = (
+        simulate(summary.plant(read), read, options.pool, SEED),
+        summary.prediction_ratio() or USUAL_PREDICTION_RATIO,
+    )
     whole, (stated, _) = figures_of(pool, read.target_m_s), validated(read)
     low, high = whole.rms_ci95_m_s
-    doubts = (each for passes in options.passes for each in doubts_of(read, pool, honesty, passes, options.trials))
+    doubts = (
+        each for passes in options.passes for each in doubts_of(read, pool, prediction_ratio, passes, options.trials)
+    )
     return Row(read.id, whole.rms_m_s / stated, (low / stated, high / stated), tuple(doubts))
 
 
-def doubts_of(read: Table, pool: Passes, honesty: Honesty, passes: int, trials: int) -> list[Doubts]:
+def doubts_of(read: Table, pool: Passes, prediction_ratio: PredictionRatio, passes: int, trials: int) -> list[Doubts]:
     """The shares of one number of passes; every factor is judged by the same samples."""
     random, hits = Random(passes), dict.fromkeys(FACTORS, 0)
     for _ in range(trials):
         found = figures_of(sample_of(pool, passes, random), read.target_m_s)
         for factor in FACTORS:
             claimed = with_rms_times(read, factor)
-            hits[factor] += bool([*own_faults(claimed, honesty), *simulated_faults(claimed, found, honesty)])
+            hits[factor] += bool(
+                [*own_faults(claimed, prediction_ratio), *simulated_faults(claimed, found, prediction_ratio)]
+            )
     return [Doubts(passes, factor, hit / trials) for factor, hit in hits.items()]
 
 

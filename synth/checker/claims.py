@@ -44,7 +44,7 @@ NORMAL_95: Final = 1.959963984540054
 
 
 @dataclass(frozen=True)
-class Honesty:
+class PredictionRatio:
     """Limits of predicted rms / simulated rms, as the configuration of the tune sets them."""
 
     low: float
@@ -100,7 +100,7 @@ class Claims(Protocol):
         ...
 
 
-def own_faults(table: Claims, honesty: Honesty) -> Iterator[str]:
+def own_faults(table: Claims, prediction_ratio: PredictionRatio) -> Iterator[str]:
     """Claims that contradict themselves or one another, without any simulation."""
     rms, bias = table.predicted_rms_m_s, table.bias_m_s
     if rms < 0.0 or abs(bias) > rms * (1.0 + 1e-9):
@@ -118,11 +118,11 @@ def own_faults(table: Claims, honesty: Honesty) -> Iterator[str]:
         yield f"the validated rms of {stated:.4g} m/s is not within its interval, {low:.4g} to {high:.4g}"
         return
     low, high = chance_interval(table.validated_rms_m_s, (low, high), table.passes, table.predicted_passes)
-    least, most = low * honesty.low, high * honesty.high
+    least, most = low * prediction_ratio.low, high * prediction_ratio.high
     if not least <= rms <= most:
         yield (
-            f"the predicted rms of {rms:.4f} m/s does not agree with the validated one: its interval and the honesty "
-            f"limits of the configuration allow {least:.4f} to {most:.4f} m/s"
+            f"the predicted rms of {rms:.4f} m/s does not agree with the validated one: its interval and the "
+            f"configuration's limits of the prediction ratio allow {least:.4f} to {most:.4f} m/s"
         )
 
 
@@ -140,11 +140,11 @@ def chance_interval(
     return rms_m_s * (ci95_m_s[0] / rms_m_s) ** wider, rms_m_s * (ci95_m_s[1] / rms_m_s) ** wider
 
 
-def simulated_faults(table: Claims, found: ExitFigures, honesty: Honesty) -> Iterator[str]:
+def simulated_faults(table: Claims, found: ExitFigures, prediction_ratio: PredictionRatio) -> Iterator[str]:
     """Claims that the coarse simulation does not confirm."""
     if table.validated_rms_m_s is not None:
         yield from rms_fault("validated", table.validated_rms_m_s, (1.0, 1.0), found, None)
-    limits = (1.0 / honesty.high, 1.0 / honesty.low)
+    limits = (1.0 / prediction_ratio.high, 1.0 / prediction_ratio.low)
     yield from rms_fault("predicted", table.predicted_rms_m_s, limits, found, table.predicted_passes)
     root_n = math.sqrt(joint_count(found.passes, table.predicted_passes))
     error_std = max(found.error_std, table.predicted_rms_m_s)

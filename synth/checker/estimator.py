@@ -234,11 +234,11 @@ class Observer:
     def _weighed(self, measured: float, heard: bool, leaps: bool) -> bool:
         """Take a reading; whether it is believed. `heard`: so that there was one at the sample before to leap from."""
         r = rounded
-        total, surprise = r(self.vv + self._held.speed_variance), r(measured - self.v)
+        total, innovation = r(self.vv + self._held.speed_variance), r(measured - self.v)
         strange = leaps if heard else measured < SLOWEST_M_S
-        if (strange or self.doubted > 0.0) and r(surprise * surprise) > r(GATE**2 * total):
+        if (strange or self.doubted > 0.0) and r(innovation * innovation) > r(GATE**2 * total):
             return self._doubt(measured, leaps)
-        self._correct(total, surprise)
+        self._correct(total, innovation)
         return True
 
     def _doubt(self, measured: float, leaps: bool) -> bool:
@@ -250,13 +250,13 @@ class Observer:
             self._first(self.s, measured)
         return anew
 
-    def _correct(self, total: float, surprise: float) -> None:
-        """Weigh in a reading that is `surprise` above the speed; `total`: variance of that."""
+    def _correct(self, total: float, innovation: float) -> None:
+        """Weigh in a reading that is `innovation` above the speed; `total`: variance of that."""
         r, vv, vx, va = rounded, self.vv, self.vx, self.va
         to_v, to_x, to_a = r(vv / total), r(vx / total), r(va / total)
-        self.v = max(r(self.v + r(to_v * surprise)), SLOWEST_M_S)
-        self.x = min(max(r(self.x + r(to_x * surprise)), LEAST_FACTOR), MOST_FACTOR)
-        self.a = min(max(r(self.a + r(to_a * surprise)), -MOST_EXCESS_M_S2), MOST_EXCESS_M_S2)
+        self.v = max(r(self.v + r(to_v * innovation)), SLOWEST_M_S)
+        self.x = min(max(r(self.x + r(to_x * innovation)), LEAST_FACTOR), MOST_FACTOR)
+        self.a = min(max(r(self.a + r(to_a * innovation)), -MOST_EXCESS_M_S2), MOST_EXCESS_M_S2)
         self.vv, self.vx, self.va = r(vv - r(to_v * vv)), r(vx - r(to_v * vx)), r(va - r(to_v * va))
         self.xx = max(r(self.xx - r(to_x * vx)), 0.0)
         self.xa = r(self.xa - r(to_x * va))

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from synth.checker.canonical import canonical_form, parse_json
-from synth.checker.claims import Honesty
+from synth.checker.claims import PredictionRatio
 from synth.checker.finding import DamagedError, shown
 from synth.checker.passages.reading import PassageTable
 from synth.checker.plant import Plant, Reader, UnusableConfigError, config_sha256, plant_of
@@ -17,7 +17,7 @@ from synth.checker.source_file import content_of
 from synth.checker.stated_off_nominal import off_nominal_faults
 from synth.checker.table_reading import Table
 
-DEFAULT_HONESTY: Final = Honesty(0.9, 1.1)
+DEFAULT_PREDICTION_RATIO: Final = PredictionRatio(0.9, 1.1)
 """Where no configuration sets others."""
 CARRIERS: Final = ("book.h5", "tables/", "c/", "st/")
 """What files that hold tables are called; pictures and report may go without a word."""
@@ -53,14 +53,17 @@ class Summary:
             return None
         return f"its configuration hashes to {found[:16]}…, but it says {self.config_sha256[:16]}…"
 
-    def honesty(self) -> Honesty:
+    def prediction_ratio(self) -> PredictionRatio:
         """The limits that predicted rms / simulated rms must keep."""
         at = Reader(self.config)
         try:
-            low, high = at.number("acceptance.honesty_low", 0.1, 1.0), at.number("acceptance.honesty_high", 1.0, 10.0)
+            low, high = (
+                at.number("acceptance.prediction_ratio_low", 0.1, 1.0),
+                at.number("acceptance.prediction_ratio_high", 1.0, 10.0),
+            )
         except UnusableConfigError:
-            return DEFAULT_HONESTY
-        return Honesty(low, high)
+            return DEFAULT_PREDICTION_RATIO
+        return PredictionRatio(low, high)
 
     @property
     def estimating(self) -> bool:

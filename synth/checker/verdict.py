@@ -21,7 +21,7 @@ from synth.checker.passages.simulation import simulate as simulate_passages
 from synth.checker.plant import UnusableConfigError
 from synth.checker.source import Source, read_source
 from synth.checker.statistics import ExitFigures, figures_of
-from synth.checker.summary import DEFAULT_HONESTY, OtherSummaryError, Summary, read_summary
+from synth.checker.summary import DEFAULT_PREDICTION_RATIO, OtherSummaryError, Summary, read_summary
 from synth.checker.table_reading import Table
 from synth.checker.table_sense import exit_gap_m_s, sense
 
@@ -144,9 +144,9 @@ def judge_figures(
     table: Table | PassageTable, summary: Summary | None, passes: int, seed: int, senseless: bool
 ) -> FigureVerdict:
     """The figures of a table against one another, against the summary, and against coarse passes of its plant."""
-    honesty = summary.honesty() if summary else DEFAULT_HONESTY
+    prediction_ratio = summary.prediction_ratio() if summary else DEFAULT_PREDICTION_RATIO
     disagreements: list[str] = []
-    claims = list(own_faults(table, honesty))
+    claims = list(own_faults(table, prediction_ratio))
     figures, skipped = None, None
     if senseless:
         skipped = "it makes no sense"
@@ -165,7 +165,7 @@ def judge_figures(
             else:
                 coarse = simulate_passages(plant, table, passes, seed)
             figures = figures_of(coarse, table.target_m_s)
-            claims += simulated_faults(table, figures, honesty)
+            claims += simulated_faults(table, figures, prediction_ratio)
         except UnusableConfigError as fault:
             disagreements.append(str(fault))
             skipped = "the plant is not known"

@@ -34,7 +34,7 @@ TOP: Final = CommandGuide(
         "inspect": Shown("inspect out", "reference/table-format.md"),
         "export": Shown("export out --format st -o out/st", "how-to/controllers.md"),
         "init": Shown("init --hump > my-trial.toml", "how-to/own-types.md"),
-        "study": Shown("study --list", "reference/studies.md"),
+        "study": Shown("study --list", "data/index.md"),
     },
 )
 

@@ -2,7 +2,7 @@
 
 Maximum of the likelihood times what is known before, by `scipy.optimize` (trust region, with the Fisher information in
 place of the second derivatives). The intervals are those of the sandwich: the spread of the scores from pass to pass
-between two informations, so that they hold where the surprises are not quite normal.
+between two informations, so that they hold where the innovations are not quite normal.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from scipy.optimize import minimize
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.logs.fitting_passes import FittingPasses
-from synth.logs.likelihood import Likelihood, Surprises, likelihood_of
+from synth.logs.likelihood import Innovations, Likelihood, likelihood_of
 from synth.logs.unknowns import OF_VALVES, VALVE_TIMES, Unknown, slope_of, values_at
 
 Floats = NDArray[np.float64]
@@ -246,21 +246,21 @@ def highest(target: Posterior, start: Floats, near: float) -> Floats:
 
 
 def linearised(part: Likelihood, unknowns: Sequence[Unknown], u: Floats, sides: Mapping[str, Side]) -> Linearised:
-    """Scores and information of some passes, by differences of the surprises and their variances."""
+    """Scores and information of some passes, by differences of the innovations and their variances."""
     values = values_at(unknowns, u)
     pressures = part.pressures(values)
     base = part.at(values, pressures)
-    count, r, s = len(unknowns), base.surprise, base.variance
-    by_surprise, by_variance = np.empty((count, len(r))), np.empty((count, len(r)))
+    count, r, s = len(unknowns), base.innovation, base.variance
+    by_innovation, by_variance = np.empty((count, len(r))), np.empty((count, len(r)))
     for j, unknown in enumerate(unknowns):
         side = sides.get(unknown.key, CENTRAL)
-        ends: list[Surprises] = []
+        ends: list[Innovations] = []
         for place in (side.to, side.start):
             moved = values | {unknown.key: unknown.value(float(u[j]) + place)}
             ends.append(part.at(moved, None if unknown.key in OF_VALVES else pressures))
-        by_surprise[j] = (ends[0].surprise - ends[1].surprise) / (side.to - side.start)
+        by_innovation[j] = (ends[0].innovation - ends[1].innovation) / (side.to - side.start)
         by_variance[j] = (ends[0].variance - ends[1].variance) / (side.to - side.start)
-    terms = -by_surprise * r / s - 0.5 * by_variance / s * (1.0 - r**2 / s)
+    terms = -by_innovation * r / s - 0.5 * by_variance / s * (1.0 - r**2 / s)
     scores = np.array([np.bincount(base.pass_of, term, len(part.passes)) for term in terms]).T
-    information = (by_surprise / s) @ by_surprise.T + 0.5 * (by_variance / s**2) @ by_variance.T
+    information = (by_innovation / s) @ by_innovation.T + 0.5 * (by_variance / s**2) @ by_variance.T
     return Linearised(float(base.log_likelihood(len(part.passes)).sum()), scores, information)

@@ -28,17 +28,17 @@ LEAST_PASSES = 40
 @dataclass(frozen=True, eq=False)
 class Fit:
     """How well numbers describe n passes: friction ξ of each cut (m,), its standard deviation (m,), standardised
-    surprises of the readings (k,), pressures at all rows (n,)."""
+    innovations of the readings (k,), pressures at all rows (n,)."""
 
     friction: Floats
     friction_std: Floats
-    surprises: Floats
+    innovations: Floats
     pressure_kpa: Floats
 
     @property
-    def surprise_rms(self) -> float:
+    def innovation_rms(self) -> float:
         """1 where the numbers are right."""
-        return float(np.sqrt(np.mean(self.surprises**2)))
+        return float(np.sqrt(np.mean(self.innovations**2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,5 +87,5 @@ def identify(passes: FittingPasses, config: ResolvedConfig, threads: int) -> Ide
 def fit(passes: FittingPasses, values: dict[str, float], slope_key: str) -> Fit:
     """How well `values` describe the passes."""
     at = likelihood_of(passes, slope_key).at(values)
-    readings = at.surprise[: at.readings] / np.sqrt(at.variance[: at.readings])
+    readings = at.innovation[: at.readings] / np.sqrt(at.variance[: at.readings])
     return Fit(at.cuts.friction, np.sqrt(at.cuts.friction_variance), readings, at.pressure_kpa)

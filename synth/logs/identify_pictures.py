@@ -100,8 +100,8 @@ def binned(since: Floats, *columns: Floats) -> tuple[Floats, list[Floats]]:
 
 
 def friction(found: Identified) -> Figure:
-    """Histograms of ξ and of the standardised surprises."""
-    figure = new_figure(10.5, 4.2, "Friction of the cuts, and surprises of the readings")
+    """Histograms of ξ and of the standardised innovations."""
+    figure = new_figure(10.5, 4.2, "Friction of the cuts, and innovations of the readings")
     place(figure, left=0.7, right=0.3, bottom=0.75, top=0.75, w=0.2)
     left, right = figure.subplots(1, 2)
     dress(left, "friction of a cut, as its pass tells it", "friction factor", "cuts")
@@ -112,10 +112,10 @@ def friction(found: Identified) -> Figure:
     # What a filter tells of a cut varies less than the cuts do: by its own error.
     spread = np.sqrt(max(cv**2 - float(np.mean(found.after.friction_std**2)), 1e-6))
     left.plot(edges, normal(edges, 1.0, spread) * len(values) * (edges[1] - edges[0]), color=INK, linewidth=1.2)
-    dress(right, "surprises of the readings", "surprise over what is expected", "share a unit")
+    dress(right, "innovations of the readings", "innovation over what is expected", "share a unit")
     edges = np.linspace(-5.0, 5.0, 61)
     for fit, colour, name in ((found.before, VERMILLION, "numbers before"), (found.after, BLUE, "identified")):
-        right.hist(fit.surprises, edges, density=True, histtype="step", color=colour, linewidth=1.4, label=name)
+        right.hist(fit.innovations, edges, density=True, histtype="step", color=colour, linewidth=1.4, label=name)
     right.plot(edges, normal(edges, 0.0, 1.0), color=INK, linewidth=0.9, label="expected")
     right.legend(frameon=False, fontsize=8)
     return figure

@@ -60,13 +60,13 @@ def numbers(found: Identified) -> Iterator[Exhibit]:
     for sentence in log_sentences(found.passes, found.estimate.values):
         yield Sentence(sentence, brief=True)
     yield Sentence(
-        f"Surprises of the readings, over what is expected (1 where the numbers are right): "
-        f"{found.before.surprise_rms:.2f} with the numbers before, {found.after.surprise_rms:.2f} with these.",
+        f"Innovations of the readings, over what is expected (1 where the numbers are right): "
+        f"{found.before.innovation_rms:.2f} with the numbers before, {found.after.innovation_rms:.2f} with these.",
         {
             "passes": len(found.passes),
             "released_vents": found.passes.released_vents,
             "log_likelihood": found.estimate.log_likelihood,
-            "surprise_rms": {"before": found.before.surprise_rms, "after": found.after.surprise_rms},
+            "innovation_rms": {"before": found.before.innovation_rms, "after": found.after.innovation_rms},
         },
         brief=True,
     )
@@ -154,9 +154,10 @@ def pictures(found: Identified) -> Iterator[Exhibit]:
         )
     yield Chart(
         "identify-friction",
-        "Friction of the cuts, and surprises of the readings",
+        "Friction of the cuts, and innovations of the readings",
         "Left: friction of each cut as its own pass tells it, and the identified law of what passes tell. "
-        "Right: surprises of the readings over what is expected, and the normal law that they follow if all is right.",
+        "Right: innovations of the readings over what is expected, and the normal law that they follow if all "
+        "is right.",
         lambda: _pictures().friction(found),
     )
 

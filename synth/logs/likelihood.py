@@ -1,7 +1,7 @@
-"""How likely measured passes are with given numbers of the position: by the surprises of the filter.
+"""How likely measured passes are with given numbers of the position: by the innovations of the filter.
 
 Observations of a pass: each reading of the speed, each of the gauge, and how much the sensor shows above path by time.
-Each has a surprise r with the variance S, and the logarithm of the likelihood is −½ Σ (log 2πS + r²/S).
+Each has an innovation r with the variance S, and the logarithm of the likelihood is −½ Σ (log 2πS + r²/S).
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ USUAL_KPA = 300.0
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
-class Surprises:
-    """k observations of m passes: `surprise`, `variance` (k,) and `pass_of` (k,).
+class Innovations:
+    """k observations of m passes: `innovation`, `variance` (k,) and `pass_of` (k,).
 
     The first `readings` of them are of the sensor, at the rows `row_of`; then come `gauged` of the gauge; each row by
     row. `cuts`: what is known of the cuts in the end; `pressure_kpa` (n,) by the numbers given.
     """
 
-    surprise: Floats
+    innovation: Floats
     variance: Floats
     pass_of: Ints
     readings: int
@@ -48,7 +48,7 @@ class Surprises:
 
     def log_likelihood(self, passes: int) -> Floats:
         """Of each pass, (m,)."""
-        terms = np.log(2.0 * np.pi * self.variance) + self.surprise**2 / self.variance
+        terms = np.log(2.0 * np.pi * self.variance) + self.innovation**2 / self.variance
         return np.asarray(-0.5 * np.bincount(self.pass_of, terms, passes))
 
 
@@ -77,7 +77,7 @@ class Likelihood:
         drive_rows(self.commands, drive, released, 0, len(self.passes), over, kpa)
         return over, kpa
 
-    def at(self, values: Mapping[str, float], pressures: tuple[Floats, Floats] | None = None) -> Surprises:
+    def at(self, values: Mapping[str, float], pressures: tuple[Floats, Floats] | None = None) -> Innovations:
         """With the numbers `values`; `pressures` where they are known from other numbers with the same valves."""
         over, kpa = self.pressures(values) if pressures is None else pressures
         log, rows = self.passes.log, self.rows
@@ -90,13 +90,13 @@ class Likelihood:
         braked = values[self.slope_key] / configured * np.einsum("ij,ij->i", brake, pressing)
         spread = self.spread(values)
         n, m = len(log.time_s), len(log)
-        surprise, variance = np.empty(n), np.empty(n)
+        innovation, variance = np.empty(n), np.empty(n)
         cuts = Cuts(*(np.empty(m) for _ in Cuts._fields))
         filter_passes(
             Rows(log.speed_m_s, rows.step_m, rows.gained_m2_s2, rows.drag_m2_s2_per_n_kn, braked), spread,
-            by_speed, log.first_row, 0, m, surprise, variance, cuts,
+            by_speed, log.first_row, 0, m, innovation, variance, cuts,
         )  # fmt: skip
-        return self.observed(values, surprise, variance, cuts, kpa)
+        return self.observed(values, innovation, variance, cuts, kpa)
 
     @property
     def slope_field(self) -> str:
@@ -122,12 +122,12 @@ class Likelihood:
         )
 
     def observed(
-        self, values: Mapping[str, float], surprise: Floats, variance: Floats, cuts: Cuts, kpa: Floats
-    ) -> Surprises:
+        self, values: Mapping[str, float], innovation: Floats, variance: Floats, cuts: Cuts, kpa: Floats
+    ) -> Innovations:
         """All observations beside one another; those that were not made are left out."""
         log = self.passes.log
-        seen = np.isfinite(surprise)
-        columns = [(surprise[seen], variance[seen], log.pass_of_row[seen])]
+        seen = np.isfinite(innovation)
+        columns = [(innovation[seen], variance[seen], log.pass_of_row[seen])]
         gauged = 0
         if asked.GAUGE_NOISE in values:
             read = np.isfinite(log.pressure_kpa)
@@ -140,7 +140,7 @@ class Likelihood:
             std = measured_speed_std(values[asked.NOISE], self.passes.plant.sensor.resolution_m_s)
             columns.append((self.rows.show_m_s[shown] - values[asked.BIAS], std**2 / counted, shown))
         joined = [np.concatenate(column) for column in zip(*columns, strict=True)]
-        return Surprises(joined[0], joined[1], joined[2], int(seen.sum()), np.flatnonzero(seen), gauged, cuts, kpa)
+        return Innovations(joined[0], joined[1], joined[2], int(seen.sum()), np.flatnonzero(seen), gauged, cuts, kpa)
 
 
 def likelihood_of(passes: FittingPasses, slope_key: str, settled: bool = False) -> Likelihood:

@@ -1,7 +1,7 @@
-"""Is the model wrong? What the passes say of laws that it has not, and whether its surprises are as it says.
+"""Is the model wrong? What the passes say of laws that it has not, and whether its innovations are as it says.
 
 Laws: a score test each, with the numbers of the estimate as nuisance, and the size of the effect by one step from 0.
-Surprises: those of neighbouring rows must not go together. All tests are clustered by pass, so a pass counts once.
+Innovations: those of neighbouring rows must not go together. All tests are clustered by pass, so a pass counts once.
 
 No model is exact, and with thousands of passes the smallest effect is clear. So a test asks whether the effect is
 larger than one that matters, not whether it is 0.
@@ -45,11 +45,13 @@ LAWS: Final = {
 """These move the median exit speed of the default tables by about 0.01 m/s at most, a tenth of what acceptance allows
 for the rms (docs/how-to/identify.md has the figures)."""
 
-MOTION: Final = Effect("surprises of the speed go together from reading to reading", "m/s", 0.01)
+MOTION: Final = Effect("innovations of the speed go together from reading to reading", "m/s", 0.01)
 """The same 0.01 m/s."""
 
 PRESSURE: Final = Effect(
-    "surprises of the gauge go together from reading to reading: the drive fills or empties by another law", "kPa", 3.0
+    "innovations of the gauge go together from reading to reading: the drive fills or empties by another law",
+    "kPa",
+    3.0,
 )
 """1 % of the force at 300 kPa: less than any of the laws may be off."""
 
@@ -109,8 +111,8 @@ def along(part: Likelihood, found: Estimate, key: str) -> tuple[Floats, Floats, 
     pressures = part.pressures(values)
     base = part.at(values, pressures)
     ends = [part.at(values | {key: sign * STEP}, pressures) for sign in (1.0, -1.0)]
-    r, s = base.surprise, base.variance
-    by_r = (ends[0].surprise - ends[1].surprise) / (2.0 * STEP)
+    r, s = base.innovation, base.variance
+    by_r = (ends[0].innovation - ends[1].innovation) / (2.0 * STEP)
     by_s = (ends[0].variance - ends[1].variance) / (2.0 * STEP)
     score = np.asarray(
         np.bincount(base.pass_of, -by_r * r / s - 0.5 * by_s / s * (1.0 - r**2 / s), len(part.passes)), dtype=np.float64
@@ -119,12 +121,12 @@ def along(part: Likelihood, found: Estimate, key: str) -> tuple[Floats, Floats, 
     for j, unknown in enumerate(found.unknowns):
         moved = values | {unknown.key: unknown.value(float(found.u[j]) + STEP)}
         other = part.at(moved, None if unknown.key in asked.OF_VALVES else pressures)
-        cross[j] = float((by_r * (other.surprise - r) / s + 0.5 * by_s * (other.variance - s) / s**2).sum()) / STEP
+        cross[j] = float((by_r * (other.innovation - r) / s + 0.5 * by_s * (other.variance - s) / s**2).sum()) / STEP
     return score, cross, float((by_r**2 / s + 0.5 * by_s**2 / s**2).sum())
 
 
 def neighbour_tests(whole: Posterior, found: Estimate) -> Iterator[ResidualTest]:
-    """Whether surprises of neighbouring rows go together: by how much they stay away from 0 for longer than a row.
+    """Whether innovations of neighbouring rows go together: by how much they stay away from 0 for longer than a row.
 
     The mean product of neighbours is the variance of what stays; told is its root, negative where they change sides.
     """
@@ -132,8 +134,8 @@ def neighbour_tests(whole: Posterior, found: Estimate) -> Iterator[ResidualTest]
     for part in whole.parts:
         at, passes = part.at(found.values), len(part.passes)
         of_speed, of_gauge = slice(0, at.readings), slice(at.readings, at.readings + at.gauged)
-        speed.append(products(at.surprise[of_speed], at.pass_of[of_speed], passes))
-        gauge.append(products(at.surprise[of_gauge], at.pass_of[of_gauge], passes))
+        speed.append(products(at.innovation[of_speed], at.pass_of[of_speed], passes))
+        gauge.append(products(at.innovation[of_gauge], at.pass_of[of_gauge], passes))
     for effect, columns in ((MOTION, speed), (PRESSURE, gauge)):
         sums, counts = np.concatenate(columns, axis=1)
         if counts.any():
@@ -145,10 +147,10 @@ def neighbour_tests(whole: Posterior, found: Estimate) -> Iterator[ResidualTest]
             )  # fmt: skip
 
 
-def products(surprise: Floats, pass_of: NDArray[np.int64], passes: int) -> Floats:
+def products(innovation: Floats, pass_of: NDArray[np.int64], passes: int) -> Floats:
     """Sum of the products of neighbours and their number, by pass, (2, m)."""
     same = pass_of[1:] == pass_of[:-1]
-    where, product = pass_of[1:][same], (surprise[1:] * surprise[:-1])[same]
+    where, product = pass_of[1:][same], (innovation[1:] * innovation[:-1])[same]
     return np.array([np.bincount(where, product, passes), np.bincount(where, minlength=passes)])
 
 

@@ -8,7 +8,7 @@ from typing import Final
 from synth.frame.exhibits import Column, Row
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, of_ten_thousand, per_cent
-from synth.retarder.comparison.measured import honesty_of
+from synth.retarder.comparison.measured import prediction_ratio_of
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics
 from synth.simulation.replicates import Interval as Ends
 from tuning_tables import Predicted
@@ -25,8 +25,8 @@ WITHIN_99: Final = Column("p99_m_s", "99 of 100 within ±", "m/s", decimals(4), 
 SWITCHINGS: Final = Column("switchings", "switchings a pass", form=decimals(1), spare=8)
 TIME: Final = Column("time_s", "time", "s", decimals(2), spare=9)
 PREDICTED: Final = Column("predicted_rms_m_s", "predicted rms", "m/s", decimals(4), spare=8)
-HONESTY: Final = Column("honesty", "predicted / simulated", form=decimals(2))
-OUT_OF_BRAKE: Final = Column("out_of_brake", "out of brake, in 10 000", form=of_ten_thousand, spare=1)
+PREDICTION_RATIO: Final = Column("prediction_ratio", "predicted / simulated", form=decimals(2))
+BRAKE_SATURATED: Final = Column("brake_saturated", "brake saturated, in 10 000", form=of_ten_thousand, spare=1)
 RMS_WITHIN: Final = Column("rms_within_m_s", "rms of all others", "m/s", decimals(4), detail=True)
 
 RISKS: Final = (
@@ -38,7 +38,7 @@ RISKS: Final = (
 LOOP: Final = (RMS, WITHIN_95, WITHIN_99, *RISKS, SWITCHINGS, TIME)
 """All figures of `ExitStatistics`."""
 
-TOLD: Final = (RMS, WITHIN_95, WITHIN_99, OUT_OF_BRAKE, PREDICTED, HONESTY)
+TOLD: Final = (RMS, WITHIN_95, WITHIN_99, BRAKE_SATURATED, PREDICTED, PREDICTION_RATIO)
 """What every table of simulated tables tells first."""
 
 EFFORT: Final = (SWITCHINGS, TIME)
@@ -47,9 +47,9 @@ DETAILS: Final = (*RISKS, RMS_WITHIN)
 
 LEGEND: Final = (
     "95 of 100 within ±: so many cuts leave within so many m/s of the target. Over-speed: more than 0.3 m/s above the "
-    "target. Out of brake: leaves that fast even where every decision raises the stage, so that no table can hold it. "
-    "A cut that stops in the position counts with exit speed 0. Brackets, and ± their wider half: 95 % intervals, from "
-    "passes in strata of the friction; the chance of these passes is all that they cover."
+    "target. Brake saturated: leaves that fast even where every decision raises the stage, so that no table can hold "
+    "it. A cut that stops in the position counts with exit speed 0. Brackets, and ± their wider half: 95 % intervals, "
+    "from passes in strata of the friction; the chance of these passes is all that they cover."
 )
 
 MODEL_ONLY: Final = (
@@ -94,8 +94,8 @@ def table_row(found: ExitStatistics, power: BrakePower, predicted: Predicted) ->
     n = found.passes
     return {
         **loop_row(found),
-        "out_of_brake": told(power.out_of_brake, power.out_of_brake_ci95, n),
+        "brake_saturated": told(power.brake_saturated, power.brake_saturated_ci95, n),
         "rms_within_m_s": told(power.rms_within_m_s, power.rms_within_ci95_m_s, n),
         "predicted_rms_m_s": predicted.rms_m_s,
-        "honesty": told(*honesty_of(predicted.rms_m_s, predicted.passes, found), n),
+        "prediction_ratio": told(*prediction_ratio_of(predicted.rms_m_s, predicted.passes, found), n),
     }

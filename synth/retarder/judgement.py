@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from synth.retarder.comparison.measured import honesty_of
+from synth.retarder.comparison.measured import prediction_ratio_of
 from synth.retarder.configuration.settings import AcceptanceSettings
 from synth.simulation.exit_statistics import ExitStatistics
 from synth.simulation.replicates import Interval
@@ -37,8 +37,8 @@ def judgement(
     found: ExitStatistics, overspeed: tuple[float, Interval], predicted: Predicted, limits: AcceptanceSettings
 ) -> Judgement:
     """What the figures of a simulated table say of every limit; `overspeed`: share beyond target + margin."""
-    honest, honest_ci95 = honesty_of(predicted.rms_m_s, predicted.passes, found)
-    low, high = limits.honesty_low, limits.honesty_high
+    honest, ratio_ci95 = prediction_ratio_of(predicted.rms_m_s, predicted.passes, found)
+    low, high = limits.prediction_ratio_low, limits.prediction_ratio_high
     figures = (
         (found.rms_ci95_m_s, (0.0, limits.rms_m_s),
          f"rms {found.rms_m_s:.4f} {interval_text(found.rms_ci95_m_s)} m/s, allowed {limits.rms_m_s:g}"),
@@ -52,8 +52,8 @@ def judgement(
         (found.switchings_ci95, (0.0, limits.switchings),
          f"{found.switchings:.2f} {interval_text(found.switchings_ci95, 2)} commands a cut, allowed "
          f"{limits.switchings:g}"),
-        (honest_ci95, (low, high),
-         f"predicted / simulated rms {honest:.3f} {interval_text(honest_ci95, 3)}, allowed {low:g} to {high:g}"),
+        (ratio_ci95, (low, high),
+         f"predicted / simulated rms {honest:.3f} {interval_text(ratio_ci95, 3)}, allowed {low:g} to {high:g}"),
     )  # fmt: skip
     missed, undecided = [], []
     for (least, most), (from_, to), phrase in figures:

@@ -51,12 +51,12 @@ class ExitStatistics:
 class BrakePower:
     """What brake power the cuts of a sample leave, and how exactly they exit where it suffices; 95 % intervals.
 
-    `out_of_brake`: share of cuts that leave more than 0.3 m/s too fast even under a regulator that raises at every
+    `brake_saturated`: share of cuts that leave more than 0.3 m/s too fast even under a regulator that raises at every
     decision: no table can hold them. `rms_within_m_s`: rms of the exit error of all others, None if there are none.
     """
 
-    out_of_brake: float
-    out_of_brake_ci95: Interval
+    brake_saturated: float
+    brake_saturated_ci95: Interval
     rms_within_m_s: float | None
     rms_within_ci95_m_s: Interval | None
 

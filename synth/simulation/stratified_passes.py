@@ -1,6 +1,6 @@
 """Passes in strata of the friction, with weights: what every printed figure of simulated passes rests on.
 
-Squared exit errors have a rare, heavy tail: cuts whose friction is so low that they run out of brake power. A thousand
+Squared exit errors have a rare, heavy tail: cuts whose friction is so low that they saturate the brake. A thousand
 plain passes meet one of them or none, so plain samples are too low most of the time and far too high seldom. Here half
 of the passes have the friction of cuts as it comes; the other half have low friction, and count by how much rarer they
 are in truth (deterministic mixture: Veach and Guibas 1995; Owen, *Monte Carlo theory*, §9.11). No weight exceeds 2.

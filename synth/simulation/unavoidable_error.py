@@ -26,7 +26,7 @@ class UnavoidableError:
     @property
     def obstacle(self) -> str:
         """What stands in the way where it is too large, in three words."""
-        return "out of brake power" if self.too_fast else "leaves too slow"
+        return "brake saturated" if self.too_fast else "leaves too slow"
 
     def forbids(self, limit_m_s: float) -> bool:
         """No regulator keeps the rms `limit_m_s`: the whole interval is above it."""

@@ -28,7 +28,7 @@ PRICED_TOLERANCE = 0.1
 it, the pass 6 % shorter in all."""
 
 LEAST_SHARE = 0.01
-"""Of a cost, however dear time is, and however many cuts run out of brake."""
+"""Of a cost, however dear time is, and however many cuts saturate the brake."""
 
 
 def tuned_lines(design: Chain, aim: Aim, degree: int, tolerance: float = POLISH_TOLERANCE) -> Descent[PolynomialLines]:
@@ -47,7 +47,7 @@ def polished(solution: Solution, fit: Fit, tolerance: float = POLISH_TOLERANCE) 
     """The fitted lines after the polish; several rounds are told as one.
 
     `tolerance` is of the cost that lines can avoid, a part of that where time has a price: not of what cuts cost that
-    run out of brake. Where these rule the mean, the others would be left unpolished.
+    saturate the brake. Where these rule the mean, the others would be left unpolished.
     """
     chain, aim = solution.chain, solution.aim
     evaluate, nodes = remembering(Evaluation(chain, aim).gradient), chain.grid.path_m

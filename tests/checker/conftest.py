@@ -27,8 +27,8 @@ degree = 2
 [validation]
 passes = 4000
 [acceptance]
-honesty_low = 0.9
-honesty_high = 1.35
+prediction_ratio_low = 0.9
+prediction_ratio_high = 1.35
 [output]
 csv = true
 plots = false

@@ -13,7 +13,7 @@ import pytest
 
 from plant_models.valve_drive import ValveDrive, drive_on, wait_after_command
 from synth.checker.brake_drive import BrakeDrive
-from synth.checker.claims import Honesty, simulated_faults
+from synth.checker.claims import PredictionRatio, simulated_faults
 from synth.checker.coarse_simulation import NotModelledError, decision, simulate
 from synth.checker.finding import Kind
 from synth.checker.float32 import decide, rises
@@ -26,7 +26,7 @@ from tests.checker.any_time_tables import approached, sloped, sound_table
 from tests.checker.planted_fault import Document, alone, claim_in_summary, found, judged, look, rewrite
 from tuning_tables import to_json
 
-HONESTY = Honesty(0.9, 1.35)
+PREDICTION_RATIO = PredictionRatio(0.9, 1.35)
 VALVES = ValveDrive(700.0, 0.0, 0.1, 0.2, 0.13, 0.3, 0.25, 15.0, 50.0)
 DRIVE = Drive(700.0, 0.0, 0.1, 0.2, 0.13, 0.3, 0.25, 15.0, 0.0, 50.0)
 STAGES_KPA = (0.0, 150.0, 300.0, 450.0, 600.0)
@@ -145,7 +145,7 @@ def test_a_table_that_is_asked_otherwise_would_be_doubted(
 ) -> None:
     figures = figures_of(simulate(plant, otherwise(table), 300, 1), table.target_m_s)
     assert figures.rms_m_s > 1.3 * table.predicted_rms_m_s
-    assert any("more than" in sentence for sentence in simulated_faults(table, figures, HONESTY))
+    assert any("more than" in sentence for sentence in simulated_faults(table, figures, PREDICTION_RATIO))
 
 
 def claimed(out: Path, change: Callable[[Document], None]) -> Path:

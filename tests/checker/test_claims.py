@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from synth.checker.claims import Honesty, simulated_faults
+from synth.checker.claims import PredictionRatio, simulated_faults
 from synth.checker.statistics import ExitFigures
 
 PASSES, RMS_M_S = 1000, 0.1
@@ -45,6 +45,6 @@ def test_a_predicted_rms_may_be_off_as_far_as_the_configuration_allows(
         p_overspeed=0.0,
         p_stall=None,
     )
-    found = list(simulated_faults(claims, sure_figures(), Honesty(0.8, 1.3)))
+    found = list(simulated_faults(claims, sure_figures(), PredictionRatio(0.8, 1.3)))
     assert len(found) == bool(told)
     assert all(sentence.startswith("the predicted rms is") and told in sentence for sentence in found)

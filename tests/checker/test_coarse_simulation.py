@@ -12,7 +12,7 @@ import pytest
 
 from plant_models import Pneumatics
 from synth.checker.brake_drive import BrakeDrive
-from synth.checker.claims import Honesty, simulated_faults
+from synth.checker.claims import PredictionRatio, simulated_faults
 from synth.checker.coarse_simulation import (
     Passes,
     decision,
@@ -188,7 +188,7 @@ def test_true_claims_are_not_doubted(many: Passes, table: Table) -> None:
     for _ in range(1000):
         chosen = [random.randrange(4000) for _ in range(300)]
         sample = Passes(*(tuple(column[i] for i in chosen) for column in vars(many).values()))
-        doubted += any(simulated_faults(table, figures_of(sample, table.target_m_s), Honesty(0.8, 1.25)))
+        doubted += any(simulated_faults(table, figures_of(sample, table.target_m_s), PredictionRatio(0.8, 1.25)))
     assert binomial_tail(doubted, 1000, FALSE_ALARM) > 5e-3
 
 

@@ -10,13 +10,13 @@ from random import Random
 import numpy as np
 import pytest
 
-from synth.checker.claims import Honesty, own_faults, simulated_faults
+from synth.checker.claims import PredictionRatio, own_faults, simulated_faults
 from synth.checker.coarse_simulation import Passes, simulate
 from synth.checker.statistics import FALSE_ALARM, binomial_tail, figures_of
 from synth.checker.summary import Summary, read_summary
 from synth.checker.table_reading import Table, read_table
 
-HONESTY = Honesty(0.8, 1.25)
+PREDICTION_RATIO = PredictionRatio(0.8, 1.25)
 
 
 @pytest.fixture(scope="module")
@@ -48,10 +48,10 @@ def test_the_closed_loop_with_the_estimator_is_that_of_the_simulator(many: Passe
 def test_without_running_the_estimator_the_claims_would_be_doubted(summary: Summary, table: Table) -> None:
     plant, blind = summary.plant(table), dataclasses.replace(table, estimator=None)
     figures = figures_of(simulate(plant, blind, 300, 1), table.target_m_s)
-    assert any("more than" in sentence for sentence in simulated_faults(table, figures, HONESTY))
+    assert any("more than" in sentence for sentence in simulated_faults(table, figures, PREDICTION_RATIO))
 
 
-def honest_by_chance(pool: Passes, table: Table, validated: int, predicted: int) -> list[Table]:
+def agrees_by_chance(pool: Passes, table: Table, validated: int, predicted: int) -> list[Table]:
     """Tables whose validated and predicted rms are two samples of one law, drawn from `pool`."""
     rng, tables = np.random.default_rng(4), []
     squares = (np.array(pool.exit_m_s) - table.target_m_s) ** 2
@@ -68,9 +68,9 @@ def honest_by_chance(pool: Passes, table: Table, validated: int, predicted: int)
 
 
 def test_a_simulated_prediction_is_not_doubted_for_its_own_chance(many: Passes, table: Table) -> None:
-    """With no honesty limits to hide behind; were the prediction taken for exact, it would be doubted all the time."""
-    strict = Honesty(1.0, 1.0)
-    tables = honest_by_chance(many, table, 4000, 1000)
+    """With no limits of the ratio to hide behind; were the prediction taken for exact, it would always be doubted."""
+    strict = PredictionRatio(1.0, 1.0)
+    tables = agrees_by_chance(many, table, 4000, 1000)
     doubted = sum(bool(list(own_faults(each, strict))) for each in tables)
     assert binomial_tail(doubted, len(tables), FALSE_ALARM) > 5e-3
     exact = (dataclasses.replace(each, predicted_passes=None) for each in tables)
@@ -92,5 +92,5 @@ def test_true_claims_of_two_samples_are_not_doubted(many: Passes, table: Table) 
             table, predicted_rms_m_s=one.rms_m_s, bias_m_s=one.bias_m_s, p_overspeed=one.over / one.plain,
             p_stall=one.stalls / one.plain, switchings=one.switchings, predicted_passes=300,
         )  # fmt: skip
-        doubted += any(simulated_faults(claimed, other, HONESTY))
+        doubted += any(simulated_faults(claimed, other, PREDICTION_RATIO))
     assert binomial_tail(doubted, 500, FALSE_ALARM) > 5e-3

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor
-from synth.checker.claims import Honesty
+from synth.checker.claims import PredictionRatio
 from synth.checker.estimator import Observer
 from synth.checker.estimator import estimator_of as read_estimator
 from synth.checker.estimator_sense import chance_of_equals, estimator_faults, frozen_after, work_of
@@ -28,7 +28,7 @@ from tuning_tables.programs.alarms import alarms
 from tuning_tables.programs.observe import observe
 
 Sample = tuple[float, float, float]
-HONESTY = Honesty(0.8, 1.25)
+PREDICTION_RATIO = PredictionRatio(0.8, 1.25)
 STATE = (
     "begun", "s", "v", "x", "a", "vv", "vx", "va", "xx", "xa", "aa", "unseen", "reading", "repeated", "believed",
     "doubted",

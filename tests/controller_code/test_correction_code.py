@@ -228,7 +228,7 @@ MUTANTS = (
     ("if (!sound) {", "if (0) {", 4),
     ("if (credible &&", "if (", 4),
     ("rounded(error_m_s + correction->correction_m_s)", "error_m_s", 4),
-    ("larger(surprise, rounded(0.0f - setting->clip_m_s))", "surprise", 4),
+    ("larger(innovation, rounded(0.0f - setting->clip_m_s))", "innovation", 4),
     ("smaller(larger(mean, least_mean), setting->reach_m_s)", "mean", 4),
     ("smaller(larger(wanted, slowest), fastest)", "larger(wanted, slowest)", 4),
     ("smaller(larger(wanted, slowest), fastest)", "smaller(wanted, fastest)", 4),

@@ -223,7 +223,7 @@ def test_the_table_of_an_ordinary_cut_is_no_worse_than_a_rule(case: RandomCase) 
     found = measured(case, parse_config(case.text(2000, 1), case.name))
     assert isinstance(found, CutFigures), found
     assert list(faults_of(found)) == []
-    assert 0.9 < found.honesty < 1.1
+    assert 0.9 < found.prediction_ratio < 1.1
 
 
 def test_ordinary_cuts_are_of_every_kind() -> None:

@@ -22,7 +22,7 @@ def sample_of(error: np.ndarray, weight: np.ndarray) -> ExitSample:
 
 
 def drawn(rng: np.random.Generator, count: int, std_m_s: float, far: float = 0.02) -> np.ndarray:
-    """Errors of which a share `far` is out of brake, 1 m/s too fast."""
+    """Errors of which a share `far` is brake saturated, 1 m/s too fast."""
     return np.where(rng.random(count) < far, 1.0, rng.normal(0.0, std_m_s, count))
 
 

@@ -67,9 +67,9 @@ def test_a_row_of_the_book_is_that_of_its_case() -> None:
     row = row_of(case, verdict)
     low, high = found.rms_ci95_m_s
     rms = f"{found.rms_m_s:.4f} [{low:.4f}, {high:.4f}]"
-    assert short_cell(row) == f"{rms}; {few(1e4 * case.brake_power.out_of_brake)}"
+    assert short_cell(row) == f"{rms}; {few(1e4 * case.brake_power.brake_saturated)}"
     assert short_cell(replace(row, feasible=False)).startswith(f"{rms}°; ")
-    assert row.honesty == Measure(case.measured.honesty, case.measured.honesty_ci95)
+    assert row.prediction_ratio == Measure(case.measured.prediction_ratio, case.measured.prediction_ratio_ci95)
     assert row.regret == Measure(case.comparison.regret, case.comparison.regret_ci95)
     beaten = replace(case, comparison=replace(case.comparison, baseline_ratio_ci95=(1.1, 1.2)))
     without = row_of(beaten, verdict)

@@ -9,7 +9,7 @@ import pytest
 
 from scripts.studies.verification import (
     FACTORS,
-    USUAL_HONESTY,
+    USUAL_PREDICTION_RATIO,
     Doubts,
     Row,
     Verification,
@@ -56,7 +56,7 @@ def test_a_sample_consists_of_whole_groups() -> None:
 
 
 def test_a_table_that_states_the_truth_is_not_doubted_and_one_that_does_not_is(true_table: Table) -> None:
-    found = doubts_of(true_table, pool_of(4000, RMS_M_S), USUAL_HONESTY, 1000, 20)
+    found = doubts_of(true_table, pool_of(4000, RMS_M_S), USUAL_PREDICTION_RATIO, 1000, 20)
     shares = {each.factor: each.share for each in found}
     assert tuple(shares) == FACTORS
     assert shares[1.0] == 0.0

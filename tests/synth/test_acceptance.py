@@ -11,7 +11,7 @@ import pytest
 from synth.frame.command import Limit
 from synth.retarder.acceptance import advice_of, judge_case, judged, limits_of
 from synth.retarder.case_result import CaseResult
-from synth.retarder.comparison.measured import honesty_of
+from synth.retarder.comparison.measured import prediction_ratio_of
 from synth.retarder.configuration.settings import AcceptanceSettings
 from synth.retarder.judgement import judgement
 from synth.retarder.off_nominal.worst import worst_of
@@ -24,7 +24,7 @@ from tuning_tables import Decisions, Predicted
 LIMITS = AcceptanceSettings()
 
 
-def honest_case(label: str = "gondola-36t", target: float = 3.0, feasible: bool = True) -> CaseResult:
+def sound_case(label: str = "gondola-36t", target: float = 3.0, feasible: bool = True) -> CaseResult:
     return make_case(label, target, spread=0.05, feasible=feasible)
 
 
@@ -46,20 +46,20 @@ def limits(*cases: CaseResult, of: AcceptanceSettings = LIMITS) -> list[Limit]:
 
 
 def test_a_book_that_keeps_the_limits() -> None:
-    (limit,) = limits(honest_case(), honest_case("gondola-22t"))
+    (limit,) = limits(sound_case(), sound_case("gondola-22t"))
     assert limit.kept
     assert limit.sentence.startswith("the limits are kept in 2 feasible cases; the worst rms is 0.0499 [")
 
 
 def test_one_bad_case_refuses_the_book_and_says_why() -> None:
     bad = make_case("gondola-85t", 2.0, spread=0.15)
-    (limit,) = limits(honest_case(), bad)
+    (limit,) = limits(sound_case(), bad)
     assert limit.kept is False
     assert limit.sentence.startswith("gondola-85t, target 2 m/s: rms 0.14")
     assert limit.sentence.endswith(
         "which the position does not forbid: the rms that no regulator avoids is 0.0200 [0.0196, 0.0204] m/s"
     )
-    assert advice_of(judged([honest_case(), bad], LIMITS)) == (
+    assert advice_of(judged([sound_case(), bad], LIMITS)) == (
         'Try regulator.estimator = true, regulator.commands = "any_time", another fit.degree or another target.'
     )
 
@@ -68,9 +68,9 @@ def test_what_is_to_be_changed_follows_from_what_is_asked_for_and_what_is_missed
     bad = make_case("gondola-85t", 2.0, spread=0.15)
     advice = judge_case(replace(bad, table=replace(bad.table, decisions=Decisions.AT_ANY_TIME)), LIMITS).advice
     assert advice == ("regulator.estimator = true", "another fit.degree or another target")
-    assert judge_case(honest_case(), LIMITS).advice == ()
-    assert judge_case(honest_case(feasible=False), LIMITS).advice == ()
-    slow = replace(honest_case(), table=replace(honest_case().table, predicted=Predicted(0.5, 0.0, 0.0, 9.0)))
+    assert judge_case(sound_case(), LIMITS).advice == ()
+    assert judge_case(sound_case(feasible=False), LIMITS).advice == ()
+    slow = replace(sound_case(), table=replace(sound_case().table, predicted=Predicted(0.5, 0.0, 0.0, 9.0)))
     unsure = replace(slow, statistics=replace(slow.statistics, rms_ci95_m_s=(0.04, 0.2)))
     for case in (slow, unsure):
         verdict = judge_case(case, LIMITS)
@@ -87,23 +87,23 @@ def test_a_tuned_law_that_keeps_the_limit_shows_that_the_position_can() -> None:
 
 
 def test_cuts_that_are_too_slow_without_any_braking_are_named_so() -> None:
-    bad = honest_case(feasible=False)
+    bad = sound_case(feasible=False)
     verdict = judge_case(replace(bad, unavoidable=replace(bad.unavoidable, too_fast=False)), LIMITS)
     assert verdict.obstacle == "leaves too slow"
 
 
 def test_infeasible_cases_do_not_count() -> None:
-    bad = honest_case("gondola-85t", 2.0, feasible=False)
+    bad = sound_case("gondola-85t", 2.0, feasible=False)
     verdict = judge_case(bad, LIMITS)
     assert verdict.word == "infeasible"
     assert verdict.judgement.missed  # still told
-    (limit,) = limits(honest_case(), bad)
+    (limit,) = limits(sound_case(), bad)
     assert limit.kept
     assert "in 1 feasible case;" in limit.sentence
 
 
 def test_the_worst_off_nominal_is_told_of_the_cases_that_count() -> None:
-    worst = worst_of([honest_case()])
+    worst = worst_of([sound_case()])
     assert worst is not None
     assert worst.told.startswith(
         "Off nominal, for which there is no limit, the worst is gondola-36t, target 3 m/s with a third"
@@ -112,7 +112,7 @@ def test_the_worst_off_nominal_is_told_of_the_cases_that_count() -> None:
 
 
 def test_a_book_without_a_feasible_case_is_not_accepted() -> None:
-    (limit,) = limits(honest_case(feasible=False))
+    (limit,) = limits(sound_case(feasible=False))
     assert limit.kept is False
     assert "nothing to accept" in limit.sentence
 
@@ -170,23 +170,23 @@ def test_time_and_commands_are_judged_where_limits_are_set() -> None:
 
 def test_a_simulated_prediction_is_uncertain_too() -> None:
     """Predicted from as many passes as it is checked with: the interval is wider by the root of 2."""
-    exact = honesty_of(0.05, None, statistics())[1]
-    sampled = honesty_of(0.05, 1000, statistics())[1]
+    exact = prediction_ratio_of(0.05, None, statistics())[1]
+    sampled = prediction_ratio_of(0.05, 1000, statistics())[1]
     assert math.log(sampled[1]) == pytest.approx(math.sqrt(2.0) * math.log(exact[1]))
 
 
 def test_a_book_that_the_passes_cannot_judge_says_so() -> None:
     of = AcceptanceSettings(rms_m_s=0.05)
-    (limit,) = limits(honest_case(), of=of)
+    (limit,) = limits(sound_case(), of=of)
     assert limit.kept is None
     assert limit.sentence.startswith("gondola-36t, target 3 m/s: not decidable with these passes: rms 0.0499 [")
-    assert advice_of(judged([honest_case()], of)) == ("Try a larger validation.passes where a limit is not decidable.")
+    assert advice_of(judged([sound_case()], of)) == ("Try a larger validation.passes where a limit is not decidable.")
 
 
 def test_a_miss_does_not_count_where_the_passes_cannot_tell_whether_the_case_is_feasible() -> None:
     bad = make_case("gondola-85t", 2.0, spread=0.15)
     unsure = replace(bad, unavoidable=UnavoidableError(0.1, (0.09, 0.11), True))
-    (limit,) = limits(honest_case(), unsure)
+    (limit,) = limits(sound_case(), unsure)
     assert limit.kept is None
     assert "0.1000 [0.0900, 0.1100] m/s, too near to the limit to tell whether the case is feasible" in limit.sentence
 

@@ -73,10 +73,10 @@ def test_brake_power_parts_what_no_table_can_hold() -> None:
     speed[::10] = 4.0
     full = np.where(speed > 3.9, 3.9, 2.0)
     power = brake_power(sample_of(speed), sample_of(full), 3.0)
-    assert power.out_of_brake == pytest.approx(0.1)
+    assert power.brake_saturated == pytest.approx(0.1)
     assert power.rms_within_m_s == pytest.approx(0.02)
     none = brake_power(sample_of(speed), sample_of(np.full(1000, 5.0)), 3.0)
-    assert (none.out_of_brake, none.rms_within_m_s, none.rms_within_ci95_m_s) == (1.0, None, None)
+    assert (none.brake_saturated, none.rms_within_m_s, none.rms_within_ci95_m_s) == (1.0, None, None)
 
 
 def test_the_ratio_of_paired_samples() -> None:

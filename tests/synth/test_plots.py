@@ -193,7 +193,7 @@ def test_roles_and_names(cases: list[CaseResult]) -> None:
     assert found.best_baseline is not None
     assert found.best_baseline.name == "energy rule"
     assert [len(group) for group in by_class(cases)] == [2, 2]
-    assert cases[2].unavoidable.obstacle == "out of brake power"
+    assert cases[2].unavoidable.obstacle == "brake saturated"
     assert file_stem("exit-density", "Four tanks, 3.5 m/s") == "exit-density-four-tanks-3.5-m-s"
 
 

@@ -172,7 +172,7 @@ def test_the_verdict_comes_first_and_names_the_infeasible_case(page: Page) -> No
     assert "missed: there is no table for 1 of 4 cases (gondola-85t to 1.5 m/s: the grid is too coarse)" in text
     assert "missed: gondola-85t, target 4 m/s: rms 0.14" in text
     assert (
-        "Infeasible and outside the verdict: gondola-85t, target 2 m/s, out of brake power: no entry speed can be "
+        "Infeasible and outside the verdict: gondola-85t, target 2 m/s, brake saturated: no entry speed can be "
         "served of the 5 to 6.5 m/s asked for"
     ) in text
     assert all(case.label in text for case in CASES)

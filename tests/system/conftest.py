@@ -30,8 +30,8 @@ degree = 2
 [validation]
 passes = 1000
 [acceptance]
-honesty_low = 0.8
-honesty_high = 1.35
+prediction_ratio_low = 0.8
+prediction_ratio_high = 1.35
 [output]
 csv = true
 [[cut]]

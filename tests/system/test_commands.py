@@ -67,7 +67,7 @@ def test_the_summary_tells_the_figures_of_the_tables(tuned_once: tuple[Path, int
         n = table.validated.passes
         assert case["rms_m_s"] == {"value": table.validated.rms_m_s, "low95": low, "high95": high, "n": n}
         assert case["predicted_rms_m_s"] == pytest.approx(table.predicted.rms_m_s)
-        assert case["honesty"]["value"] == pytest.approx(table.predicted.rms_m_s / table.validated.rms_m_s)
+        assert case["prediction_ratio"]["value"] == pytest.approx(table.predicted.rms_m_s / table.validated.rms_m_s)
         assert case["regret"]["value"] == pytest.approx(table.validated.rms_m_s / bound["rms_m_s"]["value"])
         assert case["best_baseline"] in {row["controller"] for row in rows["controllers"]}
         assert case["verdict"] == "accepted"
@@ -90,7 +90,9 @@ def test_tune_prints_a_table_and_where_things_are(command: Command, one_class: P
 def test_missed_limits_give_1_and_stale_files_go(command: Command, one_class: Path, tuned: Path) -> None:
     strict = one_class.with_name("strict.toml")
     strict.write_text(
-        changed(CLASS, ("csv = true", "plots = false\nreport = false"), ("honesty_high = 1.35", "rms_m_s = 0.01"))
+        changed(
+            CLASS, ("csv = true", "plots = false\nreport = false"), ("prediction_ratio_high = 1.35", "rms_m_s = 0.01")
+        )
     )
     (tuned / "tables" / "my-notes.json").write_text("{}")
     (tuned / "plots" / "my-photo.png").write_bytes(b"photo")
@@ -115,7 +117,7 @@ def test_an_infeasible_book_is_not_accepted(command: Command, one_class: Path, t
     hopeless.write_text(CLASS.replace("high_m_s = 4.0", "high_m_s = 5.5").replace("csv = true", "plots = false"))
     ran = command("tune", hopeless, "-o", tmp_path)
     assert ran.code == 1
-    assert "gondola-4-22t, target 1.5 m/s, out of brake power: entry speeds from 1.51 to" in ran.out
+    assert "gondola-4-22t, target 1.5 m/s, brake saturated: entry speeds from 1.51 to" in ran.out
     assert "no case is feasible" in ran.out
     again = command("validate", tmp_path / "book.h5", "--config", hopeless, "-o", tmp_path / "again")
     assert again.code == 0  # known to be infeasible, from the summary beside it

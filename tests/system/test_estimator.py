@@ -61,7 +61,7 @@ def test_its_tables_say_that_they_are_for_it_and_where_the_prediction_comes_from
 
 
 def test_its_figures_are_honest_and_their_origin_is_told(tuned: Tuned, case: Any) -> None:
-    assert 0.8 < case["honesty"]["value"] < 1.25
+    assert 0.8 < case["prediction_ratio"]["value"] < 1.25
     design = first_of(tuned[1], "designs")
     assert 0.01 < design["error_m_s"] < 0.035  # of 0.05 measured
     assert design["tuning_rms_m_s"] <= design["tuning_rms_before_trim_m_s"]

@@ -29,7 +29,7 @@ STEEP = "[criterion]\noverspeed_factor = 1000\n"
 WIDE = ("speed_step_m_s = 0.04", "speed_step_m_s = 0.2")
 """A cost that so wide cells cannot hold at 2.5 m/s, nor half as wide ones; 1.5 m/s is well."""
 
-KEPT = ("honesty_high = 1.35", "honesty_high = 2.0\nrms_m_s = 0.3")
+KEPT = ("prediction_ratio_high = 1.35", "prediction_ratio_high = 2.0\nrms_m_s = 0.3")
 ONE_BAD = (
     changed(CLASS, WIDE, KEPT, ("[1.5]", "[1.5, 2.5]")) + MEASURED + STEEP + SECOND_CLASS + "targets_m_s = [1.5]\n"
 )

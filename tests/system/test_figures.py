@@ -64,12 +64,12 @@ def test_intervals_of_real_tables_hold_the_truth(path: Path) -> None:
         return ExitSample(**{name: array[here].copy() for name, array in vars(sample).items()})
 
     truth, power = exit_statistics(every, target), brake_power(every, at_full, target)
-    held = dict.fromkeys((*FIGURES, "out_of_brake", "rms_within"), 0)
+    held = dict.fromkeys((*FIGURES, "brake_saturated", "rms_within"), 0)
     for number in range(BLOCKS):
         sample = part(every, number)
         found = exit_statistics(sample, target), brake_power(sample, part(at_full, number), target)
         for name in held:
-            one, whole = (found[1], power) if name in ("out_of_brake", "rms_within") else (found[0], truth)
+            one, whole = (found[1], power) if name in ("brake_saturated", "rms_within") else (found[0], truth)
             low, high = interval(one, name)[1]
             held[name] += low <= interval(whole, name)[0] <= high
     # 0.95 less three standard errors of 400 blocks, and a little skewness that ten replicates do not see

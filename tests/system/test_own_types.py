@@ -30,8 +30,8 @@ resistance_scenarios = 1
 passes = 1000
 [acceptance]
 rms_m_s = 0.3
-honesty_low = 0.5
-honesty_high = 2.0
+prediction_ratio_low = 0.5
+prediction_ratio_high = 2.0
 p_overspeed = 0.5
 p_stall = 0.5
 [output]

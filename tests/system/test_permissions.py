@@ -48,7 +48,7 @@ degree = 2
 [validation]
 passes = 1000
 [acceptance]
-honesty_low = 0.8
+prediction_ratio_low = 0.8
 [regulator]
 approach_m = 0.0
 [output]

@@ -42,7 +42,7 @@ TABLE = PrintedTable(
         Column[Row]("case", lambda row: row[0], words=True, once=True),
         Column[Row]("rms, m/s", lambda row: row[1]),
         Column[Row]("99\u00a0of\u00a0100 within\u00a0±, m/s", lambda row: row[2], spare=2),
-        Column[Row]("out of brake in 10\u00a0000", lambda row: row[1][:4], spare=1),
+        Column[Row]("brake saturated in 10\u00a0000", lambda row: row[1][:4], spare=1),
         Column[Row]("what it comes to", lambda row: "the limits are kept, as the file states; " * 2, words=True),
     ),
     (
@@ -118,20 +118,20 @@ COMMON = (
     ("rms, m/s", "rms_m_s", 4),
     ("95 of 100 within ±, m/s", "p95_m_s", 4),
     ("99 of 100 within ±, m/s", "p99_m_s", 4),
-    ("predicted / simulated", "honesty", 2),
+    ("predicted / simulated", "prediction_ratio", 2),
     ("switchings a pass", "switchings", 1),
     ("time, s", "time_s", 2),
 )
 
 
 def require_figures(told: list[dict[str, str]], rows: list[dict[str, Any]]) -> None:
-    """What tables of simulated cases have in common, and cuts out of brake in 10 000, of two figures, or their bound
-    where no pass met one."""
+    """What tables of simulated cases have in common, and cuts that saturate the brake in 10 000, of two figures, or
+    their bound where no pass met one."""
     for heading, key, digits in COMMON:
         require_column(told, heading, [of(row, key, digits) for row in rows])
     for cells, row in zip(told, rows, strict=True):
-        value, low, high = (row["out_of_brake"][key] for key in ("value", "low95", "high95"))
-        numbers = [float(word.lstrip("±")) for word in cells["out of brake, in 10 000"].split() if word != "below"]
+        value, low, high = (row["brake_saturated"][key] for key in ("value", "low95", "high95"))
+        numbers = [float(word.lstrip("±")) for word in cells["brake saturated, in 10 000"].split() if word != "below"]
         wanted = [1e4 * value, 1e4 * max(value - low, high - value)] if value else [1e4 * high]
         assert numbers == pytest.approx(wanted, rel=0.06)
 

@@ -35,8 +35,8 @@ resistance_scenarios = 1
 passes = 1000
 [acceptance]
 rms_m_s = 0.2
-honesty_low = 0.7
-honesty_high = 1.4
+prediction_ratio_low = 0.7
+prediction_ratio_high = 1.4
 [output]
 csv = true
 [sensors]
@@ -96,7 +96,7 @@ def test_it_prints_the_figures_of_its_summary(tuned_points: Path, pages: list[Pa
         ("rms, m/s", "rms_m_s", 4),
         ("95 of 100 within ±, m/s", "p95_m_s", 4),
         ("unavoidable, m/s", "unavoidable_rms_m_s", 4),
-        ("predicted / simulated", "honesty", 2),
+        ("predicted / simulated", "prediction_ratio", 2),
         ("switchings a pass", "switchings", 1),
     ):
         figures = [case[key] for case in cases]
@@ -112,7 +112,7 @@ def test_tables_say_what_was_predicted_and_simulated(tuned_points: Path) -> None
         assert table.validated.rms_m_s == case["rms_m_s"]["value"]
         assert table.predicted.rms_m_s == case["predicted_rms_m_s"]
         # Two computations of one number, on a coarse grid and with few passes.
-        assert 0.7 < case["honesty"]["value"] < 1.4
+        assert 0.7 < case["prediction_ratio"]["value"] < 1.4
         unavoidable = case["unavoidable_rms_m_s"]
         assert 0.0 < unavoidable["low95"] < unavoidable["value"] < unavoidable["high95"]
         assert unavoidable["value"] < case["rms_m_s"]["value"]
@@ -273,7 +273,7 @@ def test_an_infeasible_case_stands_outside_the_verdict(command: Command, config:
     assert ran.code == 1
     summary = json.loads(ran.out)
     (case,) = summary["tables"]["cases"]
-    assert (case["verdict"], case["why_infeasible"]) == ("infeasible", "out of brake power")
+    assert (case["verdict"], case["why_infeasible"]) == ("infeasible", "brake saturated")
     assert case["unavoidable_rms_m_s"]["low95"] > 0.15
     assert [limit["sentence"] for limit in summary["limits"]] == ["no case is feasible, so there is nothing to accept"]
     table = tmp_path / "out" / "tables" / f"{case['id']}.json"

@@ -62,7 +62,7 @@ def test_the_tables_that_a_trial_asks_for_run_in_it(
     summary = json.loads(Path("humped/summary.json").read_bytes())
     assert summary["warnings"] == []
     (position,) = summary["tables"]["positions"]
-    assert 0.0 < position["rms_of_exit_less_command_m_s"]["value"] < 2.0 * position["told_exit_std_m_s"]
+    assert 0.0 < position["rms_of_exit_less_command_m_s"]["value"] < 2.0 * position["stated_exit_std_m_s"]
     assert position["strokes_per_pass"]["value"] > 1.0
 
 

@@ -91,8 +91,8 @@ def in_double_precision(correction: Correction, errors: npt.NDArray[np.float64])
     variance = correction.spread_m_s**2 * correction.gain
     reach = float(np.roots([1.0, -correction.limit_m_s, -4.0 * variance]).max())
     for error in errors:
-        surprise = np.clip(error + c - mean, -3.0 * correction.spread_m_s, 3.0 * correction.spread_m_s)
-        mean = np.clip(mean + surprise / correction.memory_passes, -reach, reach)
+        innovation = np.clip(error + c - mean, -3.0 * correction.spread_m_s, 3.0 * correction.spread_m_s)
+        mean = np.clip(mean + innovation / correction.memory_passes, -reach, reach)
         wanted = mean * max(0.0, 1.0 - 4.0 * variance / mean**2)
         change = np.clip(wanted, -correction.limit_m_s, correction.limit_m_s) - c
         c += np.clip(change, -correction.step_m_s, correction.step_m_s)

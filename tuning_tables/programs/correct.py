@@ -32,7 +32,7 @@ LEAST_ERROR_M_S: Final = np.float32(-1.0)
 """An exit farther off was not regulated."""
 
 LARGEST_EXCESS_M_S: Final = np.float32(0.1)
-"""An exit faster than the target by more, at full brake, was out of brake power."""
+"""An exit faster than the target by more, at full brake, was brake saturated."""
 
 FEWEST_SAMPLES: Final = 10
 MOST_MISSING: Final = 3
@@ -47,11 +47,11 @@ MEAN_M_S, CORRECTION_M_S, LEARNT = range(3)
 class CorrectionSetting(NamedTuple):
     """How far and how fast the correction of a position may go. Closed."""
 
-    gain: Annotated[np.float32, real("K: by which a surprise moves the mean error")]
+    gain: Annotated[np.float32, real("K: by which an innovation moves the mean error")]
     threshold_squared: Annotated[np.float32, real("t2: a mean error up to t changes nothing, m2/s2")]
     limit_m_s: Annotated[np.float32, real("the correction never leaves +-limit, m/s")]
     reach_m_s: Annotated[np.float32, real("the mean error never leaves +-reach: beyond it the limit is wanted, m/s")]
-    clip_m_s: Annotated[np.float32, real("a surprise is clipped at +-clip, m/s")]
+    clip_m_s: Annotated[np.float32, real("an innovation is clipped at +-clip, m/s")]
     step_m_s: Annotated[np.float32, real("most that one pass changes the correction by, m/s")]
 
 
@@ -134,9 +134,9 @@ def learn_exit(
     if not sound:
         begin_correction(correction)
     if credible and LEAST_ERROR_M_S <= error_m_s <= LARGEST_ERROR_M_S:
-        surprise = f32(error_m_s) + correction[CORRECTION_M_S] - correction[MEAN_M_S]
-        surprise = min(max(surprise, NOUGHT - setting.clip_m_s), setting.clip_m_s)
-        mean = correction[MEAN_M_S] + setting.gain * surprise
+        innovation = f32(error_m_s) + correction[CORRECTION_M_S] - correction[MEAN_M_S]
+        innovation = min(max(innovation, NOUGHT - setting.clip_m_s), setting.clip_m_s)
+        mean = correction[MEAN_M_S] + setting.gain * innovation
         mean = min(max(mean, least_mean), setting.reach_m_s)
         # What the standard deviation of the mean explains is not believed.
         wanted = NOUGHT

@@ -124,11 +124,11 @@ def correct(table: LineTable, estimate: Estimate, v: Speed) -> None:
     gain = square / total
     factor_gain = cross / total
     excess_gain = excess / total
-    surprise = v - estimate[SPEED_M_S]
-    estimate[SPEED_M_S] = max(estimate[SPEED_M_S] + gain * surprise, LEAST_SPEED_M_S)
-    factor = estimate[FACTOR] + factor_gain * surprise
+    innovation = v - estimate[SPEED_M_S]
+    estimate[SPEED_M_S] = max(estimate[SPEED_M_S] + gain * innovation, LEAST_SPEED_M_S)
+    factor = estimate[FACTOR] + factor_gain * innovation
     estimate[FACTOR] = min(max(factor, LEAST_FACTOR), LARGEST_FACTOR)
-    added = estimate[EXCESS] + excess_gain * surprise
+    added = estimate[EXCESS] + excess_gain * innovation
     estimate[EXCESS] = min(max(added, LEAST_EXCESS_M_S2), LARGEST_EXCESS_M_S2)
     estimate[SPEED_VARIANCE] = square - gain * square
     estimate[FACTOR_COVARIANCE] = cross - gain * cross

@@ -59,7 +59,7 @@ LARGEST_STEP_M: Final = np.float32(20.0)
 """Readings beyond these cannot be true, and one of them would spoil the state for the rest of the pass."""
 
 GATE: Final = 5.0
-"""Standard deviations of a surprise, beyond which a reading that leapt is doubted."""
+"""Standard deviations of an innovation, beyond which a reading that leapt is doubted."""
 GATE_SQUARED: Final = np.float32(GATE**2)
 
 FEW_READINGS: Final = np.float32(3.0)
@@ -81,8 +81,8 @@ def follow(
     former = estimate[SPEED_M_S]
     effect = predict(table, estimate, s, kpa)
     if is_fresh:
-        surprise = v - estimate[SPEED_M_S]
-        square = surprise * surprise
+        innovation = v - estimate[SPEED_M_S]
+        square = innovation * innovation
         bound = GATE_SQUARED * (estimate[SPEED_VARIANCE] + table.speed_variance)
         # A reading leaps where neither the noise of two readings nor all that the brake does explains its change.
         leap = v - reading - (estimate[SPEED_M_S] - former)

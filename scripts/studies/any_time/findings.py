@@ -109,15 +109,15 @@ class CaseRow:
 class PermissionRow:
     """One case as configured, with an approach if its position has one, and what permissions of the hardware give.
 
-    `ratios`: rms over that of the table as configured, by name of the permission; `honesty`: predicted / simulated rms
-    of commands at any time; `switchings_of`: by name of the permission.
+    `ratios`: rms over that of the table as configured, by name of the permission; `prediction_ratio`: predicted /
+    simulated rms of commands at any time; `switchings_of`: by name of the permission.
     """
 
     case: str
     rms_m_s: float
     switchings: float
     ratios: dict[str, Ratio]
-    honesty: float
+    prediction_ratio: float
     switchings_of: dict[str, float]
 
 
@@ -216,4 +216,4 @@ def permission_cells(row: PermissionRow, names: Sequence[str]) -> tuple[str, ...
     """The cells of one case as configured."""
     figures = f"{row.rms_m_s:.4f} / {row.switchings:.1f}"
     given = (f"{row.ratios[name].cell} / {row.switchings_of[name]:.1f}" for name in names)
-    return (row.case, figures, *given, f"{row.honesty:.2f}")
+    return (row.case, figures, *given, f"{row.prediction_ratio:.2f}")

@@ -81,7 +81,7 @@ class Approaches(Findings):
             "gain": table(
                 "rms, m/s ± half its 95 % interval; ratio of the two rms; cuts in 10 000 that no table "
                 "stops; highest entry speed served, m/s",
-                ("case", "from the entrance", ahead, "ratio", "out of brake", "served up to"),
+                ("case", "from the entrance", ahead, "ratio", "brake saturated", "served up to"),
                 map(gain_cells, self.cases),
             ),
             "rivals": table(
@@ -133,7 +133,7 @@ def gain_cells(row: CaseRow) -> tuple[str, ...]:
     return (
         row.case, rms_cell(row.without.rms_m_s, row.without.rms_ci95_m_s),
         rms_cell(row.ahead.rms_m_s, row.ahead.rms_ci95_m_s), around(row.ratio, row.ratio_ci95, 3),
-        f"{in_10_000(row.without.out_of_brake)} → {in_10_000(row.ahead.out_of_brake)}", served,
+        f"{in_10_000(row.without.brake_saturated)} → {in_10_000(row.ahead.brake_saturated)}", served,
     )  # fmt: skip
 
 

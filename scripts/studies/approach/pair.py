@@ -32,11 +32,11 @@ class Given:
 
 @dataclass(frozen=True)
 class Figures:
-    """A table in the closed loop; `out_of_brake`: share of the cuts that no table stops."""
+    """A table in the closed loop; `brake_saturated`: share of the cuts that no table stops."""
 
     rms_m_s: float
     rms_ci95_m_s: Interval
-    out_of_brake: float
+    brake_saturated: float
     switchings: float
 
 
@@ -66,7 +66,7 @@ def figures_of(sample: ExitSample, passes: CommonPasses, target_m_s: float) -> F
     """What a sample says of a table."""
     found = exit_statistics(sample, target_m_s)
     power = brake_power(sample, passes.at_full_brake, target_m_s)
-    return Figures(found.rms_m_s, found.rms_ci95_m_s, power.out_of_brake, found.switchings)
+    return Figures(found.rms_m_s, found.rms_ci95_m_s, power.brake_saturated, found.switchings)
 
 
 @dataclass(frozen=True)

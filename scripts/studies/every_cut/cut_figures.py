@@ -69,12 +69,12 @@ class CutFigures:
     without: BesideWithout
 
     @property
-    def honesty(self) -> float:
+    def prediction_ratio(self) -> float:
         """Predicted / simulated rms."""
         return self.predicted_rms_m_s / self.rms_m_s
 
     @property
-    def honesty_ci95(self) -> Interval:
+    def prediction_ratio_ci95(self) -> Interval:
         """Its 95 % interval."""
         low, high = self.rms_ci95_m_s
         return self.predicted_rms_m_s / high, self.predicted_rms_m_s / low
@@ -82,7 +82,7 @@ class CutFigures:
     @property
     def honest(self) -> bool:
         """Whether the passes leave it open that the prediction is as near as asked."""
-        low, high = self.honesty_ci95
+        low, high = self.prediction_ratio_ci95
         return low <= HONEST[1] and high >= HONEST[0]
 
 

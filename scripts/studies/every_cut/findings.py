@@ -80,7 +80,7 @@ def faults_of(found: CutFigures) -> Iterator[str]:
         _, plain, weak = without_cells(found)
         yield f"{found.case.name}: rms {plain} times that without estimator, {weak} at 0.8 of the friction"
     if not found.honest:
-        told = around(found.honesty, found.honesty_ci95, 3)
+        told = around(found.prediction_ratio, found.prediction_ratio_ci95, 3)
         yield f"{found.case.name}: predicted / simulated rms {told}, allowed {HONEST[0]:g} to {HONEST[1]:g}"
 
 
@@ -96,14 +96,14 @@ def class_cells(name: str, cases: Sequence[CutFigures]) -> tuple[str, ...]:
     """The cells of one class."""
     if not cases:
         return (name, "0", *(ABSENT for _ in CLASS_HEADS[2:]))
-    honesty = [each.honesty for each in cases]
+    prediction_ratio = [each.prediction_ratio for each in cases]
     return (
         name, str(len(cases)), share_cell([each.best.beaten_by for each in cases]),
         median_cell([each.best.ratio for each in cases]),
         share_cell([each.without.worse for each in cases]),
         largest_cell([each.without.ratio for each in cases]),
         largest_cell([each.without.weak_ratio for each in cases]),
-        f"{min(honesty):.3f}, {max(honesty):.3f}", str(sum(each.designed_again for each in cases)),
+        f"{min(prediction_ratio):.3f}, {max(prediction_ratio):.3f}", str(sum(each.designed_again for each in cases)),
     )  # fmt: skip
 
 
@@ -140,7 +140,7 @@ def case_cells(found: CutFigures) -> tuple[str, ...]:
     """The cells of one case."""
     return (
         found.case.name, f"{found.length_m:.0f}", "yes" if found.feasible else "no",
-        around(found.rms_m_s, found.rms_ci95_m_s), f"{found.honesty:.3f}", rule_cell(found.best),
+        around(found.rms_m_s, found.rms_ci95_m_s), f"{found.prediction_ratio:.3f}", rule_cell(found.best),
     )  # fmt: skip
 
 

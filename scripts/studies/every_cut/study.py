@@ -80,7 +80,7 @@ def summary(found: Outcome) -> str:
     if not isinstance(found, CutFigures):
         return f"no table: {found.reason}"
     return (
-        f"{found.length_m:.0f} m, rms {found.rms_m_s:.4f} m/s, predicted / simulated {found.honesty:.3f}, "
+        f"{found.length_m:.0f} m, rms {found.rms_m_s:.4f} m/s, predicted / simulated {found.prediction_ratio:.3f}, "
         f"/ best rule {rule_cell(found.best)}"
     )
 

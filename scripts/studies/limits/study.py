@@ -1,7 +1,7 @@
 """What limits the accuracy: sources of error and of delay switched off or changed one at a time.
 
 For every change the lines are designed anew, knowing of it, and simulated on the same fresh passes: so what is told is
-what the source costs a controller that knows of it, not what a surprise does. One cut in a thousand runs out of brake
+what the source costs a controller that knows of it, not what a surprise does. One cut in a thousand saturates the brake
 and leaves far too fast, whatever the lines; so the rms of the others stands first.
 """
 

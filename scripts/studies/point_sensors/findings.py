@@ -28,7 +28,7 @@ class PointSensorWorth(WorthRows):
     def sentences(self) -> tuple[str, ...]:
         """How much was simulated, and the largest losses."""
         worst = max(self.faulty, key=lambda row: row.rms_m_s)
-        bias = [row.honesty for row in self.sensors]
+        bias = [row.prediction_ratio for row in self.sensors]
         return (
             f"{self.passes} stratified passes of seed {self.seed}, the same cuts for every table; "
             f"{self.fault_passes} of them for every fault",
@@ -39,9 +39,9 @@ class PointSensorWorth(WorthRows):
     def faults(self) -> tuple[str, ...]:
         """Claims that fail beyond their interval."""
         found = [
-            f"{row.name}: predicted / simulated is {row.honesty:.3f}"
+            f"{row.name}: predicted / simulated is {row.prediction_ratio:.3f}"
             for row in self.sensors
-            if row.honesty_ci95[1] < HONEST[0] or row.honesty_ci95[0] > HONEST[1]
+            if row.prediction_ratio_ci95[1] < HONEST[0] or row.prediction_ratio_ci95[0] > HONEST[1]
         ]
         found += [
             f"{row.name}: worse than equal sections, ratio {row.equal_ratio[0]:.3f}"

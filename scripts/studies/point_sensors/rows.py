@@ -10,7 +10,7 @@ from synth.simulation.replicates import Interval
 
 @dataclass(frozen=True)
 class RadarRow:
-    """The table of the radar at one site; `out_of_brake`: share of the cars that no table stops."""
+    """The table of the radar at one site; `brake_saturated`: share of the cars that no table stops."""
 
     case: str
     predicted_m_s: float
@@ -21,7 +21,7 @@ class RadarRow:
     stalled_ci95: Interval
     overspeed: float
     overspeed_ci95: Interval
-    out_of_brake: float
+    brake_saturated: float
 
 
 @dataclass(frozen=True)
@@ -71,12 +71,12 @@ class SensorRow:
         return len(self.places_m)
 
     @property
-    def honesty(self) -> float:
+    def prediction_ratio(self) -> float:
         """Predicted rms / simulated rms."""
         return self.predicted_m_s / self.rms_m_s
 
     @property
-    def honesty_ci95(self) -> Interval:
+    def prediction_ratio_ci95(self) -> Interval:
         """Its interval: that of the simulated rms."""
         low, high = self.rms_ci95_m_s
         return self.predicted_m_s / high, self.predicted_m_s / low
@@ -142,7 +142,7 @@ class GridRow:
     rms_ci95_m_s: Interval
 
     @property
-    def honesty(self) -> float:
+    def prediction_ratio(self) -> float:
         """Predicted rms / simulated rms."""
         return self.predicted_m_s / self.rms_m_s
 

@@ -18,9 +18,9 @@ _NUMBERED = re.compile(r"^sensors? (\d+)( and \d+)? ")
 
 
 def tables_of(found: WorthRows) -> Mapping[str, MarkdownTable]:
-    """`worth`: a row a case and number; `proof`: beside the radar, honesty, regret; `layouts`: what a layout is worth;
-    `exits`: besides the rms; `faults`: the worst sensor of each kind; `many`: towards a radar; `grid`: by grid;
-    `missed`: by the share of passages counted as not heard."""
+    """`worth`: a row a case and number; `proof`: beside the radar, prediction ratio, regret; `layouts`: what a layout
+    is worth; `exits`: besides the rms; `faults`: the worst sensor of each kind; `many`: towards a radar; `grid`: by
+    grid; `missed`: by the share of passages counted as not heard."""
     return {
         "worth": worth(found), "proof": proof(found), "layouts": layouts(found), "exits": exits(found),
         "faults": faults(found), "many": many(found), "grid": grid(found),
@@ -52,17 +52,18 @@ def rms_of(row: SensorRow | None) -> str:
 
 
 def proof(found: WorthRows) -> MarkdownTable:
-    """What stands behind the rms: beside the radar, honesty, regret."""
+    """What stands behind the rms: beside the radar, prediction ratio, regret."""
     rows = [
         (row.case, row.axles, str(row.sensors), row.layout, around(row.radar_ratio, row.radar_ratio_ci95, 2),
-         f"{row.predicted_m_s:.4f}", around(row.honesty, row.honesty_ci95, 2), f"{row.told.regret:.2f}")
+         f"{row.predicted_m_s:.4f}", around(row.prediction_ratio, row.prediction_ratio_ci95, 2),
+         f"{row.told.regret:.2f}")
         for row in found.sensors
         if row.told is not None
     ]  # fmt: skip
     return table(
-        "rms / rms of the radar on the same passes; predicted rms, m/s; honesty: predicted / simulated rms; regret: "
-        "predicted rms / predicted rms of speeds made for each friction",
-        ("case", "axles", "sensors", "layout", "rms / radar", "predicted", "honesty", "regret"),
+        "rms / rms of the radar on the same passes; predicted rms, m/s; prediction ratio: predicted / simulated rms; "
+        "regret: predicted rms / predicted rms of speeds made for each friction",
+        ("case", "axles", "sensors", "layout", "rms / radar", "predicted", "prediction ratio", "regret"),
         rows,
     )
 
@@ -161,11 +162,11 @@ def grid(found: WorthRows) -> MarkdownTable:
     """Equal sections, tables made on several grids."""
     return table(
         "the same layout, equal sections, its table made on two grids: path step, m; speed step, m/s",
-        ("case", "axles", "sensors", "grid", "predicted", "rms", "honesty"),
+        ("case", "axles", "sensors", "grid", "predicted", "rms", "prediction ratio"),
         (
             (row.case, row.axles, str(row.sensors),
              f"{row.path_step_m:g}, {row.speed_step_m_s:g}",
-             f"{row.predicted_m_s:.4f}", rms(row.rms_m_s, row.rms_ci95_m_s), f"{row.honesty:.2f}")
+             f"{row.predicted_m_s:.4f}", rms(row.rms_m_s, row.rms_ci95_m_s), f"{row.prediction_ratio:.2f}")
             for row in found.grids
         ),
     )  # fmt: skip

@@ -53,7 +53,7 @@ def radar_row(site: Site, passes: RandomPasses) -> tuple[RadarRow, ExitSample]:
     check = check_chain(site.plant, finer_for_check(site.config.resolution))
     sample = common.run(TableController(table))
     found = exit_statistics(sample, site.target_m_s)
-    out = brake_power(sample, common.at_full_brake, site.target_m_s).out_of_brake
+    out = brake_power(sample, common.at_full_brake, site.target_m_s).brake_saturated
     predicted = predict(check, table).rms_m_s(site.target_m_s)
     row = RadarRow(
         site.title, predicted, found.rms_m_s, found.rms_ci95_m_s, found.switchings, found.stalled, found.stalled_ci95,

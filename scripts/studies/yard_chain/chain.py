@@ -24,7 +24,7 @@ from synth.aim.scene import AimScene, SceneCuts
 Floats = NDArray[np.float64]
 
 BUNCH_SPEED_M_S = {"L": 4.5, "T": 3.5}
-"""Out of the bunch position. From 4.5 m/s the park position cannot hold heavy cars; see `out_of_brake`."""
+"""Out of the bunch position. From 4.5 m/s the park position cannot hold heavy cars; see `brake_saturated`."""
 
 TARGETS_M_S = {"L": (1.0, 1.3, 1.6, 2.0, 2.6, 3.5), "T": (1.0, 1.2, 1.4, 1.7, 2.0, 2.6)}
 """Exit speeds that the books have tables for."""
@@ -116,7 +116,7 @@ def chain_samples(
     return np.array(side_by_side(replicate, cuts.unrolled(draws)))
 
 
-def out_of_brake(hump: AimScene, bunch_m_s: float, books: BookSize, count: int, seed: int) -> float:
+def brake_saturated(hump: AimScene, bunch_m_s: float, books: BookSize, count: int, seed: int) -> float:
     """Share of heavy single cars that leave more than 0.3 m/s above the lowest target of our tables, where they leave
     the bunch position at `bunch_m_s`."""
     kind = Kind("T", 1)

@@ -24,7 +24,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class YardChain(Findings):
-    """All parts; `out_of_brake`: share of heavy cars too fast for the park position, by the speed out of the bunch
+    """All parts; `brake_saturated`: share of heavy cars too fast for the park position, by the speed out of the bunch
     position in m/s."""
 
     draws: Draws
@@ -39,7 +39,7 @@ class YardChain(Findings):
     stretches: tuple[StretchRow, ...]
     faulty: tuple[Detail, ...]
     approach: Approach
-    out_of_brake: dict[str, float]
+    brake_saturated: dict[str, float]
 
     def tables(self) -> Mapping[str, MarkdownTable]:
         """See the titles; `chain-CUTS-METRES`: a row a kind of knowledge, a column a position."""
@@ -80,7 +80,7 @@ class YardChain(Findings):
     def sentences(self) -> tuple[str, ...]:
         """How much was simulated, and what needs no table."""
         d, a = self.draws, self.approach
-        brake = "; ".join(f"{100 * share:.2f} % from {speed} m/s" for speed, share in self.out_of_brake.items())
+        brake = "; ".join(f"{100 * share:.2f} % from {speed} m/s" for speed, share in self.brake_saturated.items())
         return (
             f"{d.replicates} times {d.design} cuts to choose commands on and {d.report} others to judge them on, seed "
             f"{d.seed}; the same cuts for every position and kind of knowledge",

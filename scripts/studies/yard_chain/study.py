@@ -23,9 +23,9 @@ from scripts.studies.yard_chain.chain import (
     RADAR,
     BookSize,
     Kind,
+    brake_saturated,
     chain_samples,
     knowledge_of,
-    out_of_brake,
     positions_of,
 )
 from scripts.studies.yard_chain.details import approach_row, fault_rows, record_rows, stretch_rows
@@ -100,8 +100,8 @@ def run(options: Options, tell: Tell) -> YardChain:
         stretches=stretches,
         faulty=faulty,
         approach=approach_row(light, detailed, at, p, draws),
-        out_of_brake={
-            f"{speed:g}": out_of_brake(hump, speed, books, options.report, options.seed)
+        brake_saturated={
+            f"{speed:g}": brake_saturated(hump, speed, books, options.report, options.seed)
             for speed in (BUNCH_SPEED_M_S["L"], BUNCH_SPEED_M_S["T"])
         },
     )

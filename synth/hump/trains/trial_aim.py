@@ -37,7 +37,7 @@ def design_of(config: ResolvedTrial, threads: int, last: PositionChoice) -> AimD
     measured = aim.knowledge == "measured"
     return AimDesign(
         population=config.people,
-        position=NormalPosition(told_exit_std_m_s(last)),
+        position=NormalPosition(stated_exit_std_m_s(last)),
         requirement=Requirement(aim.p_overspeed, aim_range_m_s(aim, last)),
         knowledge=MeasuredAhead(config.settings.sensors.speed_std_m_s) if measured else ByCategory(),
         design_cuts=aim.design_cuts,
@@ -47,7 +47,7 @@ def design_of(config: ResolvedTrial, threads: int, last: PositionChoice) -> AimD
     )
 
 
-def told_exit_std_m_s(choice: PositionChoice) -> float:
+def stated_exit_std_m_s(choice: PositionChoice) -> float:
     """What an aim takes for the error of a position: of a book, the root mean square of what its tables predict."""
     if choice.book is None:
         return choice.exit_std_m_s or 0.0

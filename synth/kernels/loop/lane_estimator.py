@@ -102,22 +102,22 @@ def estimated(observed, table, there, i, s_m, v_m_s):
     p13 = slope * c7 - effect * c9 - drag * c10
     p11 = slope * (slope * c5 - effect * c6 - drag * c7)
     p11 = packs.greatest(p11 - effect * (p12 - effect * path_variance) - drag * p13, nought)
-    total, surprise = p11 + table.speed_variance, v - predicted
+    total, innovation = p11 + table.speed_variance, v - predicted
     leap, most = (v - reading) - (predicted - speed), table.leap_m_s + effect
     leaps = (leap > most) | (leap < nought - most)
     strange = (heard & leaps) | (packs.opposite(heard) & packs.opposite(moving))
-    far = surprise * surprise > GATE_SQUARED * total
+    far = innovation * innovation > GATE_SQUARED * total
     doubted = begun & fresh & far & (strange | (doubts > nought))
     counted = packs.choose(moving & packs.opposite(leaps), doubts + one, one)
     few = (believings < FEW_READINGS) | (counted >= table.doubted)
     corrects = begun & fresh & packs.opposite(doubted)
     anew = moving & ((packs.opposite(begun) & fresh) | (doubted & few))
     gain, factor_gain, excess_gain = p11 / total, p12 / total, p13 / total
-    found = packs.choose(corrects, packs.greatest(predicted + gain * surprise, least_speed), predicted)
+    found = packs.choose(corrects, packs.greatest(predicted + gain * innovation, least_speed), predicted)
     found = packs.choose(anew, v, found)
-    likely = packs.least(packs.greatest(factor + factor_gain * surprise, LEAST_FACTOR), LARGEST_FACTOR)
+    likely = packs.least(packs.greatest(factor + factor_gain * innovation, LEAST_FACTOR), LARGEST_FACTOR)
     bound = LARGEST_EXCESS_M_S2
-    excessive = packs.least(packs.greatest(excess + excess_gain * surprise, nought - bound), bound)
+    excessive = packs.least(packs.greatest(excess + excess_gain * innovation, nought - bound), bound)
     ones = packs.narrow(packs.eight(1.0))
     known = there & (begun | anew)
     packs.scatter(state, at, known, ones)

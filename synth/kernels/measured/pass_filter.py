@@ -88,12 +88,12 @@ def filter_passes(
     first_row: Ints,
     first: int,
     last: int,
-    surprise: Floats,
+    innovation: Floats,
     variance: Floats,
     cuts: Cuts,
 ) -> None:
-    """Filter the passes `first` … `last` − 1. `surprise`, `variance` (n,): reading less prediction and the variance of
-    that, NaN at rows without a usable reading and at the first one of a pass, from which the filter starts."""
+    """Filter the passes `first` … `last` − 1. `innovation`, `variance` (n,): reading less prediction and the variance
+    of that, NaN at rows without a usable reading and at the first one of a pass, from which the filter starts."""
     x, f = np.empty(4), np.empty(4)
     p, q = np.empty((4, 4)), np.empty((4, 4))
     reading_var = spread.reading_std_m_s**2
@@ -106,11 +106,11 @@ def filter_passes(
         p[3, 3] = spread.path_std**2
         begin, end = first_row[number], first_row[number + 1]
         for row in range(begin, end):
-            surprise[row], variance[row] = math.nan, math.nan
+            innovation[row], variance[row] = math.nan, math.nan
             v = rows.speed_m_s[row] - spread.bias_m_s
             if rows.speed_m_s[row] > SLOWEST_M_S:  # NaN is not; as read, so that the same readings count at all numbers
                 if begun:
-                    correct(x, p, v, reading_var, row, surprise, variance)
+                    correct(x, p, v, reading_var, row, innovation, variance)
                 else:
                     begun = True
                     x[0] = max(0.5 * (v * v - reading_var), LEAST_ENERGY)
@@ -122,18 +122,18 @@ def filter_passes(
 
 
 @kernel_inline
-def correct(x, p, v, reading_var, row, surprise, variance):
+def correct(x, p, v, reading_var, row, innovation, variance):
     """By one reading; the mean of √(2e) is a little below the root of the mean."""
     expected = math.sqrt(2.0 * x[0])
     slope = 1.0 / expected
     expected -= 0.5 * p[0, 0] * slope**3
     total = p[0, 0] * slope * slope + reading_var
-    surprise[row], variance[row] = v - expected, total
+    innovation[row], variance[row] = v - expected, total
     gain = slope / total
     e0, e1, e2, e3 = p[0, 0], p[0, 1], p[0, 2], p[0, 3]
     row0 = (e0, e1, e2, e3)
     for i in range(4):
-        x[i] += row0[i] * gain * surprise[row]
+        x[i] += row0[i] * gain * innovation[row]
         for j in range(4):
             p[i, j] -= row0[i] * gain * slope * row0[j]
     x[0] = max(x[0], LEAST_ENERGY)

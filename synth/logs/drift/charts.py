@@ -99,7 +99,7 @@ class CategoryExits:
 def running_medians(errors: Floats) -> Floats:
     """Of each of `errors` (m,) and the `WINDOW` − 1 before it, or as many as there are; NaN for fewer than `FEWEST`.
 
-    A few cuts that ran out of brake hardly move them.
+    A few cuts that saturated the brake hardly move them.
     """
     medians = np.full(len(errors), np.nan)
     for i in range(FEWEST - 1, len(errors)):

@@ -16,7 +16,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.logs import unknowns as asked
 from synth.logs.drift.causes import Cause
 from synth.logs.fitting_passes import FittingPasses
-from synth.logs.likelihood import Likelihood, Surprises, likelihood_of
+from synth.logs.likelihood import Innovations, Likelihood, likelihood_of
 from synth.logs.unknowns import OF_VALVES
 
 Floats = NDArray[np.float64]
@@ -87,22 +87,22 @@ def _of_chunk(likelihood: Likelihood, values: Mapping[str, float], causes: Seque
 
 
 def of_gauge_offset(
-    base: Surprises, passes: FittingPasses, values: Mapping[str, float], sizes: Sequence[float]
+    base: Innovations, passes: FittingPasses, values: Mapping[str, float], sizes: Sequence[float]
 ) -> Floats:
     """The same for a gauge that shows too much by each of `sizes`: Σ (2 r d − d²)/2σ² of its readings, (m, sizes)."""
     read = int(np.isfinite(passes.log.pressure_kpa).sum())
     these = slice(base.readings, base.readings + read)
     where = base.pass_of[these]
-    total = np.bincount(where, base.surprise[these], len(passes))
+    total = np.bincount(where, base.innovation[these], len(passes))
     count = np.bincount(where, minlength=len(passes))
     d = np.asarray(sizes)
     return np.asarray((total[:, None] * d - 0.5 * count[:, None] * d**2) / values[asked.GAUGE_NOISE] ** 2)
 
 
-def exit_speeds(base: Surprises, passes: FittingPasses, values: Mapping[str, float]) -> Floats:
+def exit_speeds(base: Innovations, passes: FittingPasses, values: Mapping[str, float]) -> Floats:
     """Filtered speed at the last reading of each pass, (m,), NaN where the filter never began.
 
-    A correction moves the prediction by P/S of the surprise, so the rest, R/S, is what the reading is off after it.
+    A correction moves the prediction by P/S of the innovation, so the rest, R/S, is what the reading is off after it.
     """
     speeds = np.full(len(passes), np.nan)
     rows = np.flatnonzero(np.isfinite(passes.log.speed_m_s))
@@ -114,7 +114,7 @@ def exit_speeds(base: Surprises, passes: FittingPasses, values: Mapping[str, flo
     for number in at.tolist():
         one = int(last[number])
         reading = float(passes.log.speed_m_s[reading_of_pass[one]]) - values.get(asked.BIAS, 0.0)
-        speeds[one] = reading - float(base.surprise[number] * noise / base.variance[number])
+        speeds[one] = reading - float(base.innovation[number] * noise / base.variance[number])
     return speeds
 
 

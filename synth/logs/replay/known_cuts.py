@@ -15,7 +15,7 @@ from synth.kernels.loop.motion import brake_rows
 from synth.kernels.loop.passes import Draws
 from synth.kernels.measured.pass_filter import SLOWEST_M_S
 from synth.logs import unknowns as asked
-from synth.logs.likelihood import Likelihood, Surprises
+from synth.logs.likelihood import Innovations, Likelihood
 from synth.logs.pass_rows import scales
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import fixed
@@ -56,8 +56,8 @@ class KnownCuts:
         return KnownCuts(**arrays, speed_std_m_s=self.speed_std_m_s)
 
 
-def known_cuts(like: Likelihood, found: Surprises, values: Mapping[str, float]) -> KnownCuts:
-    """From the filter of the likelihood, whose surprises at `values` are `found`.
+def known_cuts(like: Likelihood, found: Innovations, values: Mapping[str, float]) -> KnownCuts:
+    """From the filter of the likelihood, whose innovations at `values` are `found`.
 
     ξ and w are one normal law: two more runs of the filter, with a resistance that is told, give the law of ξ for it.
     """

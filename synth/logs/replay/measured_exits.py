@@ -13,7 +13,7 @@ from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.measured.pass_filter import SLOWEST_M_S
 from synth.logs import unknowns as asked
 from synth.logs.fitting_passes import FittingPasses
-from synth.logs.likelihood import Likelihood, Surprises
+from synth.logs.likelihood import Innovations, Likelihood
 from synth.logs.pass_rows import on, scales, way_of
 
 Floats = NDArray[np.float64]
@@ -31,19 +31,19 @@ class MeasuredExits:
     std_m_s: Floats
 
 
-def measured_exits(like: Likelihood, found: Surprises, values: Mapping[str, float]) -> MeasuredExits:
+def measured_exits(like: Likelihood, found: Innovations, values: Mapping[str, float]) -> MeasuredExits:
     """The filtered speed at the last reading before the exit, taken on to the exit by the law of motion.
 
-    `found`: the surprises of `like` at `values`.
+    `found`: the innovations of `like` at `values`.
     """
     passes, log = like.passes, like.passes.log
     speed, std = np.full(len(log), np.nan), np.full(len(log), np.nan)
     reading_var = measured_speed_std(values[asked.NOISE], passes.plant.sensor.resolution_m_s) ** 2
     rows, index = last_readings(passes, values.get(asked.BIAS, 0.0))
     there = np.flatnonzero(rows >= 0)
-    surprise, variance = found.surprise[index[there]], found.variance[index[there]]
+    innovation, variance = found.innovation[index[there]], found.variance[index[there]]
     bias = values.get(asked.BIAS, 0.0)
-    filtered = log.speed_m_s[rows[there]] - bias - surprise * reading_var / variance
+    filtered = log.speed_m_s[rows[there]] - bias - innovation * reading_var / variance
     error = np.sqrt(reading_var * np.maximum(variance - reading_var, 0.0) / variance)
     left_m, gained = to_the_exit(like, found, values, rows)
     left_m, gained = left_m[there], gained[there]
@@ -57,8 +57,8 @@ def measured_exits(like: Likelihood, found: Surprises, values: Mapping[str, floa
 
 
 def last_readings(passes: FittingPasses, bias: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Row of the last usable reading before the exit of each pass, and its number among the surprises, (m,); −1 for
-    none. The first usable reading of a pass has no surprise."""
+    """Row of the last usable reading before the exit of each pass, and its number among the innovations, (m,); −1 for
+    none. The first usable reading of a pass has no innovation."""
     log = passes.log
     usable = log.speed_m_s - bias > SLOWEST_M_S  # NaN is not
     of_row = log.pass_of_row
@@ -74,7 +74,7 @@ def last_readings(passes: FittingPasses, bias: float) -> tuple[NDArray[np.int64]
 
 
 def to_the_exit(
-    like: Likelihood, found: Surprises, values: Mapping[str, float], rows: NDArray[np.int64]
+    like: Likelihood, found: Innovations, values: Mapping[str, float], rows: NDArray[np.int64]
 ) -> tuple[Floats, Floats]:
     """Metres from `rows` (m,) to the exit, and energy per mass that is gained on them, by what is known of the cuts."""
     passes, log = like.passes, like.passes.log

@@ -27,21 +27,23 @@ class Measured:
     table_ratio_ci95: Interval = UNKNOWN
 
     @property
-    def honesty(self) -> float:
+    def prediction_ratio(self) -> float:
         """Predicted rms / simulated rms; NaN where nothing was predicted."""
-        return self._honest[0]
+        return self._ratio_of_predicted[0]
 
     @property
-    def honesty_ci95(self) -> Interval:
-        """The 95 % interval of `honesty`."""
-        return self._honest[1]
+    def prediction_ratio_ci95(self) -> Interval:
+        """The 95 % interval of `prediction_ratio`."""
+        return self._ratio_of_predicted[1]
 
     @property
-    def _honest(self) -> tuple[float, Interval]:
-        return honesty_of(self.predicted_rms_m_s, self.predicted_passes, self.statistics)
+    def _ratio_of_predicted(self) -> tuple[float, Interval]:
+        return prediction_ratio_of(self.predicted_rms_m_s, self.predicted_passes, self.statistics)
 
 
-def honesty_of(predicted_rms_m_s: float, predicted_passes: int | None, found: ExitStatistics) -> tuple[float, Interval]:
+def prediction_ratio_of(
+    predicted_rms_m_s: float, predicted_passes: int | None, found: ExitStatistics
+) -> tuple[float, Interval]:
     """Predicted / simulated rms, and its 95 % interval; NaN where no pass had an error.
 
     A prediction that was itself simulated is as uncertain as so many passes of the same design make it.

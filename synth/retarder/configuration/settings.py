@@ -181,8 +181,8 @@ class AcceptanceSettings(Section):
     p_stall: float = setting(0.01, "1", 0.0, 1.0, "highest probability of a stop in the position")
     time_s: float = setting(600.0, "s", 0.1, 600.0, "highest mean time from where the regulator acts to the exit")
     switchings: float = setting(1000.0, "1", 0.0, 1000.0, "highest mean number of commands a cut")
-    honesty_low: float = setting(0.9, "1", 0.0, 1.0, "lowest predicted rms / simulated rms")
-    honesty_high: float = setting(1.1, "1", 1.0, 100.0, "highest predicted rms / simulated rms")
+    prediction_ratio_low: float = setting(0.9, "1", 0.0, 1.0, "lowest predicted rms / simulated rms")
+    prediction_ratio_high: float = setting(1.1, "1", 1.0, 100.0, "highest predicted rms / simulated rms")
 
 
 class TuneOutputSettings(OutputSettings):

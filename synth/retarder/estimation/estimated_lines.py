@@ -20,7 +20,7 @@ from synth.solver.polynomial_lines import PolynomialLines
 class SimulatedRms:
     """The rms of lines on simulated passes, m/s; `most_off`: a grid is not believed where it differs by more.
 
-    More than for an exact figure: the rare cuts that run out of brake make up to a fifth of it, by chance.
+    More than for an exact figure: the rare cuts that saturate the brake make up to a fifth of it, by chance.
     """
 
     rms_m_s: float

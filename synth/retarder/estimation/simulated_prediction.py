@@ -2,7 +2,7 @@
 
 The state of an estimator (estimated speed and friction) would be two more axes of the chain, and taking its error for
 a white one predicts 0.60 to 0.95 of the rms that is then simulated. So the prediction comes from passes that neither
-design nor validation use: its honesty tests the sample, not the model.
+design nor validation use: its prediction ratio tests the sample, not the model.
 
 Most of the mean square is due to the few cuts of low friction, so the passes are stratified ones, weighted
 (`simulation.stratified_passes`), and every class of cuts has its own: the chance of one sample is not that of a book.

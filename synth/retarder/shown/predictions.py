@@ -44,7 +44,7 @@ def predictions(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
 
 def ratios_of(cases: Sequence[CaseResult]) -> str:
     """Predicted over simulated rms, in a sentence."""
-    ratios = [case.measured.honesty for case in cases]
+    ratios = [case.measured.prediction_ratio for case in cases]
     inside = sum(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios)
     return (
         f"Predicted / simulated rms is {span(ratios)} over {counted(len(cases), 'case')}; {inside} of them within "

@@ -84,15 +84,15 @@ def table_ratio(found: Measured) -> Interval | None:
 def overall(found: FoundBook[CaseResult]) -> Row:
     """Figures over the feasible cases; infeasible ones are only counted."""
     regrets = [case.comparison.regret for case in found.feasible if case.comparison.has_reference]
-    honest = [case.measured.honesty for case in found.feasible]
+    honest = [case.measured.prediction_ratio for case in found.feasible]
     return {
         "criterion": found.book.config.criterion.sentence,
         "cases": len(found.book.cases),
         "feasible": len(found.feasible),
         "highest_rms_m_s": max((case.statistics.rms_m_s for case in found.feasible), default=None),
         "median_regret": median(regrets) if regrets else None,
-        "lowest_honesty": min(honest, default=None),
-        "highest_honesty": max(honest, default=None),
+        "lowest_prediction_ratio": min(honest, default=None),
+        "highest_prediction_ratio": max(honest, default=None),
     }
 
 

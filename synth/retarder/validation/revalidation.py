@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from synth.retarder.comparison.measured import honesty_of
+from synth.retarder.comparison.measured import prediction_ratio_of
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.judgement import Judgement, judgement
 from synth.retarder.sensors.sensor_class import full_brake as full_brake_at_passages
@@ -43,7 +43,7 @@ class Revalidation:
     statistics: ExitStatistics
     brake_power: BrakePower
     overspeed: tuple[float, Interval]
-    honesty: tuple[float, Interval]
+    prediction_ratio: tuple[float, Interval]
     confirmed: bool | None
     judgement: Judgement
     infeasible: bool
@@ -123,7 +123,7 @@ def revalidation(
         statistics=found,
         brake_power=power,
         overspeed=over,
-        honesty=honesty_of(table.predicted.rms_m_s, table.predicted.passes, found),
+        prediction_ratio=prediction_ratio_of(table.predicted.rms_m_s, table.predicted.passes, found),
         confirmed=confirmed(table, found),
         judgement=judgement(found, over, table.predicted, limits),
         infeasible=infeasible,

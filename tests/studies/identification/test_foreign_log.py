@@ -51,7 +51,7 @@ def test_the_tests_say_that_the_model_does_not_hold(found: Found) -> None:
     """Its friction falls with speed, and its drive fills by choked flow through a valve that opens slowly."""
     told = found[0]
     said = {test.effect.looks_for.split(":")[0] for test in told.wrong}
-    assert "surprises of the gauge go together from reading to reading" in said
+    assert "innovations of the gauge go together from reading to reading" in said
     (friction,) = (test for test in told.tests if test.effect.looks_for == "friction changes with speed")
     assert friction.interval[1] < 0.0
 

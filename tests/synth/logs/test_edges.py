@@ -31,19 +31,19 @@ class Edged(Posterior):
         super().__init__((), (positive(asked.TOUCH_DELAY, "s", 0.1, 0.05, 0.2),), 1)
         self.flat, self.noise = flat, noise
 
-    def surprises(self, u: float) -> Floats:
+    def innovations(self, u: float) -> Floats:
         """Of both observations, over their standard deviations."""
         return np.array([(self.flat - u) / FLAT_STD, self.noise - STEEP * max(0.0, u - EDGE)])
 
     def value(self, u: Floats) -> float:
-        r = self.surprises(float(u[0]))
+        r = self.innovations(float(u[0]))
         return 0.5 * float(u @ u + r @ r)
 
     def linearised_by(self, u: Floats, sides: Mapping[str, Side]) -> Linearised:
         side = sides.get(asked.TOUCH_DELAY, CENTRAL)
-        ends = [self.surprises(float(u[0]) + place) for place in (side.to, side.start)]
+        ends = [self.innovations(float(u[0]) + place) for place in (side.to, side.start)]
         by_u = (ends[0] - ends[1]) / (side.to - side.start)
-        score = -float(by_u @ self.surprises(float(u[0])))
+        score = -float(by_u @ self.innovations(float(u[0])))
         return Linearised(-self.value(u), np.array([[score]]), np.array([[float(by_u @ by_u)]]))
 
     @property

@@ -26,13 +26,13 @@ def rows_of(seed: int, n: int = 14) -> Rows:
 
 
 def filtered(rows: Rows, path_std: float) -> tuple[np.ndarray, np.ndarray, Cuts]:
-    """Surprises, their variances, and what is known of the cut."""
+    """Innovations, their variances, and what is known of the cut."""
     n = len(rows.speed_m_s)
-    surprise, variance = np.empty(n), np.empty(n)
+    innovation, variance = np.empty(n), np.empty(n)
     cuts = Cuts(*(np.empty(1) for _ in Cuts._fields))
     spread = Spread(np.array([CV]), np.array([MEAN_W]), np.array([STD_W]), path_std, 2.0, NOISE, 0.0)
-    filter_passes(rows, spread, BySpeed(0.0, 0.0), np.array([0, n]), 0, 1, surprise, variance, cuts)
-    return surprise, variance, cuts
+    filter_passes(rows, spread, BySpeed(0.0, 0.0), np.array([0, n]), 0, 1, innovation, variance, cuts)
+    return innovation, variance, cuts
 
 
 def by_quadrature(rows: Rows) -> tuple[float, float]:
@@ -58,9 +58,9 @@ def by_quadrature(rows: Rows) -> tuple[float, float]:
 def test_the_likelihood_is_that_of_a_quadrature(seed: int) -> None:
     """Over energy, friction and resistance; the filter is linear about what it expects, which costs little."""
     rows = rows_of(seed)
-    surprise, variance, cuts = filtered(rows, 0.0)
-    assert math.isnan(surprise[0])
-    told = -0.5 * float(np.sum(np.log(2.0 * np.pi * variance[1:]) + surprise[1:] ** 2 / variance[1:]))
+    innovation, variance, cuts = filtered(rows, 0.0)
+    assert math.isnan(innovation[0])
+    told = -0.5 * float(np.sum(np.log(2.0 * np.pi * variance[1:]) + innovation[1:] ** 2 / variance[1:]))
     expected, friction = by_quadrature(rows)
     assert told == pytest.approx(expected, abs=0.03)
     assert cuts.friction[0] == pytest.approx(friction, abs=3e-4)
@@ -76,8 +76,8 @@ def test_the_mean_of_the_path_friction_has_the_variance_of_its_process(ratio: fl
 def test_readings_that_are_missing_are_left_out() -> None:
     rows = rows_of(3)
     rows.speed_m_s[[0, 5]] = np.nan
-    surprise, variance, _ = filtered(rows, 0.1)
-    assert np.flatnonzero(np.isnan(surprise)).tolist() == [0, 1, 5]
+    innovation, variance, _ = filtered(rows, 0.1)
+    assert np.flatnonzero(np.isnan(innovation)).tolist() == [0, 1, 5]
     assert variance[6] > variance[4]
 
 
@@ -109,11 +109,11 @@ def scores(ends: list[tuple[Rows, BySpeed]], size: float) -> np.ndarray:
     spread = Spread(np.full(PASSES, CV), np.zeros(PASSES), np.full(PASSES, 1e-6), PATH_STD, LENGTH_M, NOISE, 0.0)
     told = []
     for rows, by_speed in ends:
-        surprise, variance = np.empty(PASSES * ROWS), np.empty(PASSES * ROWS)
+        innovation, variance = np.empty(PASSES * ROWS), np.empty(PASSES * ROWS)
         cuts = Cuts(*(np.empty(PASSES) for _ in Cuts._fields))
         first_row = np.arange(PASSES + 1) * ROWS
-        filter_passes(rows, spread, by_speed, first_row, 0, PASSES, surprise, variance, cuts)
-        terms = np.nan_to_num(np.log(variance) + surprise**2 / variance)
+        filter_passes(rows, spread, by_speed, first_row, 0, PASSES, innovation, variance, cuts)
+        terms = np.nan_to_num(np.log(variance) + innovation**2 / variance)
         told.append(-0.5 * terms.reshape(PASSES, ROWS).sum(axis=1))
     return np.asarray((told[1] - told[0]) / size)
 

@@ -128,7 +128,7 @@ def test_a_case_is_judged_by_the_limits_unless_the_brake_alone_misses_them() -> 
     assert verdict(0.10).word == "not decidable"
     assert verdict(0.13, 0.06, (0.05, 0.07)).word == "missed"  # there is brake enough
     short = verdict(0.3, 0.12, (0.11, 0.13))
-    assert (short.word, short.obstacle) == ("infeasible", "out of brake power")
+    assert (short.word, short.obstacle) == ("infeasible", "brake saturated")
     unsure = verdict(0.3, 0.1, (0.09, 0.11))
     assert unsure.word == "not decidable"
     assert "too near to the limit to tell whether the case is feasible" in unsure.judgement.undecided[-1]

@@ -133,7 +133,7 @@ def test_the_unavoidable_error_of_a_sample() -> None:
     assert lack[:4] == pytest.approx([0.2, 0.0, 0.0, 0.0])
     found = unavoidable_error(exits(slowest), exits(fastest), 3.0)
     assert found.rms_m_s == pytest.approx(np.sqrt((0.04 + 0.01 + 0.16) / 4.0))
-    assert found.obstacle == "out of brake power"
+    assert found.obstacle == "brake saturated"
     assert unavoidable_error(exits(slowest), exits(fastest), 4.5).obstacle == "leaves too slow"
     none = unavoidable_error(exits(slowest - 3.0), exits(fastest + 3.0), 3.0)
     assert (none.rms_m_s, none.forbids(0.1), none.undecided(0.1)) == (0.0, False, False)

@@ -56,10 +56,10 @@ def test_every_question_is_answered_as_by_python(compiler: Compiler) -> None:
 @pytest.mark.parametrize(
     ("before", "after"),
     [("Held_1 > Setting.ThresholdSquared", "Mean > 0.0"), ("Held_1 < Slowest", "Held_1 < -9.0"), ("NOT Sound", "FALSE"),
-     ("Surprise > Setting.Clip_m_s", "Surprise > 9.0"), ("Corrected < 0.0", "Corrected < -9.0"),
+     ("Innovation > Setting.Clip_m_s", "Innovation > 9.0"), ("Corrected < 0.0", "Corrected < -9.0"),
      ("AtTop <= Others", "AtTop < Others"), ("(NOT EndsAtTop) OR ", ""),
      ("LargestExcess_m_s : REAL := 1.0", "LargestExcess_m_s : REAL := 1.1"), ("[1.500000060E-01]", "[1.500000209E-01]"),
-     ("Surprise := Surprise - Correction.Mean_m_s;", "")],
+     ("Innovation := Innovation - Correction.Mean_m_s;", "")],
 )  # fmt: skip
 def test_a_wrong_block_is_found_by_the_self_test(before: str, after: str) -> None:
     text = b"".join(FILES.values()).decode("ascii")

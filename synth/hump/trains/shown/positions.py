@@ -21,7 +21,7 @@ from synth.hump.trains.position_strength import MOST_SHORT, strengths
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.shown.figures import in_hundred
 from synth.hump.trains.train_figures import Floats, interval_of, ratio, share
-from synth.hump.trains.trial_aim import told_exit_std_m_s
+from synth.hump.trains.trial_aim import stated_exit_std_m_s
 
 POSITIONS: Final = (
     Column("number", "position"),
@@ -31,7 +31,7 @@ POSITIONS: Final = (
     Column("passes", "passes", spare=4),
     Column("short", "left too fast for want of brake", "%", in_hundred),
     Column("rms_of_exit_less_command_m_s", "rms of exit less command", "m/s", decimals(3)),
-    Column("told_exit_std_m_s", "told", "m/s", decimals(3), spare=1),
+    Column("stated_exit_std_m_s", "stated", "m/s", decimals(3), spare=1),
     Column("at_lowest", "commanded its lowest speed", "%", in_hundred, spare=2),
     Column("strokes_per_pass", "commands to valves a pass", spare=3),
 )
@@ -94,7 +94,7 @@ def position_row(result: HumpedTrial, choice: PositionChoice, place: int) -> Row
         "aims_on_tracks": aimed_tracks(result.config, place),
         "passes": int(passes.sum()),
         "rms_of_exit_less_command_m_s": interval_of(rms, low, high, len(found)),
-        "told_exit_std_m_s": told_exit_std_m_s(choice),
+        "stated_exit_std_m_s": stated_exit_std_m_s(choice),
         "at_lowest": None if isinstance(exits, Fixed) else share_of(lowest, passes),
         "strokes_per_pass": interval_of(*ratio(strokes, passes), len(found)) if strokes.any() else None,
     }

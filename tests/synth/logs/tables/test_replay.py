@@ -111,9 +111,9 @@ def test_measured_exits_are_the_true_ones(replayed: list[Replay], assumed: Yard)
     truth = np.concatenate([true_exits(assumed, assumed.tables[CASE], seed) for seed in range(REPETITIONS)])
     measured = np.concatenate([found.measured.speed_m_s for found in replayed])
     std = np.concatenate([found.measured.std_m_s for found in replayed])
-    surprise = (measured - truth) / std
-    assert abs(surprise.mean()) < 0.2
-    assert 0.8 < surprise.std() < 1.3
+    innovation = (measured - truth) / std
+    assert abs(innovation.mean()) < 0.2
+    assert 0.8 < innovation.std() < 1.3
 
 
 @pytest.mark.long

@@ -1,0 +1,59 @@
+"""How Sphinx makes the documentation site of the pages in this folder; `scripts/site` does it.
+
+The lists of commands and of Python names are made here, of the program itself. Nothing is fetched from a network, while
+the site is built or while it is read.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib.metadata import version as installed_version
+from pathlib import Path
+from typing import Any
+
+DOCS = Path(__file__).resolve().parent
+sys.path.insert(0, str(DOCS.parent))
+
+from scripts.documentation.api_page import api_text  # noqa: E402
+from scripts.documentation.commands_page import commands_text  # noqa: E402
+
+project = "retarder-synth"
+author = "the developers of retarder-synth"
+project_copyright = "the developers of retarder-synth, Apache-2.0"
+version = release = installed_version(project)
+language = "en"
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+exclude_patterns = ["examples", "studies"]
+myst_heading_anchors = 4
+suppress_warnings = ["misc.highlighting_failure"]  # examples of files leave out what repeats, with an ellipsis
+
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+napoleon_google_docstring = False
+
+html_theme = "furo"
+html_title = f"{project} {version}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_show_sourcelink = False
+
+MADE = {
+    "<!-- commands -->\n": lambda: commands_text(".."),
+    "<!-- api synth -->\n": lambda: api_text("synth"),
+    "<!-- api tuning_tables -->\n": lambda: api_text("tuning_tables"),
+    "<!-- api plant_models -->\n": lambda: api_text("plant_models"),
+}
+"""What stands in a page where it has this mark."""
+
+
+def setup(app: Any) -> None:
+    """Have marks replaced in every page that is read."""
+    app.connect("source-read", fill_marks)
+
+
+def fill_marks(_: Any, __: str, source: list[str]) -> None:
+    """Replace the marks of one page."""
+    for mark, made in MADE.items():
+        if mark in source[0]:
+            source[0] = source[0].replace(mark, made())
