@@ -11,7 +11,7 @@ PACKAGES = ("synth", "tuning_tables", "plant_models")
 
 
 def api_text(package: str) -> str:
-    """What `package` shows, in the order of its `__all__`: classes with their public members, functions, other values."""
+    """What `package` shows, in the order of its `__all__`: classes with their members, functions, other values."""
     module = import_module(package)
     return "\n".join(directive_of(package, name, getattr(module, name)) for name in module.__all__)
 

@@ -40,7 +40,7 @@ def told_command(shown: Shown, words: str, command: Any, to_docs: str) -> Iterat
     yield f"```sh\n{PROGRAM} {shown.example}\n```\n"
     rows = ((f"`{' '.join(names_of(each))}`", " ".join((each.help or "").split())) for each in command.params)
     yield table(words, ("argument or option", "is"), rows).markdown()
-    page, _, anchor = shown.page.partition("#")
+    page = shown.page.partition("#")[0]
     yield f"More: [{page.rpartition('/')[2].removesuffix('.md').replace('-', ' ')}]({to_docs}/{shown.page})\n"
 
 
