@@ -5,10 +5,10 @@ from plant_models.cut import Car, Cut, couple
 from plant_models.entry_speed import EntryLaw, EntrySpeed, HistogramEntrySpeed, NormalEntrySpeed
 from plant_models.errors import PlantError
 from plant_models.friction import Friction
-from plant_models.motion import PathCoefficients, braked_axles, mean_braked_axles, path_breaks_m, path_coefficients
+from plant_models.motion import PathCoefficients, path_coefficients
 from plant_models.plant import Plant
 from plant_models.pneumatics import Pneumatics, PressureHistory
-from plant_models.point_sensors import Passage, PointSensors, deciding_passages, every_axle, first_axle, passages
+from plant_models.point_sensors import PointSensors, every_axle, first_axle
 from plant_models.retarder import PressingForce, RetarderPosition, WeightForce
 from plant_models.rolling_resistance import RollingResistance
 from plant_models.speed_sensor import DopplerSensor
@@ -24,7 +24,6 @@ __all__ = [
     "Friction",
     "HistogramEntrySpeed",
     "NormalEntrySpeed",
-    "Passage",
     "PathCoefficients",
     "Plant",
     "PlantError",
@@ -36,13 +35,12 @@ __all__ = [
     "RollingResistance",
     "TrackProfile",
     "WeightForce",
-    "braked_axles",
     "couple",
-    "deciding_passages",
     "every_axle",
     "first_axle",
-    "mean_braked_axles",
-    "passages",
-    "path_breaks_m",
     "path_coefficients",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

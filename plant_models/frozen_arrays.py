@@ -17,7 +17,7 @@ def frozen_arrays(cls: type[_T]) -> type[_T]:
     It stands above `@dataclass(frozen=True, eq=False)`. `eq=False` because `==` of two arrays is no truth value: such
     values are equal if they are the same object, and can be keys. The array that the maker hands over becomes
     read-only itself, no copy is made: hand over a copy of what you want to go on writing. `repr` tells type and shape
-    of an array, not its numbers.
+    of an array, not its numbers, unless the class has its own.
     """
     made = cls.__init__
 
@@ -37,7 +37,8 @@ def frozen_arrays(cls: type[_T]) -> type[_T]:
 
     # A decorator changes the class; mypy forbids this to everybody.
     cls.__init__ = init  # type: ignore[method-assign, assignment]  # see above
-    cls.__repr__ = shown  # type: ignore[method-assign, assignment]  # see above
+    if hasattr(cls.__repr__, "__wrapped__"):  # that of `dataclass`, which guards it against endless recursion
+        cls.__repr__ = shown  # type: ignore[method-assign, assignment]  # see above
     cls.__setstate__ = restore  # type: ignore[attr-defined]  # see above
     return cls
 

@@ -49,6 +49,12 @@ class Plant:
         )
         self._require_reachable_entrance()
 
+    def __repr__(self) -> str:
+        return (
+            f"Plant({self.position.name}, {self.cut.mass_t:g} t on {self.cut.axles} axles, "
+            f"entry {self.entry.low_m_s:g} to {self.entry.high_m_s:g} m/s)"
+        )
+
     def _require_reachable_entrance(self) -> None:
         """No cut may come to the entrance slower than the grade of the approach lets one that starts from rest."""
         if self.start_m == 0.0:

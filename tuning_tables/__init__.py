@@ -6,47 +6,27 @@ A controller with a radar needs `read_json` and `decide_for`; one with point sen
 
 from tuning_tables.active_table import ActiveTable
 from tuning_tables.approach import Approach
-from tuning_tables.atomic_file import replacing, write_atomically
 from tuning_tables.csv_file import to_csv, write_csv
 from tuning_tables.decisions import Decisions
-from tuning_tables.errors import (
-    DamagedTable,
-    InvalidTable,
-    NewerVersion,
-    OtherKind,
-    TableError,
-    UnknownFormat,
-)
+from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OtherKind, TableError, UnknownFormat
 from tuning_tables.estimator import Estimator, begin, unseen_samples
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_any_book, read_book, write_book
-from tuning_tables.json_file import from_json, read_json, read_stage_table, read_table, to_json, write_json
-from tuning_tables.passages.held_passages import held_by
+from tuning_tables.json_file import from_json, read_json, read_table, to_json, write_json
 from tuning_tables.passages.passage_book import PassageBook, PassageChoice
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.plausible_motion import PlausibleMotion
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
-from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM, table_after
-from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
-from tuning_tables.programs.decide import decide
-from tuning_tables.programs.observe import observe
-from tuning_tables.programs.tracker import begin_cut, believed_passage
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.rule import alarms_for, decide_for, decide_many, speed_for
 from tuning_tables.schema import table_schema
-from tuning_tables.stage import Stage, round_coefficients
+from tuning_tables.stage import Stage
 from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import Choice, Status, TableBook
-from tuning_tables.table_kinds import AnyTable, StageTable
 
 __all__ = [
-    "HEAVIER_ALARM",
-    "LIGHTER_ALARM",
-    "LOST_ALARM",
-    "SENSOR_ALARM",
     "ActiveTable",
-    "AnyTable",
     "Approach",
     "Choice",
     "ControllerTable",
@@ -68,7 +48,6 @@ __all__ = [
     "RetarderId",
     "SensorLayout",
     "Stage",
-    "StageTable",
     "Status",
     "TableBook",
     "TableError",
@@ -76,32 +55,24 @@ __all__ = [
     "ValidRange",
     "Validated",
     "alarms_for",
-    "at_pulse",
     "begin",
-    "begin_cut",
-    "believed_passage",
-    "decide",
     "decide_for",
     "decide_many",
     "from_json",
-    "held_by",
-    "observe",
     "read_any_book",
     "read_book",
     "read_json",
-    "read_stage_table",
     "read_table",
-    "replacing",
-    "round_coefficients",
     "speed_for",
-    "table_after",
     "table_schema",
     "to_csv",
     "to_json",
     "unseen_samples",
-    "wanted_stage",
-    "write_atomically",
     "write_book",
     "write_csv",
     "write_json",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

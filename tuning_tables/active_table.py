@@ -50,6 +50,9 @@ class ActiveTable:
             array.setflags(write=False)
         object.__setattr__(self, "held", held_table(self))
 
+    def __repr__(self) -> str:
+        return f"ActiveTable(to {self.target_speed_m_s:g} m/s, {len(self.coefficients)} stages)"
+
     @property
     def highest_raised(self) -> int:
         """The highest stage that the lines ever ask for."""

@@ -94,6 +94,9 @@ class Estimator:
         work.setflags(write=False)
         object.__setattr__(self, "work", work)
 
+    def __repr__(self) -> str:
+        return f"Estimator({len(self.s_m)} path breaks from {self.s_m[0]:g} to {self.s_m[-1]:g} m)"
+
     @property
     def numbers(self) -> Mapping[str, float]:
         """The numbers that a controller holds, in the order of `LineTable`."""

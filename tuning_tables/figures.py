@@ -68,3 +68,11 @@ class Validated:
             raise InvalidTable(
                 f"validated.rms_ci95_m_s is {self.rms_ci95_m_s!r}, but its first end must not exceed its second."
             )
+
+
+def rms_in_words(predicted: Predicted, validated: Validated | None) -> str:
+    """The figure that a table is judged by: as simulated, else as predicted."""
+    if validated is None:
+        return f"predicted rms {predicted.rms_m_s:.4f} m/s"
+    low, high = validated.rms_ci95_m_s
+    return f"rms {validated.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {validated.passes} passes"

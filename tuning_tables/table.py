@@ -16,7 +16,7 @@ from tuning_tables.declared.numbers import Count, Number
 from tuning_tables.declared.texts import Word
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
-from tuning_tables.figures import Predicted, Validated, ValidRange
+from tuning_tables.figures import Predicted, Validated, ValidRange, rms_in_words
 from tuning_tables.held_table import held_table
 from tuning_tables.line_order import LARGEST_FLOAT32
 from tuning_tables.programs.line_table import LineTable
@@ -90,6 +90,10 @@ class ControllerTable:
             array.setflags(write=False)
             object.__setattr__(self, name, array)
         object.__setattr__(self, "held", held_table(self))
+
+    def __repr__(self) -> str:
+        shape = f"degree {self.degree}, {len(self.stages)} stages"
+        return f"ControllerTable({self.id}: {shape}, {rms_in_words(self.predicted, self.validated)})"
 
     @property
     def entrance_stage(self) -> int:

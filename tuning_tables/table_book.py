@@ -101,6 +101,9 @@ class TableBook:
         for slower, faster in self.neighbours():
             require_order_between(slower, faster)
 
+    def __repr__(self) -> str:
+        return f"TableBook({len(self.tables)} tables of {self.tables[0].retarder.name})"
+
     @cached_property
     def category_numbers(self) -> Mapping[str, int | None]:
         """The number of every weight category, None for one without, in order of first appearance."""

@@ -41,6 +41,9 @@ class CarEntry:
     car: Car
     provenance: tuple[SourcedValue, ...]
 
+    def __repr__(self) -> str:
+        return f"CarEntry({self.name}: {self.title})"
+
     @property
     def drawing(self) -> tuple[SourcedValue, ...]:
         """The numbers of its length and axles."""

@@ -45,6 +45,9 @@ class HumpEntry:
     cars: ForCars | None = None
     remarks: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"HumpEntry({self.name}: {self.title}, {len(self.graph.tracks)} tracks)"
+
 
 def load_hump(name: str, library: Library = BUILT_IN) -> HumpEntry:
     """The hump `name` of the library; `PlantError` with a hint if there is none, or of a fault in its file."""

@@ -97,6 +97,9 @@ class PositionEntry:
     target_speeds_m_s: tuple[float, ...]
     provenance: tuple[SourcedValue, ...]
 
+    def __repr__(self) -> str:
+        return f"PositionEntry({self.name}: {self.title})"
+
     def with_values(self, overrides: Mapping[str, Value]) -> PositionEntry:
         """This entry with the values under some dotted keys replaced by the user's.
 

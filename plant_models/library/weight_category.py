@@ -74,6 +74,9 @@ class WeightCategory:
     of_stages: int | None
     provenance: tuple[SourcedValue, ...]
 
+    def __repr__(self) -> str:
+        return f"WeightCategory({self.label}, above {self.mass_above_t:g} t)"
+
     @property
     def label(self) -> str:
         """Both names, where there are two: Л (L)."""
@@ -113,6 +116,9 @@ class WeightCategories:
     name: str
     title: str
     members: tuple[WeightCategory, ...]
+
+    def __repr__(self) -> str:
+        return f"WeightCategories({self.name}: {', '.join(member.label for member in self.members)})"
 
     def of(self, mass_t: float, axles: int = 4) -> WeightCategory:
         """The category of a cut of `mass_t` tonnes on `axles` axles.

@@ -93,6 +93,9 @@ class ResolvedAim:
     warnings: tuple[str, ...]
     names: dict[str, Any]
 
+    def __repr__(self) -> str:
+        return f"ResolvedAim({self.title}: {len(self.members)} categories)"
+
     @property
     def canonical_json(self) -> str:
         """What the tables depend on, in one form: the same for the same tables, whatever files are called."""

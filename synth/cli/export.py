@@ -13,7 +13,7 @@ from synth.frame.terminal.telling import say
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tuning_tables import AnyTable
+    from tuning_tables.table_kinds import AnyTable
 
 
 @dataclass(frozen=True)

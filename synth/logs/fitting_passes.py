@@ -31,6 +31,9 @@ class FittingPasses:
     class_of: Ints
     released_vents: bool
 
+    def __repr__(self) -> str:
+        return f"FittingPasses({len(self)} passes of {len(self.plants)} cut classes)"
+
     def __len__(self) -> int:
         return len(self.log)
 

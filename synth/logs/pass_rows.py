@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Cut, Plant, path_breaks_m, path_coefficients
+from plant_models import Cut, Plant, path_coefficients
 from plant_models.frozen_arrays import frozen_arrays
-from plant_models.motion import braked_axles, mean_braked_axles
+from plant_models.motion import braked_axles, mean_braked_axles, path_breaks_m
 from synth.logs.fitting_passes import FittingPasses
 from tuning_tables.pass_log.path_resets import path_resets_m, path_set_right_m
 

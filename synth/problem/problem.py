@@ -27,6 +27,9 @@ class Problem:
         if isinstance(self.criterion.requirement, FrictionRange):
             require_modelled(self.plant, self.criterion.requirement)
 
+    def __repr__(self) -> str:
+        return f"Problem({repr(self.plant)[len('Plant(') : -1]}, to {self.target_speed_m_s:g} m/s)"
+
     @property
     def target_speed_m_s(self) -> float:
         """The commanded exit speed."""

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from plant_models import Plant, PointSensors, deciding_passages, every_axle
+from plant_models import Plant, PointSensors, every_axle
+from plant_models.point_sensors import deciding_passages
 from synth.kernels.loop.passage_pulses import BASE_COLUMN, MOST_BASES, Pulses
 from synth.simulation.controllers import fixed
 

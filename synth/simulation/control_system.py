@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant, path_breaks_m, path_coefficients
+from plant_models import Plant, path_coefficients
+from plant_models.motion import path_breaks_m
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.kernels.loop import regulator
 from synth.simulation.closed_loop import Controller

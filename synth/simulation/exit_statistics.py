@@ -46,6 +46,15 @@ class ExitStatistics:
     time_s: float
     time_ci95_s: Interval
 
+    def __repr__(self) -> str:
+        figures = (
+            ("rms", self.rms_m_s, self.rms_ci95_m_s),
+            ("bias", self.bias_m_s, self.bias_ci95_m_s),
+            ("95 % within", self.p95_m_s, self.p95_ci95_m_s),
+        )
+        told = (f"{name} {value:.4f} [{low:.4f}, {high:.4f}] m/s" for name, value, (low, high) in figures)
+        return f"ExitStatistics({self.passes} passes: {', '.join(told)})"
+
 
 @dataclass(frozen=True)
 class BrakePower:

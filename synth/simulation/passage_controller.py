@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant, PointSensors, deciding_passages, every_axle, passages
+from plant_models import Plant, PointSensors, every_axle
+from plant_models.point_sensors import deciding_passages, passages
 from tuning_tables.passages.held_passages import LIMITS, held_by, held_passages
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.programs.passage_table import HeldPassages

@@ -27,6 +27,9 @@ class ExitSample:
     transit_time_s: NDArray[np.float64]
     weight: NDArray[np.float64]
 
+    def __repr__(self) -> str:
+        return f"ExitSample({len(self)} passes)"
+
     def __len__(self) -> int:
         return len(self.exit_speed_m_s)
 
@@ -47,6 +50,10 @@ class PassTrace:
     stage: NDArray[np.int64]
     measured_m_s: NDArray[np.float64]
     stalled: bool
+
+    def __repr__(self) -> str:
+        end = "stands" if self.stalled else f"leaves with {self.exit_speed_m_s:.3f} m/s"
+        return f"PassTrace({len(self.time_s)} events: {end} after {self.time_s[-1] - self.time_s[0]:.1f} s)"
 
     @property
     def exit_speed_m_s(self) -> float:

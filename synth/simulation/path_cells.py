@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant, path_breaks_m, path_coefficients
+from plant_models import Plant, path_coefficients
+from plant_models.motion import path_breaks_m
 from synth.kernels.loop.motion import Path
 from synth.simulation.controllers import fixed
 from synth.simulation.random_passes import PATH_CELLS

@@ -43,6 +43,10 @@ class Solution:
     gain: NDArray[np.float64]
     values: NDArray[np.floating[Any]]
 
+    def __repr__(self) -> str:
+        shape = f"{len(self.chain.grid.path_m)} nodes of the path, {self.lines_m_s.shape[2]} stages"
+        return f"Solution(to {self.aim.target_speed_m_s:g} m/s, {shape})"
+
     @cached_property
     def lines(self) -> SwitchingLines:
         """The policy as lines over the path: of decisions at every node, found for commands that go one stage far."""

@@ -22,8 +22,8 @@ from tuning_tables import (
     RetarderId,
     Stage,
     ValidRange,
-    round_coefficients,
 )
+from tuning_tables.stage import round_coefficients
 
 if TYPE_CHECKING:  # who asks a table for its lines needs no kernels
     from synth.solver.any_time.drive_modes import DriveModes

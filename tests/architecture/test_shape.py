@@ -22,6 +22,8 @@ SOURCES = {
     for package in PACKAGES
     for path in sorted((ROOT / package).rglob("*.py"))
 }
+DECLARED = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in ROOT.glob("synth/**/*.pyi")}
+"""Stubs: what the packages beside them import when it is first used."""
 
 MOST_ROOMS = 13
 MOST_LINES, MOST_FUNCTION_LINES, MOST_ARGUMENTS = 300, 60, 8
@@ -200,13 +202,19 @@ def unreached(sources: Mapping[str, str]) -> set[str]:
     return modules - studies - used
 
 
+def with_stubs(sources: Mapping[str, str], stubs: Mapping[str, str]) -> dict[str, str]:
+    """Sources, each package with the imports that its stub declares."""
+    return {name: f"{text}\n{stubs.get(f'{name}i', '')}" for name, text in sources.items()}
+
+
 def test_a_command_or_the_front_door_reaches_every_module() -> None:
-    assert unreached(SOURCES) == KNOWN_UNREACHED
+    assert unreached(with_stubs(SOURCES, DECLARED)) == KNOWN_UNREACHED
+    assert "synth.api.pictures" in unreached(SOURCES)
 
 
 def test_a_module_that_nobody_needs_is_found() -> None:
     planted = {
-        **SOURCES,
+        **with_stubs(SOURCES, DECLARED),
         "synth/retarder/intruder.py": "from synth.retarder import tune",
         "scripts/studies/intruder.py": "from synth.retarder import intruder\nfrom plant_models import intruder",
         "plant_models/intruder.py": "",

@@ -17,11 +17,11 @@ from tuning_tables import (
     RetarderId,
     Stage,
     ValidRange,
-    round_coefficients,
     to_csv,
     to_json,
     write_book,
 )
+from tuning_tables.stage import round_coefficients
 
 SLOPES = ((None, -0.003), (-0.004, -0.003), (-0.002, None))
 """Lower and upper, m/s per kPa; those of stage 1 come nearer to each other where the pressure is low."""

@@ -25,13 +25,14 @@ from tests.controller_code.passage_tables import passage_book
 from tests.controller_code.sample_book import approaching_book, surface_book
 from tests.effort import every
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
-from tuning_tables import AnyTable, to_json
+from tuning_tables import to_json
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.language.records import Record, st_name
 from tuning_tables.programs.aim_table import AIM_GRID
 from tuning_tables.programs.line_table import LINE_TABLE
 from tuning_tables.programs.passage_table import HELD_PASSAGES
 from tuning_tables.self_test_size import SMALL
+from tuning_tables.table_kinds import AnyTable
 
 LONG: Final = f"{'of a long name ' * 9}{'x' * 100}"
 """Comments break it into lines, each form at other places."""

@@ -24,13 +24,14 @@ from tests.controller_code.passage_tables import every_axle_book, passage_book
 from tests.effort import sized
 from tests.tuning_tables.passages.made_tables import passage_tables as any_tables
 from tests.tuning_tables.passages.made_tables import table_of
-from tuning_tables import held_by, wanted_stage
 from tuning_tables.csv_file import to_csv
 from tuning_tables.json_file import to_json
 from tuning_tables.passages.c_source import passage_c_files
+from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
+from tuning_tables.programs.at_pulse import wanted_stage
 
 TABLES = (table_of(), replace(table_of(DecidesOn.EVERY_AXLE), id="every", validated=None))
 

@@ -16,8 +16,8 @@ from tuning_tables import (
     RetarderId,
     Stage,
     ValidRange,
-    round_coefficients,
 )
+from tuning_tables.stage import round_coefficients
 from tuning_tables.table_book import TableBook
 
 FOUR_AXLES, SIX_AXLES = (0.0, 1.85, 8.65, 10.5), (0.0, 1.75, 3.5, 10.44, 12.19, 13.94)

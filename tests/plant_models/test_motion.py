@@ -5,19 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plant_models import (
-    Car,
-    Cut,
-    Pneumatics,
-    PressingForce,
-    RetarderPosition,
-    TrackProfile,
-    braked_axles,
-    couple,
-    mean_braked_axles,
-    path_breaks_m,
-    path_coefficients,
-)
+from plant_models import Car, Cut, Pneumatics, PressingForce, RetarderPosition, TrackProfile, couple, path_coefficients
+from plant_models.motion import braked_axles, mean_braked_axles, path_breaks_m
 from tests.effort import sized
 
 DRIVE = Pneumatics(700.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 15.0)

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from plant_models import Cut, PlantError, PointSensors, deciding_passages, every_axle, first_axle, passages
+from plant_models import Cut, PlantError, PointSensors, every_axle, first_axle
+from plant_models.point_sensors import deciding_passages, passages
 
 SENSORS = PointSensors(path_m=(-5.0, 3.0, 9.5, 31.0), timer_noise_s=2e-4, timer_resolution_s=1e-4, base_tolerance=4e-3)
 CUT = Cut("Л", 22.0, (0.0, 1.85, 8.65, 10.5), 4)

@@ -33,16 +33,8 @@ from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
-from tuning_tables import (
-    ControllerTable,
-    CutId,
-    Generator,
-    Predicted,
-    RetarderId,
-    Stage,
-    ValidRange,
-    round_coefficients,
-)
+from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange
+from tuning_tables.stage import round_coefficients
 
 PASSES = 4000
 NAMES_AND_SPREAD = (

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, Plant, PressingForce
-from synth.api import load_problem
+from synth import load_problem
 from synth.problem.aim import Aim
 from synth.problem.estimator_resolution import LEAST_ERROR_M_S, design_error_m_s
 from synth.problem.resolution import Resolution

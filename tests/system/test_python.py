@@ -1,8 +1,7 @@
-"""From Python: the numbers of the command line, the examples of the documentation, names, faults, start-up."""
+"""From Python: the numbers of the command line, the examples of the documentation, faults, start-up."""
 
 from __future__ import annotations
 
-import ast
 import dataclasses
 import os
 import re
@@ -51,6 +50,11 @@ def test_a_table_is_that_of_the_command(table: ControllerTable, tuned_table: Con
     assert dataclasses.replace(table, created=tuned_table.created, validated=tuned_table.validated) == tuned_table
 
 
+def test_a_tune_is_that_of_the_command(tuned_table: ControllerTable, measured_classes: Path) -> None:
+    found = synth.tune(LABEL, TARGET, measured_classes)
+    assert dataclasses.replace(found, created=tuned_table.created, validated=tuned_table.validated) == tuned_table
+
+
 def test_a_simulation_is_that_of_the_command(
     table: ControllerTable, tuned_table: ControllerTable, problem: synth.Problem, measured_classes: Path
 ) -> None:
@@ -97,7 +101,7 @@ def numbers(plant: Plant) -> list[Plant]:
 
 
 def test_a_problem_of_ones_own_has_a_hash_of_its_own(problem: synth.Problem) -> None:
-    from synth.api import problem_sha256
+    from synth.api.problems import problem_sha256
 
     others = [synth.Problem(plant, problem.aim) for plant in numbers(problem.plant)]
     others.append(synth.Problem(problem.plant, synth.Aim(TARGET, synth.Criterion(stall_cost_m2_s2=2.0))))
@@ -114,6 +118,13 @@ def test_a_problem_of_ones_own_has_a_hash_of_its_own(problem: synth.Problem) -> 
         (lambda t, p: synth.load_problem("gondola-4-22t", 9.0, None), "there is nothing to brake"),
         (lambda t, p: synth.load_config("nowhere.toml"), "nowhere.toml"),
         (lambda t, p: synth.simulate(t, p, passes=10), "passes is 10; intervals need 1000"),
+        (lambda t, p: synth.compare_with_baselines(t, p, passes=10), "passes is 10; intervals need 1000"),
+        (lambda t, p: synth.tune("gondola-4-22", 1.5, None), "did you mean gondola-4-22t?"),
+        (lambda t, p: synth.load_trial("nowhere.toml"), "nowhere.toml"),
+        (lambda t, p: synth.hump_trains(synth.load_trial(), trains=0), "trains is 0; one is needed at least"),
+        (lambda t, p: synth.load_aim("nowhere.toml"), "nowhere.toml"),
+        (lambda t, p: synth.load_passes("nowhere.csv"), "nowhere.csv"),
+        (lambda t, p: synth.log_passes(t, p, passes=0), "0 passes; at least one is needed"),
         (lambda t, p: synth.Aim(0.0), "target_speed_m_s is 0"),
     ],
 )
@@ -198,19 +209,7 @@ def test_the_example_of_the_readme_runs_and_makes_the_table_of_the_default_book(
 def test_the_examples_of_the_page_run(tmp_path: Path) -> None:
     printed = run(blocks("docs/how-to/python.md"), tmp_path)
     assert "within ±" in printed
-    assert {path.name for path in tmp_path.iterdir()} == {"lines.png", "passes.png", "table.json"}
-
-
-def test_every_public_name_is_there_and_typed() -> None:
-    """What editors and mypy read (the imports under TYPE_CHECKING) is what `__all__` and `__getattr__` give."""
-    assert all(getattr(synth, name) is not None for name in synth.__all__)
-    assert set(synth.__all__) <= set(dir(synth))
-    tree = ast.parse((ROOT / "synth/__init__.py").read_text())
-    [typed] = [node for node in tree.body if isinstance(node, ast.If)]
-    named = [alias.name for node in typed.body if isinstance(node, ast.ImportFrom) for alias in node.names]
-    assert sorted(named) == sorted(synth.__all__) == synth.__all__
-    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
-        synth.nothing  # noqa: B018
+    assert {path.name for path in tmp_path.iterdir()} == {"lines.png", "passes.csv", "passes.png", "table.json"}
 
 
 def test_the_import_is_instant_and_values_need_no_kernel() -> None:

@@ -17,9 +17,8 @@ from tuning_tables import (
     Stage,
     Validated,
     ValidRange,
-    round_coefficients,
 )
-from tuning_tables.stage import Line
+from tuning_tables.stage import Line, round_coefficients
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,6 @@ import numpy as np
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
 from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import (
-    AnyTable,
     Approach,
     ControllerTable,
     CutId,
@@ -31,6 +30,7 @@ from tuning_tables import (
 from tuning_tables.aim import AimAxes, AimTable
 from tuning_tables.canonical import canonical_json, document_checksum
 from tuning_tables.passages.sensor_layout import DecidesOn
+from tuning_tables.table_kinds import AnyTable
 
 Document = dict[str, Any]
 JsonPath = tuple[str | int, ...]

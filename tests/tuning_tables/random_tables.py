@@ -17,11 +17,10 @@ from tuning_tables import (
     Stage,
     Validated,
     ValidRange,
-    round_coefficients,
 )
 from tuning_tables.category_number import KNOWN_NUMBERS
 from tuning_tables.line_order import require_order
-from tuning_tables.stage import HIGHEST_DEGREE, MOST_STAGES
+from tuning_tables.stage import HIGHEST_DEGREE, MOST_STAGES, round_coefficients
 from tuning_tables.surface_order import require_stage
 
 # Whatever is printable in any script; but no space other than U+0020 is.

@@ -13,9 +13,9 @@ from tests.tuning_tables.every_kind import (
     smallest_points,
     smallest_surfaces,
 )
-from tuning_tables import AnyTable, ControllerTable, TableError, from_json, to_json
+from tuning_tables import ControllerTable, TableError, from_json, to_json
 from tuning_tables.canonical import canonical_json
-from tuning_tables.table_kinds import KINDS
+from tuning_tables.table_kinds import KINDS, AnyTable
 
 Layout = Callable[[AnyTable], bytes]
 

@@ -33,7 +33,6 @@ from tests.tuning_tables.every_kind import (
 from tests.tuning_tables.passages.made_tables import passage_tables, table_of
 from tests.tuning_tables.random_tables import tables
 from tuning_tables import (
-    AnyTable,
     ControllerTable,
     DamagedTable,
     NewerVersion,
@@ -43,7 +42,6 @@ from tuning_tables import (
     UnknownFormat,
     from_json,
     read_json,
-    read_stage_table,
     read_table,
     table_schema,
     to_json,
@@ -56,7 +54,8 @@ from tuning_tables.declared.members import LeafMember, SectionMember, members_of
 from tuning_tables.declared.numbers import Count, Number, Row
 from tuning_tables.declared.texts import Text, Word
 from tuning_tables.document import HEAD
-from tuning_tables.table_kinds import KINDS, kind_of
+from tuning_tables.json_file import read_stage_table
+from tuning_tables.table_kinds import KINDS, AnyTable, kind_of
 
 WRONG: list[object] = [None, True, "4", "", [], {}, [None], -1, 0.5]
 VALIDATORS = {kind: jsonschema.Draft202012Validator(table_schema(kind)) for kind in KINDS}

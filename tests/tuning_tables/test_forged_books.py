@@ -25,7 +25,6 @@ from tuning_tables import (
     ControllerTable,
     DamagedTable,
     NewerVersion,
-    StageTable,
     TableError,
     UnknownFormat,
     read_any_book,
@@ -34,6 +33,7 @@ from tuning_tables import (
 from tuning_tables.book_layout import Layout, book_layout
 from tuning_tables.declared.columns import Column
 from tuning_tables.passages.sensor_layout import DecidesOn
+from tuning_tables.table_kinds import StageTable
 
 DTYPES = ("<f4", "<f8", ">f8", "<i4", "<i8", "|u1", "S70", "object", "reference")
 NAN, INF = float("nan"), float("inf")

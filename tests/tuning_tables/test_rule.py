@@ -14,9 +14,10 @@ from hypothesis import HealthCheck, given, settings
 from synth.kernels.compiled_rules import compiled_rule
 from tests.effort import sized
 from tests.tuning_tables.random_tables import tables
-from tuning_tables import ControllerTable, Decisions, Stage, ValidRange, decide, decide_for, decide_many
+from tuning_tables import ControllerTable, Decisions, Stage, ValidRange, decide_for, decide_many
 from tuning_tables.active_table import active
 from tuning_tables.golden_vectors import GoldenVectors, few_golden_vectors, golden_vectors
+from tuning_tables.programs.decide import decide
 from tuning_tables.programs.line_table import LineTable
 from tuning_tables.stage import Line
 

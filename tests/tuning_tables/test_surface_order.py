@@ -11,8 +11,8 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from tests.effort import sized
-from tuning_tables import ControllerTable, Decisions, InvalidTable, Stage, ValidRange, round_coefficients
-from tuning_tables.stage import Line
+from tuning_tables import ControllerTable, Decisions, InvalidTable, Stage, ValidRange
+from tuning_tables.stage import Line, round_coefficients
 from tuning_tables.surface_order import range_above, stage_gap, surface_bound
 
 Tilting = Callable[..., ControllerTable]

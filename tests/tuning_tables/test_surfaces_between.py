@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from tests.effort import sized
 from tests.tuning_tables.test_surfaces import above, with_stage
-from tuning_tables import ControllerTable, Decisions, InvalidTable, Stage, TableBook, round_coefficients
+from tuning_tables import ControllerTable, Decisions, InvalidTable, Stage, TableBook
 from tuning_tables.active_table import between, interpolable
+from tuning_tables.stage import round_coefficients
 from tuning_tables.table_book import Status
 
 

@@ -20,9 +20,8 @@ from tuning_tables import (
     Stage,
     Validated,
     ValidRange,
-    round_coefficients,
 )
-from tuning_tables.stage import Line
+from tuning_tables.stage import Line, round_coefficients
 
 Crossing = Callable[[Line, Line, tuple[float, float]], ControllerTable]
 

@@ -10,9 +10,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from tuning_tables import ControllerTable, CutId, InvalidTable, Stage, decide, decide_for, round_coefficients
+from tuning_tables import ControllerTable, CutId, InvalidTable, Stage, decide_for
 from tuning_tables.active_table import active, between
 from tuning_tables.golden_vectors import line_speeds
+from tuning_tables.programs.decide import decide
+from tuning_tables.stage import round_coefficients
 from tuning_tables.table_book import Choice, Status, TableBook
 
 EIGHT = tuple(float(x) for x in range(8))

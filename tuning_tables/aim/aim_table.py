@@ -71,6 +71,9 @@ class AimTable:
         held = aim_grid(self.axes, speeds, self.bounds_m_s, self.category.number, *required)
         object.__setattr__(self, "held", held)
 
+    def __repr__(self) -> str:
+        return f"AimTable({self.id}: {' x '.join(map(str, self.axes.shape))} exit speeds)"
+
     @property
     def is_measured(self) -> bool:
         """Whether the measured resistance of a cut is asked for."""

@@ -48,6 +48,9 @@ class AimTables:
         if len(set(names.values())) < len(names):
             raise InvalidTable(f"two of the category numbers {sorted(names)} stand for one name.")
 
+    def __repr__(self) -> str:
+        return f"AimTables({len(self.tables)} tables of {self.tables[0].position.name})"
+
     def select(self, category: int, measured: bool) -> AimTable | None:
         """The table for cuts of the category with this number, by measured resistance or not; None for none."""
         found = (each for each in self.tables if (each.category.number, each.is_measured) == (category, measured))

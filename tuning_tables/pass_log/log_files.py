@@ -26,7 +26,12 @@ WRITERS: Final = {".csv": write_csv_log, ".h5": write_hdf5_log, ".hdf5": write_h
 
 @dataclass(frozen=True, eq=False)
 class LoadedLogs:
-    """What was read: `log`, of `files`; passes that were left out, and files that were."""
+    """What `read_logs` read: `log`, of `files`; passes that were left out (`faults`), and files that were (`refused`).
+
+    Examples
+    --------
+    See `read_logs`.
+    """
 
     log: PassLog
     files: tuple[Path, ...]
@@ -34,17 +39,53 @@ class LoadedLogs:
     refused: tuple[FileFault, ...]
 
 
-def read_logs(paths: Sequence[Path], mapping: LogMapping | None, top_stage: int | None) -> LoadedLogs:
-    """The sound passes of all files in `paths`, and of the logs in a folder among them, as one log.
+def read_logs(
+    paths: Sequence[str | os.PathLike[str]], mapping: LogMapping | None = None, top_stage: int | None = None
+) -> LoadedLogs:
+    """Read files of measured passes as one log.
 
-    Files follow each other in time; those whose times overlap have clocks of their own and stay in the order given.
-    A file that cannot be used is named and skipped, and so is a pass; `top_stage`: the highest stage of the position.
-    A cut_id that two files have gets the file's name before it. `InvalidLog` where no pass is left.
+    Files follow each other in time; those whose times overlap have clocks of their own and stay in the order given. A
+    cut_id that two files have gets the file's name before it.
+
+    Parameters
+    ----------
+    paths
+        Files (.csv, .txt, .h5, .hdf5), and folders of such files.
+    mapping
+        How foreign columns are named and measured; None: as this project writes them.
+    top_stage
+        The highest stage of the position; a pass with a higher one is left out. None: any.
+
+    Returns
+    -------
+    LoadedLogs
+        The sound passes; files that cannot be used and passes that are not sound are named beside them.
+
+    Raises
+    ------
+    InvalidLog
+        No pass is left.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from tuning_tables.pass_log import PassLog, read_logs, write_log
+    >>> log = PassLog(
+    ...     time_s=[0.0, 0.1], path_m=[0.0, 0.5], speed_m_s=[5.0, 4.9], pressure_kpa=[0.0, 80.0], stage=[0, 2],
+    ...     first_row=[0, 2], cut_id=("17",), mass_t=[52.0], axles=[4], category=("С",), target_m_s=[3.0],
+    ...     stopped_by_hand=[False],
+    ... )
+    >>> with TemporaryDirectory() as folder:
+    ...     write_log(log, Path(folder, "evening.csv"))
+    ...     loaded = read_logs([folder])
+    >>> loaded.log, [file.name for file in loaded.files], loaded.faults
+    (PassLog(1 passes, 2 rows), ['evening.csv'], ())
     """
     found: list[tuple[Path, PassLog]] = []
     faults: list[PassFault] = []
     refused: list[FileFault] = []
-    for path in _files(paths):
+    for path in _files([Path(path) for path in paths]):
         try:
             log, told = _read(path, mapping or LogMapping(), top_stage)
         except InvalidLog as fault:
@@ -66,11 +107,40 @@ def read_logs(paths: Sequence[Path], mapping: LogMapping | None, top_stage: int 
     return LoadedLogs(log, tuple(path for path, _ in ordered), tuple(faults), tuple(refused))
 
 
-def write_log(log: PassLog, path: Path) -> None:
-    """Write `log` as the ending of `path` says, complete or not at all; it reads back exactly.
+def write_log(log: PassLog, path: str | os.PathLike[str]) -> None:
+    """Write a log to a file, complete or not at all; it reads back exactly.
 
-    `InvalidLog` for another ending, and for cut_id and categories that a file cannot hold; `OSError`.
+    Parameters
+    ----------
+    log
+        The passes.
+    path
+        A file whose ending says the form: .csv, .h5 or .hdf5.
+
+    Raises
+    ------
+    InvalidLog
+        Another ending, or a cut_id or category that a file cannot hold.
+    OSError
+        The disk refuses it.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from tuning_tables.pass_log import PassLog, write_log
+    >>> log = PassLog(
+    ...     time_s=[0.0, 0.1], path_m=[0.0, 0.5], speed_m_s=[5.0, 4.9], pressure_kpa=[0.0, 80.0], stage=[0, 2],
+    ...     first_row=[0, 2], cut_id=("17",), mass_t=[52.0], axles=[4], category=("С",), target_m_s=[3.0],
+    ...     stopped_by_hand=[False],
+    ... )
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "evening.csv")
+    ...     write_log(log, file)
+    ...     print(file.read_text().splitlines()[-2])
+    17,...
     """
+    path = Path(path)
     require_writable_name(path)
     twice = [cut_id for cut_id, count in Counter(log.cut_id).items() if count > 1]
     if twice:

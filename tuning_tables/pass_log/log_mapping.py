@@ -47,10 +47,16 @@ KEYS: Final = ("columns", "units", "constant", "delimiter", "decimal", "path")
 
 @dataclass(frozen=True)
 class LogMapping:
-    """What differs from the columns of `log_columns`: `read_mapping` makes no other than right ones.
+    """How a foreign log names and measures its columns; `read_mapping` makes no other than right ones.
 
     `columns`: foreign name by own name; `factors`: by own name, what the file's numbers are multiplied with;
     `constant`: values, in own units, of columns that the file lacks; `path_is_independent`: None leaves it to the file.
+
+    Examples
+    --------
+    >>> from tuning_tables.pass_log import LogMapping
+    >>> LogMapping(columns={"speed_m_s": "v"}, factors={"speed_m_s": 1.0 / 3.6}, delimiter=";").decimal
+    '.'
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -62,7 +68,36 @@ class LogMapping:
 
 
 def read_mapping(path: str | os.PathLike[str]) -> LogMapping:
-    """The mapping in the TOML file at `path`; `InvalidLog` for anything unknown in it, `OSError`."""
+    """Read a mapping; docs/reference/pass-log.md shows one.
+
+    Parameters
+    ----------
+    path
+        A TOML file.
+
+    Returns
+    -------
+    LogMapping
+        What the file says.
+
+    Raises
+    ------
+    InvalidLog
+        Anything unknown in it.
+    OSError
+        There is no such file.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from tuning_tables.pass_log import read_mapping
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "mapping.toml")
+    ...     _ = file.write_text('columns.speed_m_s = "v"\\nunits.speed_m_s = "km/h"')
+    ...     read_mapping(file).columns
+    {'speed_m_s': 'v'}
+    """
     source = os.fspath(path)
     try:
         tree = tomllib.loads(read_regular_file(path, LARGEST_MAPPING_BYTES).decode())

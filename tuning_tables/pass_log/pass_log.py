@@ -13,6 +13,9 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 ROWS = ("time_s", "path_m", "speed_m_s", "pressure_kpa", "stage")
+PLAIN = ("cut_id", "category", "path_is_independent")
+"""The members that are no arrays."""
+
 PASSES = ("cut_id", "mass_t", "axles", "category", "target_m_s", "stopped_by_hand")
 
 
@@ -29,6 +32,20 @@ class PassLog:
     `path_is_independent`: the path was not summed up from the measured speed, so one can be held against the other.
 
     Arrays are read-only. `InvalidTable` where lengths do not fit or a pass has fewer than two rows.
+
+    Examples
+    --------
+    >>> from tuning_tables.pass_log import PassLog
+    >>> log = PassLog(
+    ...     time_s=[0.0, 0.1, 60.0, 60.1], path_m=[0.0, 0.5, 0.0, 0.6], speed_m_s=[5.0, 4.9, 6.0, 5.9],
+    ...     pressure_kpa=[0.0, 80.0, 0.0, 80.0], stage=[0, 2, 0, 3], first_row=[0, 2, 4], cut_id=("17", "18"),
+    ...     mass_t=[52.0, 60.0], axles=[4, 4], category=("С", "СТ"), target_m_s=[3.0, 3.0],
+    ...     stopped_by_hand=[False, False],
+    ... )
+    >>> log, log.has_gauge, log.speed_m_s[log.rows(1)]
+    (PassLog(2 passes, 4 rows), True, array([6. , 5.9]))
+    >>> log.taken([1]).cut_id
+    ('18',)
     """
 
     time_s: Floats
@@ -47,9 +64,8 @@ class PassLog:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, np.ndarray):
-                value = value.view()
+            if field.name not in PLAIN:
+                value = np.asarray(getattr(self, field.name)).view()
                 value.setflags(write=False)
                 object.__setattr__(self, field.name, value)
         if any(len(getattr(self, name)) != len(self.time_s) for name in ROWS):
@@ -59,6 +75,9 @@ class PassLog:
         ends = self.first_row
         if len(ends) < 1 or ends[0] != 0 or ends[-1] != len(self.time_s) or not (np.diff(ends) >= 2).all():
             raise InvalidTable("pass log: first_row must rise from 0 to the number of rows, by 2 at least.")
+
+    def __repr__(self) -> str:
+        return f"PassLog({len(self)} passes, {len(self.time_s)} rows)"
 
     def __len__(self) -> int:
         return len(self.first_row) - 1

@@ -62,6 +62,9 @@ class PassageBook:
                     raise InvalidTable(f"{key} of {table.id} is {value!r}, which float32 cannot hold.")
         category_numbers(self.tables)
 
+    def __repr__(self) -> str:
+        return f"PassageBook({len(self.tables)} tables of {self.tables[0].retarder.name})"
+
     @cached_property
     def by_class(self) -> Mapping[tuple[str, int], tuple[int, ...]]:
         """The candidates of every class (category, axles), by rising target."""

@@ -13,7 +13,7 @@ from tuning_tables.approach import Approach
 from tuning_tables.declared.members import Several, require_declared
 from tuning_tables.declared.numbers import Count, Number, Row
 from tuning_tables.errors import InvalidTable
-from tuning_tables.figures import Predicted, Validated
+from tuning_tables.figures import Predicted, Validated, rms_in_words
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.plausible_motion import PlausibleMotion
 from tuning_tables.passages.sensor_layout import SensorLayout
@@ -104,6 +104,12 @@ class PassageTable:
             array.setflags(write=False)
             object.__setattr__(self, name, array)
         object.__setattr__(self, "before_entrance", sum(row.path_m < 0.0 for row in self.passages))
+
+    def __repr__(self) -> str:
+        return (
+            f"PassageTable({self.id}: {len(self.passages)} passages, {len(self.pressure_kpa)} stages, "
+            f"{rms_in_words(self.predicted, self.validated)})"
+        )
 
     @property
     def entrance_stage(self) -> int:

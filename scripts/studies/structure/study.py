@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plant_models import Approach, Plant, PointSensors, deciding_passages
+from plant_models import Approach, Plant, PointSensors
+from plant_models.point_sensors import deciding_passages
 from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
 from scripts.studies.options import option
 from scripts.studies.structure.signals import SIGNALS

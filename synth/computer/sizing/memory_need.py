@@ -116,7 +116,7 @@ def controller_memory(counts: ControllerCounts) -> MemoryTable:
             Stored("route table", counts.switches * counts.tracks, 2, Memory.FIXED, "left, right or not on the route"),
             Stored("chosen table", counts.positions, 8 * counts.table_bytes, Memory.WORKING, "a copy a position"),
             Stored("estimates", counts.positions, 8 * counts.estimate_bytes, Memory.WORKING, exported),
-            Stored("cut records", counts.cuts, counts.record_bits, Memory.WORKING, "synth.hump.control.machine_record"),
+            Stored("cut records", counts.cuts, counts.record_bits, Memory.WORKING, "synth.hump.control.record_word"),
             Stored("route store", counts.cuts, 8, Memory.WORKING, "a track number of at most 199 a cut"),
         )
     )

@@ -15,8 +15,8 @@ from itertools import count
 from math import isfinite
 
 from plant_models.hump.switch import Switch
+from synth.hump.control.cut_motion import MovingCut
 from synth.hump.control.models import ENTRY, AxlePass, Braking, Occupation
-from synth.hump.control.moving_cut import MovingCut
 from synth.hump.control.reference_faults import CounterSlip, Fault
 from synth.hump.control.reference_points import ReferencePoints
 from synth.hump.control.reference_sections import ReferenceSections

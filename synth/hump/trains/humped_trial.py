@@ -20,6 +20,9 @@ class HumpedTrial:
     found: TrainOutcomes
     figures: tuple[TrainFigure, ...]
 
+    def __repr__(self) -> str:
+        return f"HumpedTrial({self.config.title}: {len(self.found)} trains, {int(self.found.cuts.sum())} cuts)"
+
     @property
     def of_trial(self) -> TrialTrains:
         """Of which trial the trains are, for their file."""

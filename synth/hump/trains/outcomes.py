@@ -81,6 +81,9 @@ class TrainOutcomes:
     tightest_ahead: Ints
     tightest_behind: Ints
 
+    def __repr__(self) -> str:
+        return f"TrainOutcomes({len(self)} trains, {int(self.cuts.sum())} cuts)"
+
     def __len__(self) -> int:
         return len(self.train)
 

@@ -95,6 +95,9 @@ class ResolvedTrial:
     warnings: tuple[str, ...]
     names: dict[str, Any]
 
+    def __repr__(self) -> str:
+        return f"ResolvedTrial({self.title}: {len(self.routes.tracks)} tracks, {len(self.positions)} positions)"
+
     @property
     def categories(self) -> WeightCategories:
         """The weight categories of the cuts."""

@@ -74,6 +74,9 @@ class ResolvedConfig:
     parameters: tuple[SourcedValue, ...]
     warnings: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        return f"ResolvedConfig({self.title}: {len(self.cuts)} cut classes, sha256 {self.sha256[:8]}…)"
+
     def plants(self) -> tuple[tuple[str, Plant], ...]:
         """(label, plant) of every cut class."""
         return tuple((c.label, self.plant_of(c)) for c in self.cuts)

@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import DopplerSensor, Plant, path_breaks_m, path_coefficients
+from plant_models import DopplerSensor, Plant, path_coefficients
+from plant_models.motion import path_breaks_m
 from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import Controller

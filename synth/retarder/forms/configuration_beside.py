@@ -10,9 +10,9 @@ from typing import Final
 
 from synth.frame.results_directory import CONFIGURATION, SUMMARY
 from synth.frame.summary import FORMAT
-from tuning_tables import AnyTable
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.export_prefix import AIM, ExportPrefix
+from tuning_tables.table_kinds import AnyTable
 
 NAME: Final = f"retarder_{CONFIGURATION}"
 

@@ -10,8 +10,9 @@ from typing import Final
 from synth.frame.input_error import InputError
 from synth.retarder.forms.code_options import CodeOptions
 from synth.retarder.forms.table_forms import Files
-from tuning_tables import AnyTable, ControllerTable
+from tuning_tables import ControllerTable
 from tuning_tables.correction import Correction
+from tuning_tables.table_kinds import AnyTable
 
 EXIT_READING_STD_M_S: Final = 0.05
 """Of a measured exit speed: one reading of the library's Doppler radar; engineering judgement for any other sensor."""

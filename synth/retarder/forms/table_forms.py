@@ -9,11 +9,12 @@ from typing import Any, TypeAlias
 from synth.frame.input_error import InputError
 from synth.retarder.forms.code_options import PLAIN, PLC_NAMES, CodeOptions
 from synth.retarder.forms.table_file import file_stem
-from tuning_tables import AnyTable, TableBook, to_csv, to_json
+from tuning_tables import TableBook, to_csv, to_json
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.aim_tables import AimTables
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.table_kinds import AnyTable
 
 Files: TypeAlias = Mapping[str, bytes]
 Form: TypeAlias = Callable[[Sequence[AnyTable], CodeOptions], Files]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from plant_models import Plant, PointSensors, deciding_passages, every_axle
+from plant_models import Plant, PointSensors, every_axle
 from plant_models.credible_motion import credible_motion
+from plant_models.point_sensors import deciding_passages
 from synth.retarder.sensors.tuned_passages import TunedPassages
 from synth.solver.tabulate import LOWEST_VALID_SPEED_M_S, cut_of, prediction_of, retarder_of
 from tuning_tables import Generator

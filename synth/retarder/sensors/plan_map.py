@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from plant_models import deciding_passages
+from plant_models.point_sensors import deciding_passages
 from synth.frame.picture.house_style import BLUE, GREY, INK, VERMILLION, dress, mark_zones
 from synth.retarder.case_result import PolicyMap
 from synth.retarder.command_panels import DOWN, HATCH, HOLD, UP, command_image, label_panels, stage_panels

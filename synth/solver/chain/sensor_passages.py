@@ -8,14 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import (
-    Approach,
-    Passage,
-    Plant,
-    PlantError,
-    PointSensors,
-    deciding_passages,
-)
+from plant_models import Approach, Plant, PlantError, PointSensors
+from plant_models.point_sensors import Passage, deciding_passages
 from synth.problem.resolution import Resolution
 from synth.solver.chain.decisions import Decisions
 from synth.solver.chain.grid import Grid, make_grid

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from plant_models import Passage, PointSensors, every_axle, first_axle
-from plant_models.point_sensors import Axles, deciding_passages
+from plant_models import PointSensors, every_axle, first_axle
+from plant_models.point_sensors import Axles, Passage, deciding_passages
 from synth.problem.resolution import Resolution
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.point_sensors.template import default_sensors_toml

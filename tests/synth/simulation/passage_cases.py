@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from plant_models import Approach, Plant, PointSensors, deciding_passages
+from plant_models import Approach, Plant, PointSensors
+from plant_models.point_sensors import deciding_passages
 from synth.retarder.sensors.passage_table import plausible_motion
 from synth.simulation.passage_controller import PassageController, of_speeds
 from synth.simulation.passage_loop import PassageLoop

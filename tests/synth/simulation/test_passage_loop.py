@@ -11,16 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from plant_models import (
-    Friction,
-    Plant,
-    Pneumatics,
-    PointSensors,
-    RollingResistance,
-    deciding_passages,
-    every_axle,
-    first_axle,
-)
+from plant_models import Friction, Plant, Pneumatics, PointSensors, RollingResistance, every_axle, first_axle
+from plant_models.point_sensors import deciding_passages
 from plant_models.stage_regulator import stage_locked_actuator
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.exit_statistics import exit_statistics

@@ -10,18 +10,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from plant_models import (
-    Cut,
-    DopplerSensor,
-    EntrySpeed,
-    Plant,
-    PointSensors,
-    PressureHistory,
-    deciding_passages,
-    every_axle,
-    first_axle,
-)
-from plant_models.point_sensors import Axles
+from plant_models import Cut, DopplerSensor, EntrySpeed, Plant, PointSensors, PressureHistory, every_axle, first_axle
+from plant_models.point_sensors import Axles, deciding_passages
 from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import LineController, close_loop
 from synth.simulation.exit_statistics import exit_statistics

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from plant_models import Plant, braked_axles
+from plant_models import Plant
+from plant_models.motion import braked_axles
 from plant_models.valve_drive import ValveDrive
 from synth.simulation.controllers import TableController
 from synth.simulation.passage_loop import close_passage_loop

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from plant_models import Cut, PointSensors, deciding_passages, every_axle, first_axle
+from plant_models import Cut, PointSensors, every_axle, first_axle
+from plant_models.point_sensors import deciding_passages
 from tests.tuning_tables.passages.made_tables import ROWS, table_of
 from tuning_tables import Approach, CutId, InvalidTable, Predicted, Validated
 from tuning_tables.passages.passage_row import PassageRow

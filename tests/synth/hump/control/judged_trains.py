@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from plant_models.hump import HumpGraph
+from synth.hump.control.cut_motion import MovingCut
 from synth.hump.control.cut_record import CutRecord, Mark
 from synth.hump.control.event import ALARMS, Kind
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.hump_state import replayed
-from synth.hump.control.moving_cut import MovingCut
 from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
 from synth.hump.control.reference_faults import Fault, LateSwitch
 from synth.hump.control.reference_track import ReferenceTrack

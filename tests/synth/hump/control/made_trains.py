@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.hump.control.cut_motion import MovingCut
 from synth.hump.control.cut_record import CutRecord, Mark
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.models import ENTRY
-from synth.hump.control.moving_cut import MovingCut
 from synth.hump.control.reference_faults import (
     CounterSlip,
     FalselyFree,

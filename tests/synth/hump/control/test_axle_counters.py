@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import pytest
 
+from synth.hump.control.cut_motion import MovingCut, moving_cut
 from synth.hump.control.event import Event, Kind, Why
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.hump_state import Counters
 from synth.hump.control.models import ENTRY
-from synth.hump.control.moving_cut import MovingCut, moving_cut
 from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
 from synth.hump.control.reference_faults import CounterSlip, LateSwitch
 from synth.hump.control.route_table import RouteTable

@@ -15,11 +15,11 @@ import pytest
 from plant_models.errors import PlantError
 from plant_models.hump import HumpGraph, Signal
 from synth.hump.control.brake_task import ManualBraking, TableBraking, UniformBraking, ZoneBraking
+from synth.hump.control.cut_motion import MovingCut, moving_cut
 from synth.hump.control.cut_record import CutRecord, Mark
 from synth.hump.control.event import Aspect, Block, Event, Kind, Why
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.models import ENTRY, ExitSpeed, Misroute, Resistance
-from synth.hump.control.moving_cut import MovingCut, moving_cut
 from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
 from synth.hump.control.reference_faults import (
     CounterSlip,

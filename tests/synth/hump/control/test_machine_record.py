@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from plant_models.errors import PlantError
 from synth.hump.control.cut_record import CutRecord, Rolling
-from synth.hump.control.machine_record import (
+from synth.hump.control.record_word import (
     SHIFTS,
     WIDTHS,
     WORD_BITS,

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from synth.hump.control.event import ALARMS
-from synth.hump.control.machine_record import WIDTHS
+from synth.hump.control.record_word import WIDTHS
 from synth.hump.control.sorting_list_file import COLUMNS
 
 ROOT = Path(__file__).parents[4]

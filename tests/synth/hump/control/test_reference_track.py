@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
+from synth.hump.control.cut_motion import MovingCut, moving_cut
 from synth.hump.control.models import ENTRY, AxlePass, Occupation
-from synth.hump.control.moving_cut import MovingCut, moving_cut
 from synth.hump.control.reference_faults import (
     NOBODY,
     CounterSlip,
