@@ -16,6 +16,7 @@ sys.path.insert(0, str(DOCS.parent))
 
 from scripts.documentation.api_page import api_text  # noqa: E402
 from scripts.documentation.commands_page import commands_text  # noqa: E402
+from scripts.documentation.gallery_pictures import GalleryPictures  # noqa: E402
 
 project = "retarder-synth"
 author = "the developers of retarder-synth"
@@ -23,14 +24,26 @@ project_copyright = "the developers of retarder-synth, Apache-2.0"
 version = release = installed_version(project)
 language = "en"
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-exclude_patterns = ["examples", "studies"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
+exclude_patterns = ["examples", "studies", "gallery", "sg_execution_times.rst"]
 myst_heading_anchors = 4
 suppress_warnings = ["misc.highlighting_failure"]  # examples of files leave out what repeats, with an ellipsis
 
 autodoc_typehints = "description"
 autodoc_member_order = "bysource"
 napoleon_google_docstring = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": ["gallery"],
+    "gallery_dirs": ["made/gallery"],
+    "filename_pattern": r"\.py$",
+    "image_scrapers": (GalleryPictures(),),
+    "within_subsection_order": "ExampleTitleSortKey",
+    "show_memory": False,
+    "show_signature": False,
+    "download_all_examples": False,
+    "abort_on_example_error": True,
+}
 
 html_theme = "furo"
 html_title = f"{project} {version}"
