@@ -52,7 +52,7 @@ def finer_for_check(resolution: Resolution) -> Resolution:
     """The resolution at which a table solved on `resolution` is predicted: half of both steps, more scenarios.
 
     Two levels of path noise suffice: they carry its variance and correlation exactly, and five change no
-    predicted rms by more than 1e-5 m/s (docs/explanation/method.md).
+    predicted rms by more than 1e-5 m/s (docs/explanation/method-validation.md).
     """
     return replace(
         resolution,

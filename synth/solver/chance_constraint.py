@@ -3,7 +3,7 @@
 The polish minimises mean square + multiplier × P(over-speed), by exact gradients with `PenalisedOverspeed` as terminal
 cost; the bracket is closed on the exactly predicted density of the lines with the sensor's staircase. Both take finer
 speeds than the rest of a tune: a margin may be no wider than three cells of the check grid, where cubic interpolation
-ripples by some thousandths (docs/explanation/method.md).
+ripples by some thousandths (docs/explanation/choices.md).
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ LINEAR_CELLS = 8
 """Cells above a stall with linear interpolation. The value falls there within a cell or two by the whole cost of a
 stall. By the negative weights of a cubic a negative share of the cuts would stall, at a cost below zero, and policies
 would brake towards it. Each quantum adds to that share: it grows with the length of a pass, and with finer steps of
-path. Eight cells leave nothing of it, and sixteen change nothing more (docs/explanation/method.md)."""
+path. Eight cells leave nothing of it, and sixteen change nothing more (docs/explanation/method-solver.md)."""
 
 NO_MASS = 1e-25
 """Probabilities below this are dropped: the tails of a density would otherwise run into slow denormal numbers."""
