@@ -83,8 +83,8 @@ def solve_all(
     Up to eight cost little more than one, and none depends on which others there are. `nodes_kept`: at how many path
     nodes, from the entrance on, the solutions hold values, by default at all; they are most of the memory of a
     solution. `value_type`: of the numbers that values are computed and kept in. float32 takes less time than float64
-    and half the memory; what it costs: `docs/explanation/method-solver.md`. `heard` (R, T): the probability that a decision is
-    taken, by aim; by default that of the chain's epochs for all.
+    and half the memory; what it costs: `docs/explanation/method-solver.md`. `heard` (R, T): the probability that a
+    decision is taken, by aim; by default that of the chain's epochs for all.
     """
     c = chain
     priced = [each.criterion.exit_costs(c.grid.speed_m_s, each.target_speed_m_s) for each in aims]
