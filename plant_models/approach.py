@@ -20,6 +20,12 @@ class Approach:
     cut runs into a retarder that is closed harder. `initial_stage`: the stage at rest when it takes over the cut, left
     from the cut ahead. Nothing brakes before the entrance. That the cut ahead has left is the interlock of the
     permission to act there, and not part of the motion.
+
+    Examples
+    --------
+    >>> from plant_models import Approach
+    >>> Approach(length_m=4.0, entrance_stage=2).initial_stage
+    0
     """
 
     length_m: float = 0.0

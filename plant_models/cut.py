@@ -23,6 +23,13 @@ class Car:
 
     `axle_offsets_m` are distances of the axles behind the first axle (first entry 0, increasing);
     `length_m` is over couplers; masses in tonnes.
+
+    Examples
+    --------
+    >>> from plant_models import Car
+    >>> gondola = Car("gondola", axle_offsets_m=(0.0, 1.85, 8.65, 10.5), length_m=13.92, tare_t=22.0, gross_t=94.0)
+    >>> gondola.axle_offsets_m[-1]
+    10.5
     """
 
     name: str
@@ -46,6 +53,13 @@ class Cut:
     `mass_t`: mass of the whole cut, Q; `allowed_stage`: the highest braking stage that the weight
     category may be given (light wheels slide or are squeezed out under the high ones);
     `category_number`: what stands for the category in controllers, None where it has no number.
+
+    Examples
+    --------
+    >>> from plant_models import Cut
+    >>> cut = Cut("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5), allowed_stage=3, category_number=3)
+    >>> cut.axles, cut.axle_load_t, round(cut.reduced_gravity_m_s2, 3)
+    (4, 13.0, 9.503)
     """
 
     category: str
@@ -83,7 +97,40 @@ class Cut:
 def couple(
     cars: tuple[Car, ...], mass_t: float, category: str, allowed_stage: int, category_number: int | None = None
 ) -> Cut:
-    """The cut made of `cars` coupled in this order, together weighing `mass_t` tonnes."""
+    """Couple cars to a cut.
+
+    Parameters
+    ----------
+    cars
+        The cars, the first one ahead.
+    mass_t
+        What they weigh together, t.
+    category
+        Name of the weight category.
+    allowed_stage
+        The highest braking stage that the category may be given.
+    category_number
+        What stands for the category in controllers, or None.
+
+    Returns
+    -------
+    Cut
+        The cut, with the axles of all cars.
+
+    Raises
+    ------
+    PlantError
+        No car, or a mass that no cut has.
+
+    Examples
+    --------
+    >>> from plant_models import couple
+    >>> from plant_models.library import load_car
+    >>> gondola = load_car("gondola-4").car
+    >>> cut = couple((gondola, gondola), mass_t=60.0, category="ЛС", allowed_stage=2)
+    >>> cut.axles, cut.axle_offsets_m[4]
+    (8, 13.92)
+    """
     require(len(cars) > 0, "cut: cars is empty; a cut has at least one car")
     offsets: list[float] = []
     front_coupler = 0.0

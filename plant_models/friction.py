@@ -24,6 +24,16 @@ class Friction:
     `mean_cv`: how far the mean of ξ_cut, taken as 1, may itself be off on a day: standard deviation of that mean by
     weather, the oil of the day, a wrong weight. No pass is drawn with it. What must keep a reserve is designed for
     `of_any_day`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from plant_models import Friction
+    >>> friction = Friction(common_cv=0.15, axle_cv=0.2, path_std=0.1, correlation_length_m=2.0)
+    >>> round(friction.cut_cv(mean_braked_axles=4.0), 4)
+    0.1803
+    >>> friction.cut_factor(np.array([-1.0, 0.0, 1.0]), cv=0.18)
+    array([0.82, 1.  , 1.18])
     """
 
     common_cv: float
@@ -53,7 +63,20 @@ class Friction:
         return math.sqrt(self.common_cv**2 + self.axle_cv**2 / max(mean_braked_axles, 1.0))
 
     def cut_factor(self, z: NDArray[np.float64], cv: float) -> NDArray[np.float64]:
-        """ξ_cut for standard normal `z`."""
+        """The friction factor ξ_cut.
+
+        Parameters
+        ----------
+        z
+            Standard normal numbers, of any shape.
+        cv
+            Its coefficient of variation, as of `cut_cv`.
+
+        Returns
+        -------
+        ndarray
+            Factors of that shape, `floor` or more.
+        """
         return np.maximum(self.floor, 1.0 + cv * z)
 
     def path_cell_std(self, cell_m: NDArray[np.float64] | float) -> NDArray[np.float64]:

@@ -28,12 +28,46 @@ Axles = Callable[[Cut], tuple[int, ...]]
 
 
 def first_axle(cut: Cut) -> tuple[int, ...]:
-    """The first axle alone."""
+    """The first axle alone, for `PointSensors.axles`.
+
+    Parameters
+    ----------
+    cut
+        A cut.
+
+    Returns
+    -------
+    tuple of int
+        Numbers of its axles, from 0.
+
+    Examples
+    --------
+    >>> from plant_models import Cut, first_axle
+    >>> first_axle(Cut("С", mass_t=26.0, axle_offsets_m=(0.0, 6.0), allowed_stage=3))
+    (0,)
+    """
     return (0,)
 
 
 def every_axle(cut: Cut) -> tuple[int, ...]:
-    """Every axle: the later version of zhukovitsky-2012."""
+    """Every axle, for `PointSensors.axles`: the later version of [zhukovitsky-2012].
+
+    Parameters
+    ----------
+    cut
+        A cut.
+
+    Returns
+    -------
+    tuple of int
+        Numbers of its axles, from 0.
+
+    Examples
+    --------
+    >>> from plant_models import Cut, every_axle
+    >>> every_axle(Cut("С", mass_t=26.0, axle_offsets_m=(0.0, 6.0), allowed_stage=3))
+    (0, 1)
+    """
     return tuple(range(cut.axles))
 
 
@@ -48,6 +82,13 @@ class PointSensors:
     the regulator's clock; a transient is over at the first step after its end. `missed_share`: of the passages, each by
     itself, that the design of a table counts as not heard, so that a lost one costs less; a simulated pass loses none
     unless a fault says so. `axles`: those that the regulator decides on.
+
+    Examples
+    --------
+    >>> from plant_models import PointSensors, every_axle
+    >>> sensors = PointSensors(path_m=(-1.0, 6.0, 13.0), axles=every_axle)
+    >>> sensors.base_m, float(sensors.reading_std_m_s(5.0).round(4))
+    (0.2, 0.0164)
     """
 
     path_m: tuple[float, ...]
@@ -96,7 +137,18 @@ class PointSensors:
         return max(math.hypot(self.timer_noise_s, self.timer_resolution_s / math.sqrt(12.0)), 1e-6)
 
     def reading_std_m_s(self, speed_m_s: NDArray[np.float64] | float) -> NDArray[np.float64]:
-        """Std of a reading at true speeds: v²·σ_t/base and v times the tolerance of the base, together."""
+        """Standard deviation of a reading: v²·σ_t/base and v times the tolerance of the base, together.
+
+        Parameters
+        ----------
+        speed_m_s
+            True speeds, m/s, of any shape.
+
+        Returns
+        -------
+        ndarray
+            m/s, of that shape.
+        """
         v = np.asarray(speed_m_s, dtype=np.float64)
         return np.hypot(v * v * self.timing_std_s / self.base_m, v * self.base_tolerance)
 

@@ -25,6 +25,13 @@ class DopplerSensor:
     quotient must be a number; `computing_delay_s`: from the sample to the command on the valves' wires. `missed_share`
     of the readings are lost, in bursts of `missed_burst_s` on average, of at least one reading each: a Markov chain of
     two states, stationary, one step a sample.
+
+    Examples
+    --------
+    >>> from plant_models import DopplerSensor
+    >>> radar = DopplerSensor(noise_m_s=0.05, resolution_m_s=0.04, sample_period_s=0.1, computing_delay_s=0.02)
+    >>> radar.exact, round(radar.reading_std_m_s, 4)
+    (False, 0.0513)
     """
 
     noise_m_s: float

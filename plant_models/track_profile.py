@@ -16,6 +16,15 @@ class TrackProfile:
     """Piecewise constant grade i(s): `grades_permille[j]` holds from `starts_m[j]` on, downhill positive.
 
     The first grade also holds before its start (the cut's tail is still on the approach).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from plant_models import TrackProfile
+    >>> TrackProfile(starts_m=(0.0, 20.0), grades_permille=(11.0, 7.0)).grade_permille(np.array([5.0, 25.0]))
+    array([11.,  7.])
+    >>> TrackProfile.uniform(8.0).grades_permille
+    (8.0,)
     """
 
     starts_m: tuple[float, ...]

@@ -31,6 +31,17 @@ class ActiveTable:
     has_gauge         whether the lines depend on the pressure
 
     Derived: held, what the programs take.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import TableBook, decide_for
+    >>> lines = TableBook((table,)).choose("С", axles=4, commanded_m_s=3.0).table
+    >>> lines
+    ActiveTable(to 3 m/s, 2 stages)
+    >>> decide_for(lines, stage=0, s_m=5.0, v_m_s=5.0)
+    1
     """
 
     target_speed_m_s: np.float32

@@ -48,6 +48,25 @@ class ControllerTable:
     stage's own.
 
     Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange
+    >>> table = ControllerTable(
+    ...     id="by-hand", created="2026-11-27T12:00:00Z", generator=Generator("by hand", "1", "0" * 64),
+    ...     retarder=RetarderId("my-retarder", zones_m=((0.0, 12.0),), exit_m=22.5, dead_band_kpa=15.0),
+    ...     cut=CutId("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5)), target_speed_m_s=3.0, degree=1,
+    ...     stages=(
+    ...         Stage(0, 0.0, lower=None, upper=(4.5, -0.0625)),
+    ...         Stage(1, 300.0, lower=(4.0, -0.0625), upper=None),
+    ...     ),
+    ...     valid=ValidRange(s_m=(0.0, 22.5), v_m_s=(0.5, 8.0)),
+    ...     predicted=Predicted(rms_m_s=0.2, bias_m_s=0.0, p_overspeed=0.1, switchings=2.0),
+    ... )
+    >>> table
+    ControllerTable(by-hand: degree 1, 2 stages, predicted rms 0.2000 m/s)
+    >>> table.coefficients.shape
+    (2, 2, 2)
     """
 
     id: Annotated[str, TABLE_NAME]

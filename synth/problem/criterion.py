@@ -22,6 +22,12 @@ class Criterion:
     `switching_tolerance_m2_s2`: a change of stage must gain more than this, else hold wins: commands whose
     costs differ by less count as equal, and of these the one with the fewest switchings is taken.
     `requirement`: what the exported lines must keep besides; only with the squared error.
+
+    Examples
+    --------
+    >>> import synth
+    >>> synth.Criterion(stall_cost_m2_s2=4.0).sentence
+    'mean squared exit-speed error'
     """
 
     stall_cost_m2_s2: float = 1.0
@@ -40,7 +46,20 @@ class Criterion:
         )
 
     def exit_costs(self, speed_m_s: NDArray[np.float64], target_speed_m_s: float) -> tuple[NDArray[np.float64], float]:
-        """(cost of leaving with every grid speed (E,), cost of a stall: that of exit speed 0 and the stall cost)."""
+        """What exits cost.
+
+        Parameters
+        ----------
+        speed_m_s
+            Exit speeds, m/s, (E,), the first one 0.
+        target_speed_m_s
+            The commanded exit speed, m/s.
+
+        Returns
+        -------
+        costs, stall
+            Cost of leaving with each speed, m²/s², (E,); cost of a stall: that of exit speed 0 and the stall cost.
+        """
         terminal = self.terminal.at_exit(speed_m_s, target_speed_m_s)
         return terminal, float(terminal[0]) + self.stall_cost_m2_s2
 

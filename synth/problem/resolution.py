@@ -25,6 +25,12 @@ class Resolution:
     `reference_speed_m_s` (the grid is uniform in e = v²/2, so ΔV(v) = Δe/v); `transient_substeps`:
     parts of a sampling period in which a transient is integrated; `friction_nodes`: scenarios of ξ_cut;
     `path_levels`: levels of the Markov chain for η; `resistance_nodes`: scenarios of w.
+
+    Examples
+    --------
+    >>> import synth
+    >>> synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05).path_step_m
+    1.0
     """
 
     path_step_m: float = 0.5

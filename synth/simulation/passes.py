@@ -41,6 +41,16 @@ class PassTrace:
 
     Overpressure max(0, P − P0) and commanded stage hold from an event to the next; `measured_m_s` is NaN
     where the regulator did not look at the sensor.
+
+    Examples
+    --------
+    >>> import synth
+    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
+    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
+    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
+    >>> one = synth.trace(table, problem)
+    >>> one.path_m.shape == one.speed_m_s.shape == one.stage.shape
+    True
     """
 
     time_s: NDArray[np.float64]

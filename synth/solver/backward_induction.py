@@ -35,6 +35,15 @@ class Solution:
     `lines_m_s` (C, R, K + 1): the common policy, by command, decision and stage; `gain` (C, R, K + 1, E): mean-square
     cost saved by a command at a measured speed (what the lines bound, and what R5's indifferent region is read from);
     `values` (I, N + 1, H, L, E), or of fewer nodes: estimated cost to go by scenario, in the type that was asked for.
+
+    Examples
+    --------
+    >>> import synth
+    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
+    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
+    >>> solution = synth.solve(problem, coarse)
+    >>> solution.lines.lower_m_s.shape == solution.lines.upper_m_s.shape
+    True
     """
 
     chain: Chain

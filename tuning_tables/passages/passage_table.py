@@ -53,6 +53,28 @@ class PassageTable:
     limits            float32 (6,)
 
     Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables import (
+    ...     Approach, CutId, DecidesOn, Generator, PassageRow, PassageTable, PlausibleMotion, Predicted, RetarderId,
+    ...     SensorLayout,
+    ... )
+    >>> table = PassageTable(
+    ...     id="by-hand", created="2026-11-27T12:00:00Z", generator=Generator("by hand", "1", "0" * 64),
+    ...     retarder=RetarderId("my-retarder", zones_m=((0.0, 12.0),), exit_m=22.5, dead_band_kpa=15.0),
+    ...     cut=CutId("С", mass_t=52.0, axle_offsets_m=(0.0, 10.5)), target_speed_m_s=3.0, pressure_kpa=(0.0, 300.0),
+    ...     sensors=SensorLayout((-1.0, 6.0), 0.25, 0.002, 1e-4, 1e-4, 0.02, 0.02, DecidesOn.FIRST_AXLE),
+    ...     approach=Approach(1.0, entrance_stage=1), initial_stage=0,
+    ...     passages=(
+    ...         PassageRow(0, 0, -1.0, switching_m_s=((4.5,), (4.0,))),
+    ...         PassageRow(1, 0, 6.0, switching_m_s=((4.0,), (3.5,))),
+    ...     ),
+    ...     plausible=PlausibleMotion((0.5, 10.0), 0.5, 4.0, 0.05, 0.5), valid_v_m_s=(0.5, 8.0),
+    ...     predicted=Predicted(rms_m_s=0.2, bias_m_s=0.0, p_overspeed=0.1, switchings=2.0),
+    ... )
+    >>> table
+    PassageTable(by-hand: 2 passages, 2 stages, predicted rms 0.2000 m/s)
     """
 
     id: Annotated[str, TABLE_NAME]
