@@ -27,7 +27,13 @@ class Car:
     Examples
     --------
     >>> from plant_models import Car
-    >>> gondola = Car("gondola", axle_offsets_m=(0.0, 1.85, 8.65, 10.5), length_m=13.92, tare_t=22.0, gross_t=94.0)
+    >>> gondola = Car(
+    ...     "gondola",
+    ...     axle_offsets_m=(0.0, 1.85, 8.65, 10.5),
+    ...     length_m=13.92,
+    ...     tare_t=22.0,
+    ...     gross_t=94.0,
+    ... )
     >>> gondola.axle_offsets_m[-1]
     10.5
     """
@@ -57,7 +63,13 @@ class Cut:
     Examples
     --------
     >>> from plant_models import Cut
-    >>> cut = Cut("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5), allowed_stage=3, category_number=3)
+    >>> cut = Cut(
+    ...     "С",
+    ...     mass_t=52.0,
+    ...     axle_offsets_m=(0.0, 1.85, 8.65, 10.5),
+    ...     allowed_stage=3,
+    ...     category_number=3,
+    ... )
     >>> cut.axles, cut.axle_load_t, round(cut.reduced_gravity_m_s2, 3)
     (4, 13.0, 9.503)
     """
@@ -80,7 +92,7 @@ class Cut:
 
     @property
     def inertia_t(self) -> float:
-        """Q + 0.42 n: mass plus the equivalent mass of the wheel sets, tonnes."""
+        """Mass plus the equivalent mass of the wheel sets, Q + 0.42 n, tonnes."""
         return self.mass_t + ROTATING_MASS_PER_AXLE_T * self.axles
 
     @property

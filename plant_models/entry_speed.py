@@ -168,7 +168,7 @@ class NormalEntrySpeed:
 
 @dataclass(frozen=True)
 class HistogramEntrySpeed:
-    """Uniform within each of several bins: `shares`[i] of the cuts enter from `edges_m_s`[i] to the next edge, m/s.
+    """Uniform within each of several bins: `shares[i]` of the cuts enter from `edges_m_s[i]` to the next edge, m/s.
 
     Shares are counts or probabilities: only their ratios matter. Bins without cuts at both ends are allowed.
 

@@ -29,7 +29,9 @@ class Friction:
     --------
     >>> import numpy as np
     >>> from plant_models import Friction
-    >>> friction = Friction(common_cv=0.15, axle_cv=0.2, path_std=0.1, correlation_length_m=2.0)
+    >>> friction = Friction(
+    ...     common_cv=0.15, axle_cv=0.2, path_std=0.1, correlation_length_m=2.0
+    ... )
     >>> round(friction.cut_cv(mean_braked_axles=4.0), 4)
     0.1803
     >>> friction.cut_factor(np.array([-1.0, 0.0, 1.0]), cv=0.18)
@@ -52,7 +54,7 @@ class Friction:
 
     @property
     def of_any_day(self) -> Friction:
-        """The friction of a cut on an unknown day: the spread of the mean is part of that of ξ_cut.
+        """The friction of a cut on an unknown day, where the spread of the mean is part of that of ξ_cut.
 
         Its `common_cv` is never above the highest that one may have.
         """

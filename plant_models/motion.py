@@ -108,7 +108,10 @@ def path_coefficients(
     >>> at = load_position("knp-5-bunch")
     >>> cut = Cut("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5), allowed_stage=3)
     >>> cells = path_coefficients(at.position, cut, at.profile, np.array([0.0, 1.0, 20.0]))
-    >>> cells.brake_m_s2_per_kpa.shape, bool(cells.brake_m_s2_per_kpa[1] > cells.brake_m_s2_per_kpa[0])
+    >>> (
+    ...     cells.brake_m_s2_per_kpa.shape,
+    ...     bool(cells.brake_m_s2_per_kpa[1] > cells.brake_m_s2_per_kpa[0]),
+    ... )
     ((2,), True)
     """
     fine = np.unique(np.concatenate([path_breaks_m(position, cut, profile, min(0.0, float(edges_m[0]))), edges_m]))

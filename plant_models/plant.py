@@ -36,7 +36,9 @@ class Plant:
     >>> at = load_position("knp-5-bunch")
     >>> cut = Cut("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5), allowed_stage=3)
     >>> resistance = RollingResistance(mean_n_per_kn=1.5, std_n_per_kn=0.5)
-    >>> plant = Plant(at.position, cut, at.profile, at.friction, resistance, at.sensor, at.entry)
+    >>> plant = Plant(
+    ...     at.position, cut, at.profile, at.friction, resistance, at.sensor, at.entry
+    ... )
     >>> plant
     Plant(knp-5-bunch, 52 t on 4 axles, entry 5 to 6.5 m/s)
     >>> plant.top_stage, plant.start_m, plant.exit_m
@@ -127,12 +129,12 @@ class Plant:
 
     @property
     def pass_m(self) -> float:
-        """Length of a pass: path from where the regulator acts to S_exit."""
+        """Length of a pass, from where the regulator acts to S_exit, m."""
         return self.exit_m - self.start_m
 
     @property
     def exit_m(self) -> float:
-        """S_exit, metres."""
+        """S_exit, path of the first axle at which the last one leaves the last retarder, m."""
         return self.position.exit_m(self.cut)
 
     @property

@@ -30,8 +30,14 @@ class Pneumatics:
     --------
     >>> from plant_models import Pneumatics
     >>> drive = Pneumatics(
-    ...     supply_pressure_kpa=700.0, exhaust_pressure_kpa=0.0, brake_delay_s=0.1, touch_delay_s=0.2,
-    ...     release_delay_s=0.1, fill_time_constant_s=0.3, exhaust_time_constant_s=0.3, dead_band_kpa=15.0,
+    ...     supply_pressure_kpa=700.0,
+    ...     exhaust_pressure_kpa=0.0,
+    ...     brake_delay_s=0.1,
+    ...     touch_delay_s=0.2,
+    ...     release_delay_s=0.1,
+    ...     fill_time_constant_s=0.3,
+    ...     exhaust_time_constant_s=0.3,
+    ...     dead_band_kpa=15.0,
     ... )
     >>> history = drive.respond(start_kpa=0.0, target_kpa=300.0, touch_kpa=50.0)
     >>> round(history.duration_s, 3), history.end_kpa

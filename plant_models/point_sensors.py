@@ -128,7 +128,7 @@ class PointSensors:
 
     @property
     def sample_period_s(self) -> float:
-        """Step of the clock in which durations of commands are counted: `scan_period_s`."""
+        """Step of the clock in which durations of commands are counted, `scan_period_s`."""
         return self.scan_period_s
 
     @property

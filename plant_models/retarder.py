@@ -47,8 +47,15 @@ class PressingForce:
     --------
     >>> from plant_models import Cut, PressingForce
     >>> cut = Cut("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5), allowed_stage=3)
-    >>> force = PressingForce(slope_kn_per_kpa_per_pair=0.04, touch_pressure_kpa=50.0, slope_factor_by_axles=(1.0, 0.9))
-    >>> force.slope_kn_per_kpa(cut, axles_inside=1), round(force.slope_kn_per_kpa(cut, axles_inside=3), 3)
+    >>> force = PressingForce(
+    ...     slope_kn_per_kpa_per_pair=0.04,
+    ...     touch_pressure_kpa=50.0,
+    ...     slope_factor_by_axles=(1.0, 0.9),
+    ... )
+    >>> (
+    ...     force.slope_kn_per_kpa(cut, axles_inside=1),
+    ...     round(force.slope_kn_per_kpa(cut, axles_inside=3), 3),
+    ... )
     (0.04, 0.036)
     """
 
@@ -76,7 +83,9 @@ class WeightForce:
     --------
     >>> from plant_models import Cut, WeightForce
     >>> cut = Cut("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5), allowed_stage=3)
-    >>> WeightForce(slope_kn_per_kpa_per_t=0.25, touch_pressure_kpa=50.0).slope_kn_per_kpa(cut, axles_inside=1)
+    >>> WeightForce(slope_kn_per_kpa_per_t=0.25, touch_pressure_kpa=50.0).slope_kn_per_kpa(
+    ...     cut, axles_inside=1
+    ... )
     3.25
     """
 
@@ -106,9 +115,12 @@ class RetarderPosition:
     >>> from plant_models import PressingForce, RetarderPosition
     >>> from plant_models.library import load_position
     >>> position = RetarderPosition(
-    ...     "my-retarder", zones_m=((0.0, 12.0),), stage_pressures_kpa=(0.0, 200.0, 400.0),
+    ...     "my-retarder",
+    ...     zones_m=((0.0, 12.0),),
+    ...     stage_pressures_kpa=(0.0, 200.0, 400.0),
     ...     force=PressingForce(0.04, touch_pressure_kpa=50.0),
-    ...     pneumatics=load_position("knp-5-bunch").position.pneumatics, max_entry_speed_m_s=7.0,
+    ...     pneumatics=load_position("knp-5-bunch").position.pneumatics,
+    ...     max_entry_speed_m_s=7.0,
     ... )
     >>> position.top_stage
     2

@@ -23,7 +23,10 @@ class RollingResistance:
     >>> from plant_models import RollingResistance
     >>> resistance = RollingResistance(mean_n_per_kn=1.5, std_n_per_kn=0.5)
     >>> values, probabilities = resistance.nodes(3)
-    >>> float((values @ probabilities).round(9)), resistance.sample(np.random.default_rng(1), 4).shape
+    >>> (
+    ...     float((values @ probabilities).round(9)),
+    ...     resistance.sample(np.random.default_rng(1), 4).shape,
+    ... )
     (1.5, (4,))
     """
 
@@ -73,8 +76,8 @@ class RollingResistance:
 
         Returns
         -------
-        values, probabilities
-            N/kN, and 1, each (count,).
+        tuple of two ndarray
+            Values, N/kN, and probabilities, each (count,).
         """
         if count == 1 or self.std_n_per_kn == 0.0:
             return np.array([self.mean_n_per_kn]), np.array([1.0])

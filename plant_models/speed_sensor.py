@@ -29,7 +29,9 @@ class DopplerSensor:
     Examples
     --------
     >>> from plant_models import DopplerSensor
-    >>> radar = DopplerSensor(noise_m_s=0.05, resolution_m_s=0.04, sample_period_s=0.1, computing_delay_s=0.02)
+    >>> radar = DopplerSensor(
+    ...     noise_m_s=0.05, resolution_m_s=0.04, sample_period_s=0.1, computing_delay_s=0.02
+    ... )
     >>> radar.exact, round(radar.reading_std_m_s, 4)
     (False, 0.0513)
     """
@@ -71,14 +73,15 @@ class DopplerSensor:
 
     @property
     def reading_std_m_s(self) -> float:
-        """Std of one reading: `measured_speed_std` of noise and quantisation together."""
+        """Std of one reading, `measured_speed_std` of noise and quantisation together, m/s."""
         return measured_speed_std(self.noise_m_s, self.resolution_m_s)
 
     @property
     def repeat_probability(self) -> float:
-        """Probability that two readings of one speed are equal: the mean of max(0, 1 - |d|/resolution), d their noise.
+        """Probability that two readings of one speed are equal.
 
-        That is the chance of one cell for both, its place being uniform. 0 without quantisation, 1 without noise.
+        It is the mean of `max(0, 1 - |d|/resolution)`, d their noise: the chance of one cell for both, its place being
+        uniform. 0 without quantisation, 1 without noise.
         """
         if self.resolution_m_s == 0.0:
             return 0.0

@@ -21,7 +21,9 @@ class TrackProfile:
     --------
     >>> import numpy as np
     >>> from plant_models import TrackProfile
-    >>> TrackProfile(starts_m=(0.0, 20.0), grades_permille=(11.0, 7.0)).grade_permille(np.array([5.0, 25.0]))
+    >>> TrackProfile(starts_m=(0.0, 20.0), grades_permille=(11.0, 7.0)).grade_permille(
+    ...     np.array([5.0, 25.0])
+    ... )
     array([11.,  7.])
     >>> TrackProfile.uniform(8.0).grades_permille
     (8.0,)

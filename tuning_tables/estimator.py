@@ -52,10 +52,19 @@ class Estimator:
     --------
     >>> from tuning_tables import Estimator
     >>> estimator = Estimator(
-    ...     speed_noise_m_s=0.05, friction_cv=0.15, resistance_std_m_s2=0.006, path_std=0.1, correlation_length_m=2.0,
-    ...     frozen_readings=7, doubted_readings=20, lost_speed_std_m_s=0.2, unlikely_deviation=0.5,
+    ...     speed_noise_m_s=0.05,
+    ...     friction_cv=0.15,
+    ...     resistance_std_m_s2=0.006,
+    ...     path_std=0.1,
+    ...     correlation_length_m=2.0,
+    ...     frozen_readings=7,
+    ...     doubted_readings=20,
+    ...     lost_speed_std_m_s=0.2,
+    ...     unlikely_deviation=0.5,
     ...     touch_pressure_kpa=50.0,
-    ...     s_m=(0.0, 22.5), drive_m2_s2=(0.0, 1.0), brake_m2_s2_per_kpa=(0.0, 0.03),
+    ...     s_m=(0.0, 22.5),
+    ...     drive_m2_s2=(0.0, 1.0),
+    ...     brake_m2_s2_per_kpa=(0.0, 0.03),
     ... )
     >>> estimator
     Estimator(2 path breaks from 0 to 22.5 m)

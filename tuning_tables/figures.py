@@ -50,7 +50,9 @@ class Predicted:
     Examples
     --------
     >>> from tuning_tables import Predicted
-    >>> Predicted(rms_m_s=0.025, bias_m_s=0.001, p_overspeed=0.0, switchings=7.1).passes is None  # not sampled
+    >>> Predicted(
+    ...     rms_m_s=0.025, bias_m_s=0.001, p_overspeed=0.0, switchings=7.1
+    ... ).passes is None  # not sampled
     True
     """
 

@@ -47,7 +47,12 @@ class RetarderId:
     Examples
     --------
     >>> from tuning_tables import RetarderId
-    >>> RetarderId("my-retarder", zones_m=((0.0, 12.0), (14.0, 26.0)), exit_m=36.5, dead_band_kpa=15.0).exit_m
+    >>> RetarderId(
+    ...     "my-retarder",
+    ...     zones_m=((0.0, 12.0), (14.0, 26.0)),
+    ...     exit_m=36.5,
+    ...     dead_band_kpa=15.0,
+    ... ).exit_m
     36.5
     """
 
@@ -123,5 +128,5 @@ class CutId:
 
     @property
     def number(self) -> int | None:
-        """What stands for the category in controllers: as stated, else that of a category of the yard, else None."""
+        """What stands for the category in controllers, as stated, else that of a category of the yard, else None."""
         return KNOWN_NUMBERS.get(self.category) if self.category_number is None else self.category_number

@@ -53,7 +53,10 @@ def decide_for(
     With `table` from the example of `ControllerTable`:
 
     >>> from tuning_tables import decide_for
-    >>> decide_for(table, stage=0, s_m=5.0, v_m_s=5.0), decide_for(table, stage=1, s_m=5.0, v_m_s=3.5)
+    >>> (
+    ...     decide_for(table, stage=0, s_m=5.0, v_m_s=5.0),
+    ...     decide_for(table, stage=1, s_m=5.0, v_m_s=3.5),
+    ... )
     (1, 0)
     >>> decide_for(table, stage=0, s_m=5.0, v_m_s=float("nan"))
     0

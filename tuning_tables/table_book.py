@@ -152,7 +152,7 @@ class TableBook:
 
     @cached_property
     def families(self) -> tuple[int, ...]:
-        """Of each table its family: the number of the first table that differs in nothing but target and lines."""
+        """Of each table its family, the number of the first table that differs in nothing but target and lines."""
         return families_of(self.tables)
 
     def are_family(self, one: int, other: int) -> bool:

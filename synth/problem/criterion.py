@@ -57,8 +57,8 @@ class Criterion:
 
         Returns
         -------
-        costs, stall
-            Cost of leaving with each speed, m²/s², (E,); cost of a stall: that of exit speed 0 and the stall cost.
+        tuple of ndarray and float
+            Cost of leaving with each speed, m²/s², (E,); cost of a stall, that of exit speed 0 and the stall cost.
         """
         terminal = self.terminal.at_exit(speed_m_s, target_speed_m_s)
         return terminal, float(terminal[0]) + self.stall_cost_m2_s2

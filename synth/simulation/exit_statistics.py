@@ -22,16 +22,15 @@ class ExitStatistics:
     """Exit-speed error e = V_exit − V_target over `passes` passes; a stalled pass counts with V_exit = 0.
 
     Shares and means are of cuts as they come, whatever the strata the passes were drawn from; every `…_ci95` is the
-    95 % interval (low, high) of the figure before it. `p95_m_s`, `p99_m_s`: 95 and 99 % quantiles of |e|; `overspeed`:
-    share with e > 0.3 m/s; `stalled`: share that stops in the position; `switchings`: mean commands of a pass;
-    `time_s`: mean time from where the regulator acts to the exit, or to a stop.
+    95 % interval (low, high) of the figure before it. `p95_m_s`, `p99_m_s`: 95 and 99 % quantiles of its size `|e|`;
+    `overspeed`: share with e > 0.3 m/s; `stalled`: share that stops in the position; `switchings`: mean commands of a
+    pass; `time_s`: mean time from where the regulator acts to the exit, or to a stop.
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> synth.simulate(table, problem, passes=1000).statistics
     ExitStatistics(1000 passes: rms 0.03... [0.03..., 0.03...] m/s, bias 0.00... 95 % within 0.06... m/s)
     """

@@ -38,10 +38,8 @@ class Solution:
 
     Examples
     --------
-    >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> solution = synth.solve(problem, coarse)
+    With `solution` from the example of `tabulate`:
+
     >>> solution.lines.lower_m_s.shape == solution.lines.upper_m_s.shape
     True
     """
@@ -58,7 +56,7 @@ class Solution:
 
     @cached_property
     def lines(self) -> SwitchingLines:
-        """The policy as lines over the path: of decisions at every node, found for commands that go one stage far."""
+        """The policy as lines over the path, of decisions at every node, found for commands that go one stage far."""
         lower, upper = (with_exit_node(each) for each in self.lines_m_s)
         return SwitchingLines(self.chain.grid.path_m, lower, upper)
 

@@ -68,8 +68,8 @@ def test_files_are_short() -> None:
 
 
 class Source(NamedTuple):
-    """What the rules ask of a source: (name, lines of code, arguments but `self` and `cls`) of its functions, every module
-    or name in a module that it imports, inside functions too, and its dataclasses."""
+    """What the rules ask of a source: (name, lines of code, arguments but `self` and `cls`) of its functions, every
+    module or name in a module that it imports, inside functions too, and its dataclasses."""
 
     functions: tuple[tuple[str, int, int], ...]
     imported: tuple[str, ...]

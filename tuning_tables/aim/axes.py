@@ -94,7 +94,7 @@ class AimAxes:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """(C, D), or (C, D, R) of a table by measured resistance: that of everything at its nodes."""
+        """Shape of everything at the nodes, (C, D), or (C, D, R) of a table by measured resistance."""
         both = (len(self.cars), len(self.free_distance_m))
         return both if self.resistance_n_per_kn is None else (*both, len(self.resistance_n_per_kn))
 

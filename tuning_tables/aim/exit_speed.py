@@ -42,7 +42,9 @@ def aim_exit_speed(
     >>> from tuning_tables.aim import aim_exit_speed
     >>> aim_exit_speed(table, cars=1, free_distance_m=200.0)
     2.0
-    >>> aim_exit_speed(table, cars=1, free_distance_m=50.0) is None  # nearer than the table knows
+    >>> aim_exit_speed(
+    ...     table, cars=1, free_distance_m=50.0
+    ... ) is None  # nearer than the table knows
     True
     """
     if not isinstance(cars, int | np.integer) or isinstance(cars, bool):

@@ -25,8 +25,13 @@ class Reported:
     Examples
     --------
     >>> from tuning_tables.aim import Reported
-    >>> figures = Reported(2000, p_overspeed=[[0.08]], p_overspeed_low95=[[0.07]], p_overspeed_high95=[[0.09]],
-    ...     mean_gap_m=[[12.5]])
+    >>> figures = Reported(
+    ...     2000,
+    ...     p_overspeed=[[0.08]],
+    ...     p_overspeed_low95=[[0.07]],
+    ...     p_overspeed_high95=[[0.09]],
+    ...     mean_gap_m=[[12.5]],
+    ... )
     >>> figures.p_overspeed.shape
     (1, 1)
     """

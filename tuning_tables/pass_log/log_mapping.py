@@ -55,7 +55,9 @@ class LogMapping:
     Examples
     --------
     >>> from tuning_tables.pass_log import LogMapping
-    >>> LogMapping(columns={"speed_m_s": "v"}, factors={"speed_m_s": 1.0 / 3.6}, delimiter=";").decimal
+    >>> LogMapping(
+    ...     columns={"speed_m_s": "v"}, factors={"speed_m_s": 1.0 / 3.6}, delimiter=";"
+    ... ).decimal
     '.'
     """
 

@@ -35,9 +35,18 @@ class PassLog:
     >>> import numpy as np
     >>> from tuning_tables.pass_log import PassLog
     >>> log = PassLog(
-    ...     time_s=0.1 * np.arange(6), path_m=0.5 * np.arange(6), speed_m_s=np.full(6, 5.0), pressure_kpa=np.zeros(6),
-    ...     stage=np.array([0, 0, 1, 1, 1, 0]), first_row=np.array([0, 6]), cut_id=("17",), mass_t=np.array([52.0]),
-    ...     axles=np.array([4]), category=("С",), target_m_s=np.array([3.0]), stopped_by_hand=np.array([False]),
+    ...     time_s=0.1 * np.arange(6),
+    ...     path_m=0.5 * np.arange(6),
+    ...     speed_m_s=np.full(6, 5.0),
+    ...     pressure_kpa=np.zeros(6),
+    ...     stage=np.array([0, 0, 1, 1, 1, 0]),
+    ...     first_row=np.array([0, 6]),
+    ...     cut_id=("17",),
+    ...     mass_t=np.array([52.0]),
+    ...     axles=np.array([4]),
+    ...     category=("С",),
+    ...     target_m_s=np.array([3.0]),
+    ...     stopped_by_hand=np.array([False]),
     ... )
     >>> log, log.has_gauge, log.stage[log.rows(0)]
     (PassLog(1 passes, 6 rows), True, array([0, 0, 1, 1, 1, 0]))

@@ -78,9 +78,19 @@ def stage_at_pulse(
 
     >>> from tuning_tables import begin_tracking, stage_at_pulse
     >>> tracker = begin_tracking()
-    >>> stage_at_pulse(table, tracker, 0, since_s=0.0, over_base_s=0.05, stage=0, transient_ended=True)  # 5 m/s
+    >>> stage_at_pulse(
+    ...     table, tracker, 0, since_s=0.0, over_base_s=0.05, stage=0, transient_ended=True
+    ... )  # 5 m/s
     1
-    >>> stage_at_pulse(table, tracker, 1, since_s=1.6, over_base_s=0.0625, stage=1, transient_ended=True)  # 4 m/s
+    >>> stage_at_pulse(
+    ...     table,
+    ...     tracker,
+    ...     1,
+    ...     since_s=1.6,
+    ...     over_base_s=0.0625,
+    ...     stage=1,
+    ...     transient_ended=True,
+    ... )  # 4 m/s
     1
     """
     since, over_base = readings(since_s, over_base_s)

@@ -53,8 +53,14 @@ class SensorLayout:
     --------
     >>> from tuning_tables import DecidesOn, SensorLayout
     >>> sensors = SensorLayout(
-    ...     path_m=(-1.0, 6.0), base_m=0.2, base_tolerance=0.002, timer_noise_s=1e-4, timer_resolution_s=1e-4,
-    ...     computing_delay_s=0.02, scan_period_s=0.02, decides_on=DecidesOn.FIRST_AXLE,
+    ...     path_m=(-1.0, 6.0),
+    ...     base_m=0.2,
+    ...     base_tolerance=0.002,
+    ...     timer_noise_s=1e-4,
+    ...     timer_resolution_s=1e-4,
+    ...     computing_delay_s=0.02,
+    ...     scan_period_s=0.02,
+    ...     decides_on=DecidesOn.FIRST_AXLE,
     ... )
     >>> sensors.heard(axle_offsets_m=(0.0, 10.5))
     ((0, 0, -1.0), (1, 0, 6.0), (0, 1, 9.5), (1, 1, 16.5))
