@@ -19,10 +19,25 @@ LONGEST_CAR_M = 200.0
 
 @dataclass(frozen=True)
 class Car:
-    """One car type: where its axles stand and what it may weigh.
+    """One car type, where its axles stand and what it may weigh.
 
-    `axle_offsets_m` are distances of the axles behind the first axle (first entry 0, increasing);
-    `length_m` is over couplers; masses in tonnes.
+    Parameters
+    ----------
+    name
+        Its name.
+    axle_offsets_m
+        Distances of the axles behind the first axle, m; the first is 0, and they rise.
+    length_m
+        Length over couplers, m.
+    tare_t
+        Mass of the empty car, t.
+    gross_t
+        Mass of the full car, t.
+
+    Raises
+    ------
+    PlantError
+        A length or mass that no car has.
 
     Examples
     --------
@@ -55,10 +70,24 @@ class Car:
 class Cut:
     """A cut as the retarder sees it.
 
-    `axle_offsets_m`: distances of all axles behind the first (first entry 0, increasing), metres;
-    `mass_t`: mass of the whole cut, Q; `allowed_stage`: the highest braking stage that the weight
-    category may be given (light wheels slide or are squeezed out under the high ones);
-    `category_number`: what stands for the category in controllers, None where it has no number.
+    Parameters
+    ----------
+    category
+        Name of its weight category.
+    mass_t
+        Mass of the whole cut, Q, t.
+    axle_offsets_m
+        Distances of all axles behind the first, m; the first is 0, and they rise.
+    allowed_stage
+        The highest braking stage that the category may be given; light wheels slide or are squeezed out under the high
+        ones.
+    category_number
+        What stands for the category in controllers, None where it has no number.
+
+    Raises
+    ------
+    PlantError
+        A mass, offsets or a stage that no cut has.
 
     Examples
     --------
@@ -97,7 +126,7 @@ class Cut:
 
     @property
     def reduced_gravity_m_s2(self) -> float:
-        """g' = g / (1 + 0.42 n / Q)."""
+        """Acceleration of gravity less the share of the rotating wheels, g' = g/(1 + 0.42 n/Q), m/s²."""
         return GRAVITY_M_S2 * self.mass_t / self.inertia_t
 
     @property

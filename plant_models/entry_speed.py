@@ -69,7 +69,19 @@ class EntryLaw(Protocol):
 
 @dataclass(frozen=True)
 class EntrySpeed:
-    """Speed of the first axle at the entrance, uniform in [low, high], m/s.
+    """Speed of the first axle at the entrance, uniform between two limits.
+
+    Parameters
+    ----------
+    low_m_s
+        Lowest speed, m/s.
+    high_m_s
+        Highest speed, m/s.
+
+    Raises
+    ------
+    PlantError
+        Limits that are no speeds, or in the wrong order.
 
     Examples
     --------
@@ -103,7 +115,23 @@ class EntrySpeed:
 
 @dataclass(frozen=True)
 class NormalEntrySpeed:
-    """Normal with `mean_m_s` and `std_m_s`, of which only the part in [low, high] is taken, m/s.
+    """Speed of the first axle at the entrance, normal, of which only the part between two limits is taken.
+
+    Parameters
+    ----------
+    low_m_s
+        Lowest speed, m/s.
+    high_m_s
+        Highest speed, m/s.
+    mean_m_s
+        Mean of the whole law, m/s.
+    std_m_s
+        Standard deviation of the whole law, m/s.
+
+    Raises
+    ------
+    PlantError
+        Numbers that are no speeds, or a law that has hardly a cut between the limits.
 
     Examples
     --------
@@ -168,9 +196,20 @@ class NormalEntrySpeed:
 
 @dataclass(frozen=True)
 class HistogramEntrySpeed:
-    """Uniform within each of several bins: `shares[i]` of the cuts enter from `edges_m_s[i]` to the next edge, m/s.
+    """Speed of the first axle at the entrance, uniform within each of n bins.
 
-    Shares are counts or probabilities: only their ratios matter. Bins without cuts at both ends are allowed.
+    Parameters
+    ----------
+    edges_m_s
+        Edges of the bins, m/s, (n + 1,), rising.
+    shares
+        How many cuts enter in each bin, (n,), counts or probabilities: only their ratios matter. Bins without cuts at
+        both ends are allowed.
+
+    Raises
+    ------
+    PlantError
+        Edges that do not rise, or shares that do not belong to them.
 
     Examples
     --------

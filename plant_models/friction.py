@@ -15,15 +15,30 @@ MOST_CV, MOST_MEAN_CV = 0.6, 0.3
 
 @dataclass(frozen=True)
 class Friction:
-    """ξ(s) = ξ_cut·(1 + η(s)).
+    """Friction factor ξ(s) = ξ_cut·(1 + η(s)) of a cut.
 
-    ξ_cut ~ N(1, CV²) is drawn once per cut and kept, CV² = `common_cv`² + `axle_cv`²/N̄, and never falls
-    under `floor`; η is stationary and Gaussian with std `path_std` and exponential correlation over
-    `correlation_length_m`.
+    ξ_cut ~ N(1, CV²) is drawn once for a cut and kept, `CV² = common_cv² + axle_cv²/N̄`. η is stationary and Gaussian.
 
-    `mean_cv`: how far the mean of ξ_cut, taken as 1, may itself be off on a day: standard deviation of that mean by
-    weather, the oil of the day, a wrong weight. No pass is drawn with it. What must keep a reserve is designed for
-    `of_any_day`.
+    Parameters
+    ----------
+    common_cv
+        Part of the coefficient of variation of ξ_cut that all axles share.
+    axle_cv
+        Part of each axle, which is less for more braked axles N̄.
+    path_std
+        Standard deviation of η.
+    correlation_length_m
+        Length over which the correlation of η falls to 1/e, m.
+    floor
+        ξ_cut never falls under this.
+    mean_cv
+        How far the mean of ξ_cut, taken as 1, may itself be off on a day, by weather, the oil of the day, a wrong
+        weight; a standard deviation. No pass is drawn with it. What must keep a reserve is designed for `of_any_day`.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
 
     Examples
     --------

@@ -22,10 +22,18 @@ from plant_models.track_profile import TrackProfile
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class PathCoefficients:
-    """Cell means along the path of the first axle.
+    """What of a cut and a position acts on the motion, as means over n cells of the path of the first axle.
 
-    `edges_m` shape (n + 1,); `gravity_m_s2` = g'·i·1e-3 and `brake_m_s2_per_kpa` = β, shape (n,);
-    `resistance_m_s2_per_n_kn` = g'·1e-3: deceleration by one N/kN of specific resistance.
+    Parameters
+    ----------
+    edges_m
+        Edges of the cells, m, (n + 1,).
+    gravity_m_s2
+        g'·i·1e-3, m/s², (n,).
+    brake_m_s2_per_kpa
+        β, deceleration by one kPa above the touch pressure, m/s² per kPa, (n,).
+    resistance_m_s2_per_n_kn
+        g'·1e-3, deceleration by one N/kN of specific resistance, m/s² per N/kN.
 
     Examples
     --------

@@ -27,6 +27,30 @@ SLOWEST_START_M_S = 0.3
 class Plant:
     """Everything about a pass but the commanded speed.
 
+    Parameters
+    ----------
+    position
+        The retarders.
+    cut
+        The cut.
+    profile
+        The track.
+    friction
+        What the friction of cuts is.
+    resistance
+        What the rolling resistance of such cuts is.
+    sensor
+        The radar, and the computer behind it.
+    entry
+        How fast cuts enter.
+    approach
+        Where the regulator begins to act; by default at the entrance.
+
+    Raises
+    ------
+    PlantError
+        Two of these do not fit each other.
+
     Examples
     --------
     A cut of 52 t at a position of the library:

@@ -24,7 +24,35 @@ MAX_SWITCHINGS = 40
 
 @dataclass(frozen=True)
 class Pneumatics:
-    """Constants of the drive; pressures kPa gauge, times s (symbols of zhukovitsky-2012 in brackets).
+    """The drive of a retarder, with the symbols of [zhukovitsky-2012] in brackets.
+
+    Parameters
+    ----------
+    supply_pressure_kpa
+        [P_max], kPa gauge.
+    exhaust_pressure_kpa
+        [P_min], kPa gauge.
+    brake_delay_s
+        [tZ2], delay of the supply valve, s.
+    touch_delay_s
+        [t00], extra dead time while the pads do not touch (P ≤ P0), s.
+    release_delay_s
+        [tZ0], delay of the exhaust valve, s.
+    fill_time_constant_s
+        Time constant while connected to the supply, s.
+    exhaust_time_constant_s
+        Time constant while connected to the exhaust, s.
+    dead_band_kpa
+        [ε], half dead band of the regulator of the pressure, kPa.
+    closing_delay_s
+        For so long a valve stays open after the pressure has reached the band, s.
+    day_spread
+        Standard deviation of the logarithm of all delays and time constants from day to day, by cold, long pipes, wear.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
 
     Examples
     --------
@@ -45,23 +73,15 @@ class Pneumatics:
     """
 
     supply_pressure_kpa: float
-    """[P_max]"""
     exhaust_pressure_kpa: float
-    """[P_min]"""
     brake_delay_s: float
-    """[tZ2] supply valve delay"""
     touch_delay_s: float
-    """[t00] extra dead time while the pads do not touch (P ≤ P0)"""
     release_delay_s: float
-    """[tZ0] exhaust valve delay"""
     fill_time_constant_s: float
     exhaust_time_constant_s: float
     dead_band_kpa: float
-    """[ε] half dead band of the stage regulator"""
     closing_delay_s: float = 0.0
-    """time for which a valve stays open after the pressure has reached the band"""
     day_spread: float = 0.0
-    """standard deviation of the logarithm of all delays and time constants from day to day: cold, long pipes, wear"""
 
     def __post_init__(self) -> None:
         require_between("pneumatics: supply_pressure_kpa", self.supply_pressure_kpa, 1.0, 2000.0)
@@ -171,10 +191,20 @@ class Pneumatics:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class PressureHistory:
-    """P(t) after one command, as pieces P∞ + (P_start − P∞)·exp(−(t − t_start)/T).
+    """Pressure after one command, as n pieces P∞ + (P_start − P∞)·exp(−(t − t_start)/T).
 
-    All arrays of shape (pieces,): `starts_s`, `pressures_kpa` at the starts, `asymptotes_kpa`,
-    `time_constants_s`. The last piece is constant and lasts for ever; it starts at `duration_s`.
+    The last piece is constant and lasts for ever.
+
+    Parameters
+    ----------
+    starts_s
+        Beginning of each piece, s after the command, (n,).
+    pressures_kpa
+        Pressure there, kPa gauge, (n,).
+    asymptotes_kpa
+        P∞ of each piece, kPa gauge, (n,).
+    time_constants_s
+        T of each piece, s, (n,).
 
     Examples
     --------

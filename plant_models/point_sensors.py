@@ -75,13 +75,32 @@ def every_axle(cut: Cut) -> tuple[int, ...]:
 class PointSensors:
     """Sensors along a retarder position, and the regulator that listens to them.
 
-    `path_m`: middle of the base of each sensor, from the entrance of the first retarder, rising, negative ahead of it.
-    `base_m`: distance of the coils; `base_tolerance`: std of its relative error, lasting for each sensor and unknown to
-    the regulator. `timer_noise_s`: std of a measured time; `timer_resolution_s`: times are whole multiples of it, 0:
-    not quantised. `computing_delay_s`: from the second pulse to the command on the wires. `scan_period_s`: step of
-    the regulator's clock; a transient is over at the first step after its end. `missed_share`: of the passages, each by
-    itself, that the design of a table counts as not heard, so that a lost one costs less; a simulated pass loses none
-    unless a fault says so. `axles`: those that the regulator decides on.
+    Parameters
+    ----------
+    path_m
+        Middle of the base of each sensor, from the entrance of the first retarder, m, rising; negative ahead of it.
+    base_m
+        Distance of the two coils of a sensor, m.
+    base_tolerance
+        Standard deviation of the relative error of the base, lasting for each sensor and unknown to the regulator.
+    timer_noise_s
+        Standard deviation of a measured time, s.
+    timer_resolution_s
+        Times are whole multiples of it, s; 0: not quantised.
+    computing_delay_s
+        From the second pulse to the command on the wires, s.
+    scan_period_s
+        Step of the clock of the regulator, s; a transient is over at the first step after its end.
+    missed_share
+        Of the passages, each by itself, that the design of a table counts as not heard, so that a lost one costs less.
+        A simulated pass loses none unless a fault says so.
+    axles
+        Those that the regulator decides on, `first_axle` or `every_axle`.
+
+    Raises
+    ------
+    PlantError
+        Sensors that overlap, or a number out of range.
 
     Examples
     --------

@@ -39,9 +39,21 @@ class ForceLaw(Protocol):
 
 @dataclass(frozen=True)
 class PressingForce:
-    """Pressing retarder: the force is set by the drive and does not depend on the car (zhukovitsky-2012).
+    """Pressing retarder: the force is set by the drive and does not depend on the car ([zhukovitsky-2012]).
 
-    `slope_factor_by_axles[j]` is c(j + 1); beyond its end the last entry holds.
+    Parameters
+    ----------
+    slope_kn_per_kpa_per_pair
+        Force of one wheel pair, kN for each kPa above the touch pressure.
+    touch_pressure_kpa
+        Pressure P0 at which the pads touch the wheels, kPa gauge.
+    slope_factor_by_axles
+        c(1), c(2), …: factors of the mean slope by the number of braked wheel pairs; beyond the end the last one holds.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
 
     Examples
     --------
@@ -75,9 +87,23 @@ class PressingForce:
 
 @dataclass(frozen=True)
 class WeightForce:
-    """Weight-proportional retarder (КВ type): the wheel's own load sets the force.
+    """Weight-proportional retarder (КВ type): the load of the wheel itself sets the force.
 
     Force of a wheel pair = slope · axle load · max(0, P − P0).
+
+    Parameters
+    ----------
+    slope_kn_per_kpa_per_t
+        kN for each kPa above the touch pressure and each tonne of axle load.
+    touch_pressure_kpa
+        Pressure P0 at which the pads touch the wheels, kPa gauge.
+    slope_factor_by_axles
+        As of `PressingForce`.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
 
     Examples
     --------
@@ -105,10 +131,27 @@ class WeightForce:
 
 @dataclass(frozen=True)
 class RetarderPosition:
-    """One or more retarders commanded together.
+    """One or more retarders that are commanded together.
 
-    `zones_m`: (start, end) of each retarder from the entrance of the first (which starts at 0), metres;
-    `stage_pressures_kpa`: P_0 < P_1 < … < P_K, gauge; `max_entry_speed_m_s`: limit of the type.
+    Parameters
+    ----------
+    name
+        Its name.
+    zones_m
+        Beginning and end of each retarder, m from the entrance of the first one, which begins at 0.
+    stage_pressures_kpa
+        P_0 < P_1 < … < P_K, kPa gauge.
+    force
+        The force law of its type, `PressingForce` or `WeightForce`.
+    pneumatics
+        The drive.
+    max_entry_speed_m_s
+        Limit of the type, m/s.
+
+    Raises
+    ------
+    PlantError
+        Zones that overlap, pressures that do not rise or cannot be reached, or a number out of range.
 
     Examples
     --------

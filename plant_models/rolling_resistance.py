@@ -13,9 +13,19 @@ from plant_models.errors import require_between
 
 @dataclass(frozen=True)
 class RollingResistance:
-    """Specific resistance w0 in N/kN (= permille of weight), gamma distributed over cuts.
+    """Specific resistance w of cuts, gamma distributed; it is drawn once for a cut ([hump-norm]).
 
-    `mean_n_per_kn` and `std_n_per_kn` belong to the weight category; a zero std means w0 is known.
+    Parameters
+    ----------
+    mean_n_per_kn
+        Mean of the weight category, N/kN, that is permille of the weight.
+    std_n_per_kn
+        Standard deviation of the category, N/kN; 0: w is known.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
 
     Examples
     --------

@@ -13,9 +13,19 @@ from plant_models.errors import require, require_between
 
 @dataclass(frozen=True)
 class TrackProfile:
-    """Piecewise constant grade i(s): `grades_permille[j]` holds from `starts_m[j]` on, downhill positive.
+    """Piecewise constant grade of the track along the position.
 
-    The first grade also holds before its start (the cut's tail is still on the approach).
+    Parameters
+    ----------
+    starts_m
+        Where each grade begins, m from the entrance, rising; the first one also holds before.
+    grades_permille
+        The grades, permille, positive where the track falls.
+
+    Raises
+    ------
+    PlantError
+        Two rows that do not belong together, or a number out of range.
 
     Examples
     --------

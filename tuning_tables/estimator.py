@@ -45,7 +45,8 @@ class Estimator:
     Energies are those per inertia from the first path break on, linear between breaks. Breaks are a millimetre apart at
     least, as float32. The work of the brake never falls along the path.
 
-    Derived (read-only): `numbers`, those that a controller holds, by their names in `LineTable`; work float32 (3, B).
+    Derived (read-only): `numbers`, those that a controller holds, by their names in `LineTable`; `work`, float32
+    (3, B).
     Raises `InvalidTable`.
 
     Examples

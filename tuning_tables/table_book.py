@@ -79,7 +79,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class TableBook:
-    """The tables of one position, numbered in their order from 0; ids differ, the retarder position is the same in all.
+    """The `tables` of one position, numbered in their order from 0; ids differ, the position is the same in all.
 
     A category has one number and a number one category. Raises `InvalidTable`, also where float32 might let the lines
     between two neighbouring tables touch.

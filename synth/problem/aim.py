@@ -12,6 +12,18 @@ from synth.problem.criterion import SQUARED_ERROR_CRITERION, Criterion
 class Aim:
     """The commanded exit speed, and what a pass costs that misses it.
 
+    Parameters
+    ----------
+    target_speed_m_s
+        The commanded exit speed, m/s.
+    criterion
+        What a pass costs; by default the squared error.
+
+    Raises
+    ------
+    PlantError
+        A speed out of range.
+
     Examples
     --------
     >>> import synth

@@ -16,12 +16,26 @@ SQUARED_ERROR = SquaredError()
 
 @dataclass(frozen=True)
 class Criterion:
-    """Cost of one pass: `terminal` of its exit speed, plus `stall_cost_m2_s2` for a stall in the position,
-    plus `time_price_m2_s3` for each second from where the regulator acts to the exit.
+    """What a pass costs, and what the exported lines must keep besides.
 
-    `switching_tolerance_m2_s2`: a change of stage must gain more than this, else hold wins: commands whose
-    costs differ by less count as equal, and of these the one with the fewest switchings is taken.
-    `requirement`: what the exported lines must keep besides; only with the squared error.
+    Parameters
+    ----------
+    stall_cost_m2_s2
+        Cost of a stall in the position, m²/s².
+    switching_tolerance_m2_s2
+        A change of stage must gain more than this, m²/s², else hold wins: commands whose costs differ by less count as
+        equal, and of these the one with the fewest switchings is taken.
+    time_price_m2_s3
+        Cost of each second from where the regulator acts to the exit, m²/s³.
+    terminal
+        Cost of the exit speed.
+    requirement
+        What the exported lines must keep besides; only with the squared error.
+
+    Raises
+    ------
+    PlantError
+        A number out of range, or a requirement with another terminal cost.
 
     Examples
     --------

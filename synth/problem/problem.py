@@ -13,7 +13,19 @@ from synth.problem.requirement import FrictionRange
 
 @dataclass(frozen=True)
 class Problem:
-    """A plant, and what its lines are for: `PlantError` where the two do not fit.
+    """What is to be solved: a plant, and what its lines are for.
+
+    Parameters
+    ----------
+    plant
+        One cut class at one retarder position.
+    aim
+        The exit speed, and the criterion.
+
+    Raises
+    ------
+    PlantError
+        The two do not fit.
 
     Examples
     --------

@@ -73,15 +73,21 @@ SLOW = {"synth.identify"}
 
 CLASSES = [(name, value) for name, value in EVERYTHING if isinstance(value, type)]
 
+EXPLAINED = {value.__name__ for _, value in CLASSES}
+"""Classes that say themselves what they are, wherever they are a member."""
+
+
+def listed(told: str) -> set[str]:
+    """The names in the sections of parameters and attributes of a docstring."""
+    sections = [each for each in told.split("\n\n") if each.startswith(("Parameters\n---", "Attributes\n---"))]
+    lines = [line for section in sections for line in section.splitlines() if line[:1].strip()]
+    return {each.strip().lstrip("*") for line in lines for each in line.split(",")}
+
 
 @pytest.mark.parametrize(("name", "function"), FUNCTIONS, ids=[name for name, _ in FUNCTIONS])
 def test_a_function_says_what_it_takes_and_gives(name: str, function: FunctionType) -> None:
-    told = inspect.getdoc(function) or ""
-    parameters = [each for each in inspect.signature(function).parameters if not each.startswith("_")]
-    sections = told.split("\n\n")
-    listed = next((section for section in sections if section.startswith("Parameters\n---")), "")
-    names = {each.strip().lstrip("*") for line in listed.splitlines() if line[:1].strip() for each in line.split(",")}
-    assert set(parameters) <= names, f"{name} does not say what {set(parameters) - names} are"
+    told, parameters = inspect.getdoc(function) or "", set(inspect.signature(function).parameters)
+    assert parameters <= listed(told), f"{name} does not say what {parameters - listed(told)} are"
     if inspect.signature(function).return_annotation not in ("None", None):
         assert "\nReturns\n---" in told
     assert "\nExamples\n---" in told
@@ -93,6 +99,11 @@ def test_a_class_and_its_members_are_explained(name: str, value: type) -> None:
     assert not own.startswith(f"{value.__name__}("), f"{name} has no docstring"
     if not issubclass(value, Exception) and dataclasses.is_dataclass(value):
         assert "Examples\n" in own, f"{name} has no example"
+        hints = value.__annotations__.items()
+        declared = {each for each, hint in hints if hint.startswith("Annotated[") or hint.split(" |")[0] in EXPLAINED}
+        members_of = {each.name for each in dataclasses.fields(value) if not each.name.startswith("_")}
+        told = listed(inspect.getdoc(value) or "") | declared
+        assert {each for each in members_of - told if f"`{each}`" not in own} == set()
     for member, function in members(value):
         assert function.__doc__, f"{name}.{member} has no docstring"
 

@@ -13,7 +13,7 @@ from tuning_tables.requirement import require_kind, require_tuple
 
 @dataclass(frozen=True)
 class AimTables:
-    """The tables of one position, numbered in their order from 0; ids differ.
+    """The `tables` of one position, numbered in their order from 0; ids differ.
 
     There is one table at most for a category and a kind of knowledge; a category has one name, and a name one number.
     Raises `InvalidTable`.

@@ -51,6 +51,7 @@ class LogMapping:
 
     `columns`: foreign name by own name; `factors`: by own name, what the file's numbers are multiplied with;
     `constant`: values, in own units, of columns that the file lacks; `path_is_independent`: None leaves it to the file.
+    `delimiter`: between cells, `decimal`: in numbers.
 
     Examples
     --------

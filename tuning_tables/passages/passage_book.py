@@ -25,7 +25,7 @@ from tuning_tables.table_book import LARGEST_FLOAT32, LEAST_FLOAT32, Status
 
 @dataclass(frozen=True)
 class PassageChoice:
-    """The chosen table and its number in the book, both None where `status` is below 0.
+    """The chosen `table` and its `number` in the book, both None where `status` is below 0.
 
     Examples
     --------
@@ -44,7 +44,7 @@ class PassageChoice:
 
 @dataclass(frozen=True)
 class PassageBook:
-    """The tables of one position, numbered in their order from 0.
+    """The `tables` of one position, numbered in their order from 0.
 
     Ids differ. Retarder position and sensors are the same in all: a controller is wired to one set of sensors, whatever
     the cut. A category has one number and a number one category. Raises `InvalidTable`.
