@@ -46,10 +46,8 @@ class FittedLines:
 
     Examples
     --------
-    >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> lines = synth.fit(synth.solve(problem, coarse), degree=2)
+    With `lines` from the example of `tabulate`:
+
     >>> lines.lines.degree, lines.finding
     (2, None)
     """
@@ -92,9 +90,9 @@ def solve(problem: Problem, resolution: Resolution | None = None) -> Solution:
 
     Examples
     --------
+    With `problem` and `coarse` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
     >>> synth.solve(problem, coarse)
     Solution(to 3 m/s, 42 nodes of the path, 3 stages)
     """
@@ -128,10 +126,10 @@ def fit(solution: Solution, degree: int = DEGREE) -> FittedLines:
 
     Examples
     --------
+    With `problem` and `solution` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> lines = synth.fit(synth.solve(problem, coarse), degree=2)
+    >>> lines = synth.fit(solution, degree=2)
     >>> lines.problem == problem
     True
     """
@@ -171,8 +169,12 @@ def tabulate(lines: FittedLines, name: str = "", config: Config = None) -> Contr
     --------
     >>> import synth
     >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
+    >>> coarse = synth.Resolution(
+    ...     path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1
+    ... )
+    >>> solution = synth.solve(problem, coarse)  # coarse: for an example that is quick
+    >>> lines = synth.fit(solution, degree=2)
+    >>> table = synth.tabulate(lines)
     >>> table.id, round(table.predicted.rms_m_s, 3)
     ('knp-5-bunch-22t-to-3-m-s', 0.035)
     """

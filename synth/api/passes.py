@@ -40,10 +40,9 @@ class Simulated:
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> synth.simulate(table, problem, passes=1000)
     Simulated(1000 passes, seed 1: rms 0.0329 [0.0309, 0.0350] m/s, bias +0.0079 m/s)
     """
@@ -58,10 +57,9 @@ class Simulated:
 
         Examples
         --------
+        With `problem` and `table` from the example of `tabulate`:
+
         >>> import synth
-        >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-        >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-        >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
         >>> found = synth.simulate(table, problem, passes=1000).statistics
         >>> found.passes, round(found.rms_m_s, 3), [round(end, 3) for end in found.rms_ci95_m_s]
         (1000, 0.033, [0.031, 0.035])
@@ -79,10 +77,9 @@ class Simulated:
 
         Examples
         --------
+        With `problem` and `table` from the example of `tabulate`:
+
         >>> import synth
-        >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-        >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-        >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
         >>> columns = synth.simulate(table, problem, passes=1000).columns()
         >>> {name: column.shape for name, column in columns.items() if name.endswith("_s")}
         {'exit_speed_m_s': (1000,), 'transit_time_s': (1000,)}
@@ -127,10 +124,9 @@ def predict(table: ControllerTable, problem: Problem, resolution: Resolution | N
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> synth.predict(table, problem, coarse) == table.predicted
     True
     """
@@ -172,10 +168,9 @@ def simulate(table: ControllerTable, problem: Problem, passes: int = PASSES, see
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> passes = synth.simulate(table, problem, passes=1000, seed=2)
     >>> passes.statistics.stalled
     0.0
@@ -209,10 +204,9 @@ def trace(
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> one = synth.trace(table, problem, friction=0.8)
     >>> one.stalled, bool(one.exit_speed_m_s == one.speed_m_s[-1])
     (False, True)

@@ -5,3 +5,7 @@ from tuning_tables.pass_log.log_mapping import LogMapping, read_mapping
 from tuning_tables.pass_log.pass_log import PassLog
 
 __all__ = ["LoadedLogs", "LogMapping", "PassLog", "read_logs", "read_mapping", "write_log"]
+
+
+def __dir__() -> list[str]:
+    return __all__
