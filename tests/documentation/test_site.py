@@ -27,7 +27,7 @@ def test_the_site_is_built_without_a_warning(tmp_path: Path) -> None:
     for page in ("index", "reference/commands", "reference/api/synth", "made/gallery/index", "data/book"):
         assert (tmp_path / "site" / f"{page}.html").is_file()
     commands = (tmp_path / "site" / "reference" / "commands.html").read_text(encoding="utf-8")
-    assert "--workers N" in commands
+    assert "--workers" in commands
 
 
 def test_pages_written_by_hand_are_few_words() -> None:
