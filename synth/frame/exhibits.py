@@ -127,11 +127,15 @@ class Table:
 
 @dataclass(frozen=True)
 class Sentence:
-    """A sentence, or a few; `figures`: what JSON keeps of it by name. `brief`: the terminal shows it too."""
+    """A sentence, or a few; `figures`: what JSON keeps of it by name. `brief`: the terminal shows it too.
+
+    `to_do`: it says what to do first; a page has it beside the verdict.
+    """
 
     text: str
     figures: Mapping[str, Any] = field(default_factory=dict)
     brief: bool = False
+    to_do: bool = False
 
 
 @dataclass(frozen=True)
@@ -170,7 +174,7 @@ class Tile:
 
 @dataclass(frozen=True)
 class Tiles:
-    """A few tiles side by side; a page alone shows them."""
+    """A few tiles side by side; a page alone shows them, below its verdict."""
 
     tiles: Sequence[Tile]
 

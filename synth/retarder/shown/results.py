@@ -18,6 +18,7 @@ from synth.retarder.off_nominal.worst import worst_of
 from synth.retarder.pareto.pareto_front import told as nearly_free
 from synth.retarder.permissions.refusal import tellable
 from synth.retarder.shown.cases import KEYS, PROMISE, UNAVOIDABLE, VERDICT, case_row, cases_table, passes_told
+from synth.retarder.shown.first_screen import first_screen
 from synth.retarder.shown.pictures import accuracy_charts
 
 ENTRY: Final = (
@@ -41,7 +42,7 @@ HOW_TO_READ: Final = (
     "see the same passes, and may act from the same place."
 )
 PERMISSIONS: Final = (
-    "What commands at any time and other permissions of the hardware would give: retarder-synth permissions."
+    "'retarder-synth permissions' tells what commands at any time and other permissions of the hardware would give."
 )
 
 
@@ -53,6 +54,7 @@ NO_REGRET: Final = (
 
 def results(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
     """The table of cases, what is to be known of it, and the pictures of all cases."""
+    yield from first_screen(found)
     yield from cases_table(found, CASES, result_row)
     yield Sentence(passes_told(found.book.cases), overall(found), brief=True)
     yield Sentence(HOW_TO_READ)
