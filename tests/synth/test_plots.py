@@ -23,13 +23,15 @@ from synth.frame.picture.picture import picture_files
 from synth.retarder.case_names import by_class, file_stem
 from synth.retarder.case_result import CaseResult
 from synth.retarder.command_panels import command_image
-from synth.retarder.pictures.case_picture import NEAR_M_S, case_picture, parts
-from synth.retarder.pictures.exit_density import bin_edges_m_s, exit_density, predicted_density
+from synth.retarder.exit_bins import bin_edges_m_s, predicted_density
+from synth.retarder.pictures.case_picture import case_picture
+from synth.retarder.pictures.exit_density import exit_density
 from synth.retarder.pictures.feasibility import feasibility
 from synth.retarder.pictures.rms_by_controller import rms_by_controller
 from synth.retarder.pictures.stage_colours import colour_of, outcome, parts_in_stage
 from synth.retarder.pictures.table_picture import Passes, table_lines, table_passes, table_surfaces
 from synth.retarder.shown.pictures import case_chart
+from synth.retarder.shown_case import NEAR_M_S, shown_case
 from synth.simulation.passes import ExitSample
 from tests.synth.all_pictures import all_pictures
 from tests.synth.case_factory import make_case
@@ -57,8 +59,8 @@ def passes_of(case: CaseResult) -> Passes:
 
 
 FIGURES: dict[str, Callable[[list[CaseResult]], Figure]] = {
-    "case_picture of three stages": lambda cases: case_picture(cases[0]),
-    "case_picture of an infeasible case": lambda cases: case_picture(cases[2]),
+    "case_picture of three stages": lambda cases: case_picture(shown_case(cases[0])),
+    "case_picture of an infeasible case": lambda cases: case_picture(shown_case(cases[2])),
     "table_lines of three stages": lambda cases: table_lines(cases[0].table, passes_of(cases[0])),
     "table_lines of five stages": lambda cases: table_lines(cases[2].table, None),
     "table_passes": lambda cases: table_passes(cases[0].table, passes_of(cases[0])),
@@ -176,26 +178,27 @@ def test_every_part_of_a_pass_is_drawn_in_exactly_one_stage(cases: list[CaseResu
 def test_the_picture_of_a_case_shows_the_run_in_the_stages_in_force(cases: list[CaseResult]) -> None:
     """Every event of the run is drawn once, in the colour of its stage, beside the lines of that stage there."""
     case = cases[2]
-    run, exits = case_picture(case).axes
+    run, exits = case_picture(shown_case(case)).axes
     trace = case.traces[1]
-    stretches = parts(trace)
-    assert [trace.stage[start] for start, _ in stretches] == [
-        stage for i, stage in enumerate(trace.stage[:-1]) if i == 0 or stage != trace.stage[i - 1]
-    ]
-    assert stretches[0][0] == 0
-    assert stretches[-1][1] == len(trace.stage) - 1
-    assert all(end == start for (_, end), (start, _) in pairwise(stretches))
+    parts = shown_case(case).run
+    events = trace.stage[:-1]
+    assert [part.stage for part in parts] == [k for i, k in enumerate(events) if i == 0 or k != events[i - 1]]
+    assert all(one.path_m[-1] == next_one.path_m[0] for one, next_one in pairwise(parts))
+    assert [speed for part in parts for speed in part.speed_m_s[:-1]] == trace.speed_m_s[:-1].tolist()
+    lines = case.study.table_lines
+    for part in parts:
+        lower = np.interp(part.lower.path_m, lines.nodes_m, lines.lower_m_s[part.stage])
+        assert part.lower.speed_m_s == pytest.approx(lower)
+        assert all(part.path_m[0] <= s <= part.path_m[-1] for s in part.upper.path_m + part.lower.path_m)
     drawn = [line for line in run.get_lines() if line.get_linewidth() == 2.2]
-    assert [line.get_color() for line in drawn] == [colour_of(int(trace.stage[start])) for start, _ in stretches]
-    speeds = np.concatenate([np.asarray(line.get_ydata())[:-1] for line in drawn])
-    assert speeds.tolist() == trace.speed_m_s[:-1].tolist()
+    assert [line.get_color() for line in drawn] == [colour_of(part.stage) for part in parts]
     assert exits.get_ylim() == pytest.approx((2.0 - NEAR_M_S, 2.0 + NEAR_M_S))
 
 
 def test_the_picture_of_a_case_has_the_density_on_the_speed_axis(cases: list[CaseResult]) -> None:
     """The simulated histogram has the share of the cuts that leave where it is drawn; the line is the prediction."""
     case = cases[1]
-    exits = case_picture(case).axes[1]
+    exits = case_picture(shown_case(case)).axes[1]
     (bars,) = (each for each in exits.patches if isinstance(each, StepPatch))
     values, edges, _ = bars.get_data()
     error = np.abs(case.exit_speeds_m_s - case.target_speed_m_s)

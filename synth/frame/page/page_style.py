@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
-
-DARKENED: Final = "invert(.92) hue-rotate(180deg)"
-"""Makes a drawing on white one on the dark ground of the page: blue stays blue, black becomes nearly white."""
+from synth.frame.picture.picture import DARKENED
 
 STYLE = f"""
 :root {{ color-scheme: light dark; --ground: #fff; --ink: #1d2530; --soft: #5b6673; --line: #d5dbe2; --pale: #f4f6f8;

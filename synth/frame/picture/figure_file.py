@@ -14,9 +14,16 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from synth.frame.picture.house_style import DOTS_PER_INCH, FONTS, MATHEMATICS
+from synth.frame.picture.picture import DARKENED
 
 IDENTIFIER_SALT = "retarder-synth"
 """Makes the identifiers inside an SVG a hash of what they name instead of random."""
+
+STYLE = b"*{stroke-linejoin: round; stroke-linecap: butt}"
+"""What matplotlib begins the style sheet of a drawing with."""
+
+NIGHT = f"@media (prefers-color-scheme: dark) {{svg{{filter: {DARKENED}}}}}".encode()
+"""A drawing is dark where its reader has all dark."""
 
 _drawing = threading.Lock()
 
@@ -39,7 +46,7 @@ def draw(figure: Figure) -> bytes:
         ),
     ):
         figure.savefig(svg, format="svg", dpi=DOTS_PER_INCH, metadata={"Date": None, "Creator": None})
-    return svg.getvalue()
+    return svg.getvalue().replace(STYLE, STYLE + NIGHT, 1)
 
 
 def figure_files(figure: Figure, name: str) -> dict[str, bytes]:

@@ -39,4 +39,9 @@ def parts_in_stage(traces: Sequence[PassTrace], stage: int) -> tuple[NDArray[np.
 
 def outcome(trace: PassTrace) -> str:
     """How a pass ended, in words."""
-    return "stopped in the position" if trace.stalled else f"left at {trace.exit_speed_m_s:.2f} m/s"
+    return ended(trace.stalled, trace.exit_speed_m_s)
+
+
+def ended(stalled: bool, exit_speed_m_s: float) -> str:
+    """The same of a pass that left with this speed, where it was not `stalled`."""
+    return "stopped in the position" if stalled else f"left at {exit_speed_m_s:.2f} m/s"

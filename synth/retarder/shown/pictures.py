@@ -14,6 +14,7 @@ from synth.frame.printed_numbers import of_ten_thousand, speed
 from synth.retarder.case_names import file_stem
 from synth.retarder.case_result import CaseResult
 from synth.retarder.pareto.pareto_front import ParetoFront
+from synth.retarder.shown_case import ShownCase, shown_case
 from synth.simulation.exit_statistics import OVERSPEED_M_S
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def case_chart(case: CaseResult) -> Chart:
         case.name,
         f"95 of 100 cuts leave within ±{speed(found.p95_m_s)} [{low}, {high}] m/s of the target; "
         f"{of_ten_thousand(found.overspeed)} in 10 000 leave more than {OVERSPEED_M_S:g} m/s above it.",
-        partial(case_picture, case),
+        partial(case_picture, shown_case(case)),
     )
 
 
@@ -101,7 +102,7 @@ def pareto_fronts(fronts: Sequence[ParetoFront]) -> Figure:
     return pareto_fronts(fronts)
 
 
-def case_picture(case: CaseResult) -> Figure:
+def case_picture(case: ShownCase) -> Figure:
     """See `rms_by_controller`."""
     from synth.retarder.pictures.case_picture import case_picture
 
