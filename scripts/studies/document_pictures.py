@@ -27,7 +27,7 @@ def pictures_of(path: Path) -> Iterator[tuple[str, str, Path]]:
     """(study, picture, file) of every marked picture of the page `path`. Raises `InputError` where it shows none."""
     for found in _MARKED.finditer(path.read_text(encoding="utf-8")):
         study, name = found["study"], found["name"]
-        file = f"{study}-{name}.svg" if path.parent.name == "docs" else f"docs/{study}-{name}.svg"
+        file = f"{study}-{name}.svg" if path.name != "README.md" else f"docs/{study}-{name}.svg"
         if found["file"] != file:
             raise InputError(f"{path}: the line after <!-- picture {study} {name} --> must show {file}, with a text")
         yield study, name, path.parent / file
