@@ -20,15 +20,15 @@ NOMINAL: Final = TRACE_FACTORS.index(1.0)
 NEAR_M_S: Final = 1.2 * OVERSPEED_M_S
 """Exit speeds are shown so far from the target."""
 
-Floats = tuple[float, ...]
+PlainNumbers = tuple[float, ...]
 
 
 @dataclass(frozen=True)
 class SwitchingLine:
     """A line over path; empty where the stage has none there."""
 
-    path_m: Floats
-    speed_m_s: Floats
+    path_m: PlainNumbers
+    speed_m_s: PlainNumbers
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class StagePart:
 
     stage: int
     pressure_kpa: float
-    path_m: Floats
-    speed_m_s: Floats
+    path_m: PlainNumbers
+    speed_m_s: PlainNumbers
     upper: SwitchingLine
     lower: SwitchingLine
 
@@ -48,10 +48,10 @@ class ExitDensities:
     """Densities of the exit speed in s/m near the target: of simulated cuts in bins between `edges_m_s` (one more than
     bins), and predicted at `speed_m_s`."""
 
-    edges_m_s: Floats
-    simulated_s_m: Floats
-    speed_m_s: Floats
-    predicted_s_m: Floats
+    edges_m_s: PlainNumbers
+    simulated_s_m: PlainNumbers
+    speed_m_s: PlainNumbers
+    predicted_s_m: PlainNumbers
 
 
 @dataclass(frozen=True)
@@ -125,6 +125,6 @@ def exit_densities(case: CaseResult) -> ExitDensities:
     )  # fmt: skip
 
 
-def numbers(values: NDArray[np.float64]) -> Floats:
+def numbers(values: NDArray[np.float64]) -> PlainNumbers:
     """As plain numbers."""
     return tuple(float(each) for each in values)

@@ -7,12 +7,11 @@ from synth.frame.picture.picture import DARKENED
 STYLE = f"""
 :root {{ color-scheme: light dark; --ground: #fff; --ink: #1d2530; --soft: #5b6673; --line: #d5dbe2; --pale: #f4f6f8;
   --blue: #0072b2; --good: #009e73; --bad: #d55e00; --open: #e69f00; --bad-ink: #a33f00; --mark: #7a4b00;
-  --assumed: #fff6dd; --outside: #e9ebee; --outside-ink: #4a535d; }}
+  --assumed: #fff6dd; --outside: #e9ebee; --outside-ink: #4a535d; --drawing: none; }}
 @media (prefers-color-scheme: dark) {{
   :root {{ --ground: #141414; --ink: #e4e7ea; --soft: #a3adb8; --line: #3a4149; --pale: #20252b; --blue: #6cb8ec;
     --good: #1fbf91; --bad: #f0813a; --open: #e6b04a; --bad-ink: #ff9d66; --mark: #f0c26b; --assumed: #35301d;
-    --outside: #2a2e33; --outside-ink: #b4bcc4; }}
-  @media screen {{ figure svg {{ filter: {DARKENED}; }} }}
+    --outside: #2a2e33; --outside-ink: #b4bcc4; --drawing: {DARKENED}; }}
 }}
 * {{ box-sizing: border-box; }}
 body {{ margin: 0 auto; padding: 1.25rem 1.25rem 4rem; max-width: 92rem; background: var(--ground); color: var(--ink);
@@ -60,11 +59,10 @@ tbody th {{ font-weight: 600; white-space: nowrap; background: var(--ground); po
 .parameters th.code {{ font-weight: 500; white-space: normal; min-width: 21rem; }}
 .figures {{ display: flex; flex-wrap: wrap; gap: .6rem 1.2rem; align-items: flex-start; }}
 figure {{ margin: .8rem 0; max-width: 100%; width: min-content; break-inside: avoid; }}
-figure svg {{ display: block; max-width: calc(100vw - 2.5rem); height: auto; }}
+figure svg {{ filter: var(--drawing); display: block; max-width: calc(100vw - 2.5rem); height: auto; }}
 figcaption {{ margin-top: .2rem; }}
 @media (max-width: 40rem) {{
-  body {{ padding: .8rem .8rem 3rem; }}
-  figure svg {{ max-width: calc(100vw - 1.6rem); }}
+  body {{ padding: .8rem 1.25rem 3rem; }}
   tbody th {{ white-space: normal; min-width: 6rem; }}
   .parameters th.code {{ min-width: 9rem; }}
   .tiles {{ grid-template-columns: 1fr 1fr; }}
@@ -72,7 +70,8 @@ figcaption {{ margin-top: .2rem; }}
 @page {{ size: A4; margin: 12mm; }}
 @media print {{
   :root {{ color-scheme: light; --ground: #fff; --ink: #1d2530; --soft: #5b6673; --line: #d5dbe2; --pale: #f4f6f8;
-    --blue: #0072b2; --assumed: #fff6dd; --bad-ink: #a33f00; --mark: #7a4b00; }}
+    --blue: #0072b2; --assumed: #fff6dd; --bad-ink: #a33f00; --mark: #7a4b00;
+    --drawing: none; }}
   body {{ max-width: none; padding: 0; font-size: 9.5pt; }}
   nav {{ display: none; }}
   summary {{ color: var(--soft); font-size: 8.5pt; }}
