@@ -90,6 +90,9 @@ def brief_value(value: Any, form: Form) -> str:
         return shown_value(value, form)
     if value.value == value.low95 == 0.0 and value.high95 > 0.0:
         return f"below {form(value.high95)}"
+    if not math.isfinite(value.half_width):
+        ends = {form(each) for each in (value.value, value.low95, value.high95)}
+        return ends.pop() if len(ends) == 1 else shown_value(value, form)
     half = form(value.half_width).lstrip("+")
     return (
         shown_value(value, form)
