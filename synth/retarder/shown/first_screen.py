@@ -6,22 +6,20 @@ from collections.abc import Iterator
 from statistics import median
 from typing import Final
 
-from synth.frame.exhibits import Exhibit, Sentence, Tile, Tiles
+from synth.frame.exhibits import Sentence, Tile, Tiles
 from synth.frame.printed_numbers import counted, decimals
 from synth.retarder.acceptance import advice_of
 from synth.retarder.found_book import FoundBook
 from synth.retarder.tuned_case import Case
 
-CENTIMETRES: Final = decimals(3)
+MILLIMETRES: Final = decimals(3)
 """A speed to a millimetre a second: what a reader at a glance can use."""
 
 
-def first_screen(found: FoundBook[Case]) -> Iterator[Exhibit]:
-    """Tiles, and what to do first."""
-    feasible = found.feasible
-    yield Tiles((kept_tile(found), *((near_tile(found), worst_tile(found)) if feasible else ()), *weak_tiles(found)))
-    for sentence in to_do(found):
-        yield Sentence(sentence, to_do=True)
+def tiles(found: FoundBook[Case]) -> Tiles:
+    """The main figures."""
+    near = (near_tile(found), worst_tile(found)) if found.feasible else ()
+    return Tiles((kept_tile(found), *near, *weak_tiles(found)))
 
 
 def kept_tile(found: FoundBook[Case]) -> Tile:
@@ -39,9 +37,9 @@ def near_tile(found: FoundBook[Case]) -> Tile:
     near = [case.statistics.p95_m_s for case in found.feasible]
     words = (
         f"of the commanded speed leave 95 of 100 cuts: median of {counted(len(near), 'table')}, from "
-        f"±{CENTIMETRES(min(near))} to ±{CENTIMETRES(max(near))}"
+        f"±{MILLIMETRES(min(near))} to ±{MILLIMETRES(max(near))}"
     )
-    return Tile(f"±{CENTIMETRES(median(near))} m/s", words)
+    return Tile(f"±{MILLIMETRES(median(near))} m/s", words)
 
 
 def worst_tile(found: FoundBook[Case]) -> Tile:
@@ -51,7 +49,7 @@ def worst_tile(found: FoundBook[Case]) -> Tile:
     low, high = worst.statistics.rms_ci95_m_s
     kept = True if high <= limit else False if low > limit else None
     words = f"is the largest rms error ({worst.label} to {worst.target_speed_m_s:g} m/s); allowed is {limit:g} m/s"
-    return Tile(f"{CENTIMETRES(worst.statistics.rms_m_s)} m/s", words, kept)
+    return Tile(f"{MILLIMETRES(worst.statistics.rms_m_s)} m/s", words, kept)
 
 
 def weak_tiles(found: FoundBook[Case]) -> Iterator[Tile]:
@@ -62,10 +60,16 @@ def weak_tiles(found: FoundBook[Case]) -> Iterator[Tile]:
         yield Tile(str(len(weak)), f"for {names} no controller keeps the limit: the position itself cannot")
 
 
-def to_do(found: FoundBook[Case]) -> Iterator[str]:
-    """Steps, the most urgent first."""
+def to_do(found: FoundBook[Case]) -> Iterator[Sentence]:
+    """Steps, the most urgent first; the terminal has what follows from the verdict."""
     if advice := advice_of(found.verdicts):
-        yield advice
+        yield Sentence(advice, brief=True, to_do=True)
+    for step in next_steps(found):
+        yield Sentence(step, to_do=True)
+
+
+def next_steps(found: FoundBook[Case]) -> Iterator[str]:
+    """What is to be done with every book."""
     parameters = found.book.config.parameters
     assumed = sum(each.assumed for each in parameters)
     if assumed:

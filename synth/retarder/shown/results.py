@@ -9,7 +9,7 @@ from typing import Final
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, speed
-from synth.retarder.acceptance import CaseVerdict, advice_of
+from synth.retarder.acceptance import CaseVerdict
 from synth.retarder.case_result import CaseResult, fronts_of
 from synth.retarder.comparison.measured import Measured
 from synth.retarder.exit_figures import CASE, DETAILS, EFFORT, TOLD, told
@@ -18,7 +18,7 @@ from synth.retarder.off_nominal.worst import worst_of
 from synth.retarder.pareto.pareto_front import told as nearly_free
 from synth.retarder.permissions.refusal import tellable
 from synth.retarder.shown.cases import KEYS, PROMISE, UNAVOIDABLE, VERDICT, case_row, cases_table, passes_told
-from synth.retarder.shown.first_screen import first_screen
+from synth.retarder.shown.first_screen import tiles, to_do
 from synth.retarder.shown.pictures import accuracy_charts
 
 ENTRY: Final = (
@@ -54,12 +54,13 @@ NO_REGRET: Final = (
 
 def results(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
     """The table of cases, what is to be known of it, and the pictures of all cases."""
-    yield from first_screen(found)
+    yield tiles(found)
     yield from cases_table(found, CASES, result_row)
     yield Sentence(passes_told(found.book.cases), overall(found), brief=True)
     yield Sentence(HOW_TO_READ)
     for sentence in (*remarks(found), *(infeasible(case, each) for case, each in found.judged if not each.feasible)):
         yield Sentence(sentence, brief=True)
+    yield from to_do(found)
     yield from accuracy_charts(found.book.cases, found.book.config.acceptance.rms_m_s)
 
 
@@ -105,8 +106,6 @@ def remarks(found: FoundBook[CaseResult]) -> Iterator[str]:
     worst = worst_of(found.feasible)
     if worst is not None:
         yield worst.told
-    if advice := advice_of(found.verdicts):
-        yield advice
     if fronts := fronts_of(found.book.cases):
         yield nearly_free(fronts)
     if tellable(found.book.config):
