@@ -114,25 +114,6 @@ def plot(
 
 
 @app.command()
-def loop(
-    source: SourceOrDirectory,
-    output: Annotated[
-        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where pictures and figures go.")
-    ] = Path("loops"),
-    config: Config = None,
-    as_json: Json = False,
-) -> int:
-    """Show exported tables as control loops.
-
-    Nominal response by python-control beside the simulator's, phase portrait with the lines, predicted limit cycles.
-    Exit code 1 if the two responses do not agree.
-    """
-    from synth.cli.loop import loop_command
-
-    return loop_command(source, output, config, as_json)
-
-
-@app.command()
 def inspect(source: SourceOrDirectory, as_json: Json = False) -> int:
     """Tell what is in exported tables.
 
