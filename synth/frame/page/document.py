@@ -22,12 +22,13 @@ NARROW_PT: Final = 460.0
 
 @dataclass(frozen=True)
 class Stamp:
-    """Which report it is: its title, the UTC instant, the version of the tool, and the hash of the configuration."""
+    """Which report it is: its title, the UTC instant, the version of the tool, and the hash of the configuration, if
+    there is one."""
 
     title: str
     created: str
     tool_version: str
-    config_sha256: str
+    config_sha256: str = ""
 
 
 def document(stamp: Stamp, first_screen: Markup, sections: Sequence[tuple[str, str, Markup]]) -> str:
@@ -44,13 +45,17 @@ def document(stamp: Stamp, first_screen: Markup, sections: Sequence[tuple[str, s
     body = element(
         "body",
         element("h1", stamp.title),
-        element("p", f"{stamp.created} · retarder-synth {stamp.tool_version} · configuration ",
-                element("code", stamp.config_sha256), class_="meta"),
+        element("p", f"{stamp.created} · retarder-synth {stamp.tool_version}", *of_configuration(stamp), class_="meta"),
         first_screen,
         element("nav", *(part for link in links for part in (link, " ")), aria_label="Contents"),
         *(element("section", element("h2", name), content, id=anchor) for anchor, name, content in sections),
     )  # fmt: skip
     return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
+
+
+def of_configuration(stamp: Stamp) -> tuple[str, ...]:
+    """The hash of the configuration in words."""
+    return (" · configuration ", element("code", stamp.config_sha256)) if stamp.config_sha256 else ()
 
 
 def figure(picture: Picture) -> Markup:

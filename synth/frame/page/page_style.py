@@ -21,6 +21,7 @@ h2 {{ font-size: 1.25rem; margin: 2.2rem 0 .6rem; padding-top: .6rem; border-top
 h3 {{ font-size: 1.05rem; margin: 1.4rem 0 .5rem; }}
 p, ul, ol {{ max-width: 62rem; margin: .5rem 0; }}
 ul, ol {{ padding-left: 1.4rem; }}
+.facts {{ max-width: none; font-size: .92rem; list-style: none; padding-left: .8rem; }}
 .meta, figcaption, caption {{ color: var(--soft); font-size: .88rem; }}
 code, .code {{ font-family: ui-monospace, "DejaVu Sans Mono", monospace; font-size: .82rem; overflow-wrap: anywhere; }}
 nav {{ margin: .8rem 0; font-size: .92rem; }}

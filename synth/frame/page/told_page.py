@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import version
 from itertools import groupby
 from typing import Final
@@ -54,7 +54,7 @@ def verdict_box(told: Told) -> Markup:
     return element("section", head, first, rest, class_=f"verdict {style}", id="verdict")
 
 
-def to_do_box(sentences: list[str]) -> Markup:
+def to_do_box(sentences: Sequence[str]) -> Markup:
     """What to do first, a step each."""
     if not sentences:
         return Markup()
