@@ -67,6 +67,8 @@ figcaption {{ margin-top: .2rem; }}
   tbody th {{ white-space: normal; min-width: 6rem; }}
   .parameters th.code {{ min-width: 9rem; }}
   .tiles {{ grid-template-columns: 1fr 1fr; }}
+  figure {{ width: auto; overflow-x: auto; }}
+  figure:not(.narrow) svg {{ max-width: 46rem; }}
 }}
 @page {{ size: A4; margin: 12mm; }}
 @media print {{

@@ -13,6 +13,7 @@ from synth.frame.exhibits import Chart, Exhibit, Sentence
 from synth.frame.printed_numbers import of_ten_thousand, speed
 from synth.retarder.case_names import file_stem
 from synth.retarder.case_result import CaseResult
+from synth.retarder.exit_bins import prediction_origin
 from synth.retarder.pareto.pareto_front import ParetoFront
 from synth.retarder.shown_case import ShownCase, shown_case
 from synth.simulation.exit_statistics import OVERSPEED_M_S
@@ -21,12 +22,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-HOW_TO_READ: Final = (
+RUN: Final = (
     "Left: one run of mean friction. The colour and the number tell the stage in force; thin lines are the switching "
     "lines of that stage, where it is in force; grey: the retarders; the dot: where the cut leaves. Right: the speed "
-    "axis enlarged around the target, with the simulated cuts and the density that the table predicts without "
-    "simulation; the step of the grid widens its peak, most at low targets."
+    "axis enlarged around the target, with the simulated cuts and the density that is"
 )
+GRID: Final = "The step of the grid widens the peak of that density, most at low targets."
 MORE: Final = (
     "Further pictures of every table are drawn by: retarder-synth plot DIR. They show its switching lines in all "
     "stages, its switching surfaces, and passes of low and high friction."
@@ -35,7 +36,7 @@ MORE: Final = (
 
 def case_pictures(cases: Sequence[CaseResult]) -> Iterator[Exhibit]:
     """A picture of each case."""
-    yield Sentence(HOW_TO_READ)
+    yield Sentence(f"{RUN} {prediction_origin(cases)}. {GRID}")
     yield from (case_chart(case) for case in cases)
     yield Sentence(MORE)
 
