@@ -36,6 +36,10 @@ SHOWN_POINTS = 5
 def inspect_command(source: Path, output: Path | None, as_json: bool) -> int:
     """Print the contents of the tables in `source`, and what controller code is there, and on a page in `output`;
     `TableError` for damage."""
+    if output is not None:
+        from synth.cli.printed_report import require_place
+
+        require_place("inspect", output)
     code = code_at(source)
     aims, passages = read_aims(source), read_passages(source)
     nothing_else = bool(code or aims or passages) and not holds_tables(source)

@@ -10,8 +10,15 @@ from synth.frame.creation_time import creation_time, require_date
 from synth.frame.page.document import Stamp
 from synth.frame.page.printed_document import printed_document
 from synth.frame.perform import PAGE
-from synth.frame.results_directory import results_directory
+from synth.frame.results_directory import require_own, results_directory
 from synth.frame.terminal.printed_page import Exhibit
+
+
+def require_place(command: str, output: Path) -> None:
+    """`InputError` where `output` shows before any work that a page of `command` cannot go there."""
+    require_date()
+    if output.is_dir():
+        require_own(output, command)
 
 
 def write_report(
@@ -20,7 +27,6 @@ def write_report(
     """Write `page` of `command` about `source` into `output`; `InputError` where that is not its own directory."""
     from synth.retarder.forms.table_file import files_at
 
-    require_date()
     stamp = Stamp(title, creation_time(), version("retarder-synth"))
     with results_directory(output, command, files_at(source)) as directory:
         directory.write(PAGE, printed_document(stamp, page, steps).encode())

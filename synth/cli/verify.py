@@ -20,6 +20,10 @@ def verify_command(source: Path, passes: int, seed: int, output: Path | None, as
     from synth.checker.finding import NothingToVerifyError
     from synth.checker.verdict import verify
 
+    if output is not None:
+        from synth.cli.printed_report import require_place
+
+        require_place("verify", output)
     try:
         verdict = verify(source, passes, seed)
     except NothingToVerifyError as fault:
@@ -27,10 +31,11 @@ def verify_command(source: Path, passes: int, seed: int, output: Path | None, as
         return INPUT_FAULT
     if output is not None:
         from synth.cli.printed_report import write_report
+        from synth.frame.terminal.printed_page import Exhibit
         from synth.frame.terminal.printed_page import Verdict as Verdicted
 
         *lines, last = words(verdict)
-        page = (Verdicted(verdict.code == 0, last), *lines)
+        page: list[Exhibit] = [Verdicted(verdict.code == 0, last), *lines]
         write_report("verify", f"Check of {source.name}", page, source, output, steps(verdict))
     if as_json:
         print(json.dumps(document(verdict), indent=1, ensure_ascii=False))

@@ -15,7 +15,7 @@ import pytest
 from plant_models.library import SourcedValue
 from synth.frame.command import Verdict
 from synth.frame.exhibits import Chart, Column, Sentence, Table, exhibits_of
-from synth.frame.page.inline_svg import inline_svg
+from synth.frame.page.inline_svg import inline_svg, shorter
 from synth.frame.page.markup import VOID, Markup, element
 from synth.frame.page.page_table import MOST_COLUMNS, MOST_ROWS, on_screen, table_or_words
 from synth.frame.page.told_page import page_of
@@ -281,6 +281,11 @@ def test_a_drawing_is_a_part_of_the_page_and_meets_no_other() -> None:
         '</clipPath></defs><g><g clip-path="url(#one-p1)"><text>0.123456 &lt;id&gt;</text></g>'
         '<use xlink:href="#one-p1" /></g></svg>'
     )
+
+
+def test_places_are_told_to_a_hundredth_and_factors_whole() -> None:
+    assert shorter("M 0.123456 1 \nL 12.3 -4.567891\nz") == "M 0.12 1 L 12.3 -4.56 z"
+    assert shorter("translate(0 138.246) scale(0.004321 -0.004321)") == "translate(0 138.246) scale(0.004321 -0.004321)"
 
 
 def test_a_table_shows_nine_columns_and_folds_the_rest() -> None:

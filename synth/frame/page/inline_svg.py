@@ -51,6 +51,8 @@ def inline_svg(svg: bytes, name: str, prefix: str) -> InlineDrawing:
 
 def shorter(places: str) -> str:
     """Places to a hundredth, a line instead of many."""
+    if "scale" in places or "matrix" in places:
+        return places  # a factor is no place
     return " ".join(FINE.sub(r"\1", places).split())
 
 

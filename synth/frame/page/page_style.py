@@ -7,11 +7,11 @@ from synth.frame.picture.picture import DARKENED
 STYLE = f"""
 :root {{ color-scheme: light dark; --ground: #fff; --ink: #1d2530; --soft: #5b6673; --line: #d5dbe2; --pale: #f4f6f8;
   --blue: #0072b2; --good: #009e73; --bad: #d55e00; --open: #e69f00; --bad-ink: #a33f00; --mark: #7a4b00;
-  --assumed: #fff6dd; --outside: #e9ebee; --outside-ink: #4a535d; --drawing: none; }}
+  --assumed: #fff6dd; --drawing: none; }}
 @media (prefers-color-scheme: dark) {{
   :root {{ --ground: #141414; --ink: #e4e7ea; --soft: #a3adb8; --line: #3a4149; --pale: #20252b; --blue: #6cb8ec;
     --good: #1fbf91; --bad: #f0813a; --open: #e6b04a; --bad-ink: #ff9d66; --mark: #f0c26b; --assumed: #35301d;
-    --outside: #2a2e33; --outside-ink: #b4bcc4; --drawing: {DARKENED}; }}
+    --drawing: {DARKENED}; }}
 }}
 * {{ box-sizing: border-box; }}
 body {{ margin: 0 auto; padding: 1.25rem 1.25rem 4rem; max-width: 92rem; background: var(--ground); color: var(--ink);
@@ -53,7 +53,6 @@ tbody th {{ font-weight: 600; white-space: nowrap; background: var(--ground); po
 .cases td {{ text-align: right; white-space: nowrap; }}
 .cases td.words {{ text-align: left; white-space: normal; min-width: 6.5rem; }}
 .cases thead th {{ text-align: center; min-width: 4.2rem; }}
-.infeasible td, .infeasible th {{ background: var(--outside); color: var(--outside-ink); }}
 .bad {{ font-weight: 700; color: var(--bad-ink); }}
 .assumed td, .assumed th {{ background: var(--assumed); }}
 .mark {{ font-weight: 700; color: var(--mark); }}
