@@ -306,6 +306,7 @@ def test_a_table_shows_nine_columns_and_folds_the_rest() -> None:
     assert html.count(">A</th>") == 2
     assert all(html.count(f">figure {i}<") == 1 for i in range(12))
     assert "6 more figures of each row" in html
+    assert on_screen(columns[:2] + columns[-1:]) == (columns[:2] + columns[-1:], ())
     many = table_or_words(Table("t", "T", columns[:2], [row] * (MOST_ROWS + 1)))
     assert many.startswith("<details><summary>T: 25 rows</summary>")
 

@@ -46,7 +46,9 @@ def parts(of: Table) -> list[Markup]:
 
 
 def on_screen(columns: Sequence[Column]) -> tuple[tuple[Column, ...], tuple[Column, ...]]:
-    """At most `MOST_COLUMNS` of `columns`, and the rest: details, then those that a reader can spare most."""
+    """All of `columns`, or `MOST_COLUMNS` at most and the rest: details, then those that a reader can spare most."""
+    if len(columns) <= MOST_COLUMNS:
+        return tuple(columns), ()
     kept = [column for column in columns if not column.detail] or list(columns)
     while len(kept) > MOST_COLUMNS:
         kept.remove(max(reversed(kept), key=lambda column: column.spare))

@@ -63,8 +63,8 @@ def first_screen(cases: Sequence[CasePermissions]) -> Iterator[Exhibit]:
     best = min(found, key=lambda name: found[name])
     given = [result for case in cases for result in case.results if result.permission.value == best]
     smaller = sum(result.ratio_ci95[1] < 1.0 for result in given)
-    step = "Leave the hardware as it is: no permission makes the rms smaller in the median case."
-    if found[best] < 1.0:
+    step = "Leave the hardware as it is: no permission makes the rms smaller for sure in more than half of the cases."
+    if found[best] < 1.0 and 2 * smaller > len(given):
         step = (
             f"Ask what '{best}' costs: it gives {found[best]:.2f} times the rms in the median case, and makes it "
             f"smaller for sure in {smaller} of {counted(len(given), 'case')}."

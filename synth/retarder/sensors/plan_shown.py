@@ -60,9 +60,9 @@ def tiles(found: LayoutResults) -> Tiles:
     shown, of_radar = found.shown, found.shown.errors.over(found.radar)
     number = Tile(
         f"{shown.deciding + 1} sensors",
-        f"are the fewest planned for an rms of {found.wanted_rms_m_s:g} m/s"
+        f"are the fewest planned for an rms of {found.wanted_rms_m_s:.4f} m/s"
         if found.chosen is not None
-        else f"are the most that were asked for; an rms of {found.wanted_rms_m_s:g} m/s is wanted",
+        else f"are the most that were asked for; an rms of {found.wanted_rms_m_s:.4f} m/s is wanted",
     )
     rms = Tile(f"{shown.errors.rms.value:.3f} m/s", "is their rms error at the exit", found.is_reached(shown))
     radar = Tile(f"{of_radar.value:.2f} times", f"the rms of the radar, {found.radar.rms.value:.3f} m/s")
