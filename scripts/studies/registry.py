@@ -35,6 +35,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         8.0,
         "reference/results.md",
         "scripts.studies.book",
+        "scripts.studies.book_picture",
     ),
     Study(
         "command-times",

@@ -157,6 +157,10 @@ def test_validate_confirms_what_the_tables_say(
         assert each["rms_m_s"]["value"] == table.validated.rms_m_s  # the same passes
         assert each["stated_rms_m_s"] == each["rms_m_s"]
         assert (each["confirmed"], each["same_config"]) == (True, True)
+    page = (tmp_path / "one" / "report.html").read_text(encoding="utf-8").partition("<h2>")[0]
+    n = len(found["tables"]["tables"])
+    assert f"<strong>{n} of {n}</strong><p>files state an rms that these passes confirm</p>" in page
+    assert "What to do first" not in page
     given = ("validate", tuned / "tables" / f"{ID}.json", "--config", two_classes, "-o", tmp_path / "other")
     other = command(*given, "--seed", 7, "--passes", 4000)
     assert other.code == 0
@@ -217,6 +221,8 @@ def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_cla
     ran = command("validate", path, "--config", two_classes, "-o", tmp_path / "out")
     assert ran.code == 1
     assert "predicted / simulated rms 0.2" in ran.out
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8").partition("<h2>")[0]
+    assert "Do not load a table that misses a limit" in page
 
 
 def test_validate_refuses_a_plant_that_does_not_fit(command: Command, tuned: Path, tmp_path: Path) -> None:

@@ -25,11 +25,6 @@ class HumpedRun:
     config: ResolvedTrial
     found: TrainOutcomes
 
-    @property
-    def category_names(self) -> tuple[str, ...]:
-        """Names of the weight categories in their places."""
-        return tuple(member.label for member in self.config.categories.members)
-
 
 def runs_in(folders: Sequence[Path]) -> tuple[HumpedRun, ...]:
     """The runs in these directories, all with the same trains. `InputError`, `TableError` for a damaged file."""

@@ -80,6 +80,7 @@ def drifted(found: Watch) -> Iterator[Exhibit]:
         return
     for sentence in sentences(found, drift):
         yield Sentence(sentence, brief=True)
+    yield Sentence(advice(drift), brief=True, to_do=True)
     yield Table("exits", "Exits before and since", EXITS, list(exit_rows(drift)))
     yield Sentence(
         "Each cause at its own most likely size and beginning; the logarithm of its likelihood over that of no drift."
@@ -126,14 +127,18 @@ def sentences(found: Watch, drift: Drift) -> Iterator[str]:
         yield f"Drift: {cause.title} {size} {since}."
         yield f"Next best: {next_best}, 1 to {odds(diagnosis.odds)}."
         yield cost_sentence(drift)
-        yield f"{cause.remedy.value.upper()}: {cause.advice}."
         return
     yield f"Something drifted {since}; which cannot be decided yet."
-    yield (
-        f"Most likely: {cause.title} ({size}), only {diagnosis.odds:.3g} times as likely as {next_best}. Log more "
-        "passes, or look at both."
-    )
+    yield (f"Most likely: {cause.title} ({size}), only {diagnosis.odds:.3g} times as likely as {next_best}.")
     yield cost_sentence(drift)
+
+
+def advice(drift: Drift) -> str:
+    """What to do about it."""
+    diagnosis, cause = drift.diagnosis, drift.diagnosis.first.cause
+    if diagnosis.decided:
+        return f"{cause.remedy.value.upper()}: {cause.advice}."
+    return f"Log more passes, or look at both: {cause.title}, and {diagnosis.gains[1].cause.title}."
 
 
 def odds(value: float) -> str:
