@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from synth.api.as_a_command import as_a_command
 from synth.api.problems import Config, load_problem, problem_sha256, resolved, usual_resolution
 from synth.frame.creation_time import creation_time
+from synth.frame.input_error import InputError
 from synth.problem.problem import Problem
 from synth.problem.requirement_found import Finding
 from synth.problem.resolution import Resolution, finer_for_check
@@ -23,6 +24,7 @@ from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED
 from synth.solver.tabulate import tabulate as tabulate_lines
 from tuning_tables import ControllerTable
+from tuning_tables.stage import HIGHEST_DEGREE
 
 DEGREE = FitSettings().degree
 
@@ -109,7 +111,7 @@ def fit(solution: Solution, degree: int = DEGREE) -> FittedLines:
     solution
         What `solve` found.
     degree
-        Degree of the polynomials, 1 to 9.
+        Degree of the polynomials, 0 to 9.
 
     Returns
     -------
@@ -119,6 +121,8 @@ def fit(solution: Solution, degree: int = DEGREE) -> FittedLines:
 
     Raises
     ------
+    InputError
+        A degree that no table has.
     PlantError
         The finer grid is too coarse as well.
     InvalidTable
@@ -133,6 +137,8 @@ def fit(solution: Solution, degree: int = DEGREE) -> FittedLines:
     >>> lines.problem == problem
     True
     """
+    if not 0 <= degree <= HIGHEST_DEGREE:
+        raise InputError(f"degree is {degree}; it must be a whole number from 0 to {HIGHEST_DEGREE}")
     problem = Problem(solution.chain.plant, solution.aim)
     check = check_chain(problem.plant, finer_for_check(solution.chain.resolution))
     kept = checked_design(

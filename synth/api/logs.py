@@ -153,7 +153,7 @@ def log_passes(
     Raises
     ------
     ValueError
-        No pass is asked for.
+        No pass is asked for, a negative seed, or a table with stages that the position lacks.
 
     Examples
     --------

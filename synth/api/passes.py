@@ -24,6 +24,9 @@ from tuning_tables import ControllerTable, Predicted
 PASSES, FEWEST_PASSES = 20_000, 1_000
 """Passes of a simulation unless told otherwise, and the fewest that figures with intervals need."""
 
+MOST_FRICTION = 5.0
+"""No cut has more; the friction of one is drawn around 1."""
+
 
 @dataclass(frozen=True)
 class Simulated:
@@ -163,8 +166,8 @@ def simulate(table: ControllerTable, problem: Problem, passes: int = PASSES, see
     ------
     InputError
         Fewer passes than intervals need.
-    PlantError
-        The table has stages that the position lacks.
+    ValueError
+        A negative seed, or a table with stages that the position lacks.
 
     Examples
     --------
@@ -193,7 +196,7 @@ def trace(
     problem
         The plant.
     friction
-        Friction factor of the cut (1: as usual), in place of the one that was drawn.
+        Friction factor of the cut, 0 to 5 (1: as usual), in place of the one that was drawn.
     seed, index
         Pass `index`, from 0 on, of those that `simulate` runs with this seed.
 
@@ -201,6 +204,13 @@ def trace(
     -------
     PassTrace
         The pass, event by event.
+
+    Raises
+    ------
+    InputError
+        A friction factor that no cut has.
+    ValueError
+        A negative seed or index, or a table with stages that the position lacks.
 
     Examples
     --------
@@ -211,5 +221,7 @@ def trace(
     >>> one.stalled, bool(one.exit_speed_m_s == one.speed_m_s[-1])
     (False, True)
     """
+    if friction is not None and not 0.0 <= friction <= MOST_FRICTION:
+        raise InputError(f"friction is {friction!r}; it must be a factor from 0 to {MOST_FRICTION:g}")
     drawn = stratified_passes(seed, index, 1)
     return trace_of(problem.plant, TableController(table), drawn, 0, cut_factor=friction)

@@ -64,7 +64,7 @@ def read_logs(
     Raises
     ------
     InvalidLog
-        No pass is left.
+        No file is named, or no pass is left.
 
     Examples
     --------
@@ -96,6 +96,8 @@ def read_logs(
             refused.append(FileFault(os.fspath(path), f"{path}: no pass of it is sound; {told[0].sentence}"))
         else:
             found.append((path, log))
+    if not found and not refused:
+        raise InvalidLog("no log is named; name a file or a folder.")
     if not found:
         more = f" (and {len(refused) - 1} more files)" if len(refused) > 1 else ""
         raise InvalidLog(f"no measured pass can be used: {refused[0].sentence}{more}")
