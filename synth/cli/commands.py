@@ -9,12 +9,7 @@ from typing import Annotated
 import typer
 
 from synth.cli import hump_commands, sensors_commands, sweep_commands
-from synth.cli.arguments import (
-    Config,
-    ExportSource,
-    SourceOrDirectory,
-    with_names,
-)
+from synth.cli.arguments import Config, ExportSource, SourceOrDirectory
 from synth.cli.guide import TOP
 from synth.cli.init_commands import add_init_command
 from synth.cli.listed import COMMANDS
@@ -37,7 +32,7 @@ def run(arguments: list[str]) -> int:
     from synth.frame.terminal.telling import INPUT_FAULT, say
 
     try:
-        code = app(with_names(arguments), prog_name="retarder-synth", standalone_mode=False)
+        code = app(arguments, prog_name="retarder-synth", standalone_mode=False)
     except typer.TyperException as fault:
         if not arguments:
             typer.echo(fault.format_message(), err=True)

@@ -33,7 +33,7 @@ TOP: Final = CommandGuide(
         "loop": Shown("loop out -o out/loops", "loop.md"),
         "inspect": Shown("inspect out", "table-format.md"),
         "export": Shown("export out --format st -o out/st", "controllers.md"),
-        "init": Shown("init --hump > my-trial.toml", "own-types.md"),
+        "init": Shown("init trial -o my-trial.toml", "own-types.md"),
         "study": Shown("study --list", "studies.md"),
     },
 )
@@ -41,7 +41,7 @@ TOP: Final = CommandGuide(
 HUMP: Final = CommandGuide(
     "hump",
     {
-        "The hump": ("make", "check", "routes", "draw", "export", "schema", "design"),
+        "The hump": ("make", "check", "routes", "draw", "export", "design"),
         "Trains over it": ("simulate", "speed", "capacity", "compare"),
     },
     {
@@ -50,7 +50,6 @@ HUMP: Final = CommandGuide(
         "routes": Shown("hump routes my-hump.toml", "hump-file.md"),
         "draw": Shown("hump draw my-hump.toml -o out/hump --track 7", "hump-file.md"),
         "export": Shown("hump export my-hump.toml -o my-hump.xlsx", "hump-file.md"),
-        "schema": Shown("hump schema > hump.schema.json", "hump-file.md"),
         "design": Shown("hump design my-hump.toml --speed 1.4", "hump-trials.md"),
         "simulate": Shown("hump simulate my-trial.toml --trains 1000 -o out/mine", "hump-trials.md"),
         "speed": Shown("hump speed my-trial.toml --train 3", "hump-trials.md"),

@@ -124,14 +124,6 @@ def export_command(source: Path, output: Path) -> int:
     return OK
 
 
-def schema_command() -> int:
-    """Print the JSON Schema of hump files."""
-    from plant_models.library.hump_schema import hump_schema
-
-    print(json.dumps(hump_schema(), indent=1, ensure_ascii=False))
-    return OK
-
-
 def drawn_route(graph: HumpGraph, track: int | None) -> Route:
     """The route to `track` from the first crest that reaches it; without a track, to the one with the most turning."""
     from synth.hump.route_to import route_to

@@ -73,12 +73,4 @@ def export(
     return export_command(source, output)
 
 
-@app.command()
-def schema() -> int:
-    """Print the JSON Schema of hump files, for editors that check TOML by it."""
-    from synth.cli.hump import schema_command
-
-    return schema_command()
-
-
 add_listed(app, HUMP)

@@ -95,38 +95,38 @@ def read_hump_file(folder: Path, name: str) -> str:
 
 def read_trial(folder: Path) -> str:
     """As `hump simulate`."""
-    SIMULATE.resolve(asked_of(SIMULATE, SIMULATE.options(config=folder / "trial.toml"), "init --hump"))
+    SIMULATE.resolve(asked_of(SIMULATE, SIMULATE.options(config=folder / "trial.toml"), "init trial"))
     return ""
 
 
 def read_short_hump(folder: Path) -> str:
     """As `hump make`."""
-    MAKE.resolve(asked_of(MAKE, MAKE.options(config=folder / "short.toml"), "init --short-hump"))
+    MAKE.resolve(asked_of(MAKE, MAKE.options(config=folder / "short.toml"), "init short-hump"))
     return ""
 
 
 def read_aim(folder: Path) -> str:
     """As `aim`."""
-    AIM.resolve(asked_of(AIM, AIM.options(config=folder / "aim.toml"), "init --aim"))
+    AIM.resolve(asked_of(AIM, AIM.options(config=folder / "aim.toml"), "init aim"))
     return ""
 
 
 def read_computer(folder: Path) -> str:
     """As `computer`."""
-    COMPUTER.resolve(asked_of(COMPUTER, COMPUTER.options(config=folder / "computer.toml"), "init --computer"))
+    COMPUTER.resolve(asked_of(COMPUTER, COMPUTER.options(config=folder / "computer.toml"), "init computer"))
     return ""
 
 
 def read_sweep(folder: Path) -> str:
     """As `sweep run`."""
-    SWEEP_RUN.resolve(asked_of(SWEEP_RUN, SWEEP_RUN.options(config=folder / "sweep.toml"), "init --sweep"))
+    SWEEP_RUN.resolve(asked_of(SWEEP_RUN, SWEEP_RUN.options(config=folder / "sweep.toml"), "init sweep"))
     return ""
 
 
 def read_sensors(folder: Path) -> str:
     """As `sensors tune`."""
     typed = SensorsTuneOptions(config=folder / "sensors.toml", workers=1)
-    SENSORS_TUNE.resolve(asked_of(SENSORS_TUNE, typed, "init --sensors"))
+    SENSORS_TUNE.resolve(asked_of(SENSORS_TUNE, typed, "init point-sensors"))
     return ""
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from synth.cli.file_kinds import FILE_KINDS
 from tests.sweep.conftest import MEASURED as MEASURED_SPEED
 from tests.sweep.conftest import PLANT, SWEEP
 from tests.synth.hump.making.test_hump_make import SMALL as SHORT
@@ -47,27 +48,14 @@ class Order:
         return f"{self.words} -o {self.output}" if self.output else self.words
 
 
-KINDS = (
-    "retarder",
-    "position",
-    "car",
-    "sensor",
-    "wheel-sensor",
-    "sensors",
-    "weight-categories",
-    "aim",
-    "hump",
-    "short-hump",
-    "computer",
-    "sweep",
-)
 BOOK, PARK = "park/book.h5", "--config park.toml"
 LOG = "validated/log.h5 --config park.toml"
 PASSAGES = "passages/tables/gondola-4-22t-to-2-m-s.json"
 
 ORDERS: tuple[Order, ...] = (
     Order("init"),
-    *(Order(f"init --{kind}") for kind in KINDS),
+    *(Order(f"init {kind.word}") for kind in FILE_KINDS),
+    *(Order(f"init {kind.word} --schema") for kind in FILE_KINDS),
     Order("init --list"),
     Order("init --for trial.toml --position-number 3"),
     Order("tune park.toml --workers 1", "park"),
@@ -106,7 +94,6 @@ ORDERS: tuple[Order, ...] = (
     Order("hump routes medium"),
     Order("hump draw medium", "drawn"),
     Order("hump export medium", "medium.railml"),
-    Order("hump schema"),
     Order("hump simulate trial.toml", "humped"),
     Order("hump simulate humped/inputs/config.toml", "humped"),
     Order("hump simulate trial.toml --trains 2", "humped-short"),

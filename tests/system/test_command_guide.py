@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 import typer.main
 
-from synth.cli.arguments import with_names
 from synth.cli.commands import app
 from synth.cli.guide import GUIDES
 from synth.frame.command_guide import PAGES, CommandGuide
@@ -37,7 +36,7 @@ def test_every_command_has_its_section_and_its_example(guide: CommandGuide) -> N
 def test_an_example_can_be_typed(example: str) -> None:
     """Every word of it is a command, an option, or a value that an option takes; nothing is run."""
     command: Any = typer.main.get_command(app)
-    words = with_names(shlex.split(example.partition(">")[0]))
+    words = shlex.split(example.partition(">")[0])
     while hasattr(command, "commands"):
         context = command.make_context("retarder-synth", words, resilient_parsing=True)
         _, command, words = command.resolve_command(context, words)

@@ -450,17 +450,16 @@ def test_plot_draws_without_solving(command: Command, tuned: Path, two_classes: 
 
 
 def test_init_prints_what_tune_reads(command: Command) -> None:
-    ran = command("init", "--retarder", "t-50-bunch")
+    ran = command("init", "configuration", "t-50-bunch")
     assert ran.code == 0
     assert parse_config(ran.out, "out").retarder.name == "t-50-bunch"
-    assert json.loads(command("init", "--json").out)["configuration"] == command("init").out
+    assert json.loads(command("init", "--json").out)["text"] == command("init").out
     assert "knp-5-bunch" in command("init", "--list").out
-    assert "did you mean t-50-bunch?" in command("init", "--retarder", "t-50-bu").sentence
+    assert "did you mean t-50-bunch?" in command("init", "configuration", "t-50-bu").sentence
 
 
 def test_init_prints_a_configuration_with_point_sensors(command: Command) -> None:
-    bare, named = command("init", "--sensors"), command("init", "--sensors", "knp-5-bunch")
+    bare, named = command("init", "point-sensors"), command("init", "point-sensors", "knp-5-bunch")
     assert [parse_config(ran.out, "out").retarder.name for ran in (bare, named)] == ["rnz-2m-dumper", "knp-5-bunch"]
-    assert command("init", "--wheel-sensor").out.startswith("# A wheel sensor of retarder-synth")
-    assert "did you mean knp-5-bunch?" in command("init", "--sensors", "knp-5").sentence
-    assert "one file at a time" in command("init", "--sensors", "--sensor").sentence
+    assert command("init", "wheel-sensor").out.splitlines()[1].startswith("# A wheel sensor of retarder-synth")
+    assert "did you mean knp-5-bunch?" in command("init", "point-sensors", "knp-5").sentence

@@ -93,7 +93,7 @@ def test_export_in_another_form_and_read_it(command: Command, file: Path, tmp_pa
 
 
 def test_the_schema_is_printed(command: Command) -> None:
-    assert json.loads(command("hump", "schema").out) == hump_schema()
+    assert json.loads(command("init", "hump", "--schema").out) == hump_schema()
 
 
 @pytest.mark.parametrize(

@@ -232,7 +232,7 @@ def test_what_needs_lines_refuses_the_table_in_one_sentence(
 
 REFUSED = {
     "no sensors": (("[sensors]\npath_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]\n", ""),
-                   "the section [sensors] is missing; 'retarder-synth init --sensors' prints one"),
+                   "the section [sensors] is missing; 'retarder-synth init point-sensors' prints one"),
     "chance constraint": (("[grid]", f"[criterion]\np_overspeed = 0.1\n{MEASURED}[grid]"), "criterion.p_overspeed and"),
     "first sensor": (("[-4.5, 0.0", "[0.5, 1.0"), "sensors.path_m begins at 0.5; the first sensor must stand at"),
 }  # fmt: skip

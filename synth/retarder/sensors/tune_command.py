@@ -38,7 +38,7 @@ LIMITS_OF_USE = (
 
 
 def read(text: str, place: str) -> ResolvedConfig:
-    """The configuration in `text`; the one that `init --sensors` prints where there is no file."""
+    """The configuration in `text`; the one that `init point-sensors` prints where there is no file."""
     from synth.retarder.configuration.point_sensors.template import built_in_sensors
 
     return built_in_sensors() if place == BUILT_IN else parse_config(text, place)
@@ -49,8 +49,8 @@ def resolve(asked: Asked[ResolvedConfig, SensorsTuneOptions]) -> AskedTune[Senso
     config, place = asked.settings, asked.place
     if config.sensors is None:
         raise InputError(
-            f"{place}: the section [sensors] is missing; 'retarder-synth init --sensors' prints one to start from, and "
-            "'retarder-synth tune' makes tables for the radar"
+            f"{place}: the section [sensors] is missing; 'retarder-synth init point-sensors' prints one to start from, "
+            "and 'retarder-synth tune' makes tables for the radar"
         )
     if config.criterion.requirement is not None:
         raise InputError(

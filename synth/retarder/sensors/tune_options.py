@@ -12,5 +12,5 @@ class SensorsTuneOptions(SolvingOptions):
     """Options of the command line."""
 
     config: Path | None = word_option(
-        BY_PLACE, "CONFIG.toml", None, "With [sensors]; what 'init --sensors' prints unless given."
+        BY_PLACE, "CONFIG.toml", None, "With [sensors]; what 'init point-sensors' prints unless given."
     )
