@@ -52,7 +52,7 @@ ORDERS = (
     Order("tune, plain kernels", ("tune",), plain=True),
     Order("aim", ("aim",)),
     Order("hump simulate large, 1000 trains", ("hump", "simulate", "large", "--trains", "1000")),
-    Order("sensors plan", ("sensors", "plan")),
+    Order("sensors", ("sensors",)),
     Order("permissions", ("permissions",)),
     Order("tune, commands at any time", ("tune", "any-time.toml")),
     Order("computer", ("computer",)),

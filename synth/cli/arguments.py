@@ -13,6 +13,3 @@ SourceOrDirectory = Annotated[
 ExportSource = Annotated[
     Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or a folder of tables.")
 ]
-Config = Annotated[
-    Path | None, typer.Option("--config", metavar="C", help="Configuration with the plant; built-in unless given.")
-]

@@ -12,28 +12,30 @@ from pathlib import Path
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, Final
 
+from synth.frame.completion import library_names
+
 if TYPE_CHECKING:
     from plant_models.library import Kind
-
-
-def no_names() -> tuple[str, ...]:
-    """There is one file of the kind."""
-    return ()
 
 
 @dataclass(frozen=True)
 class FileKind:
     """A kind of files; `word` as it is typed, `title` of such a file, `help` what it is for.
 
-    `text`: the file with the name that is given, "" for none; `InputError`. `schema`: its JSON Schema. `names`: what
-    the library has of it.
+    `text`: the file with the name that is given, "" for none; `InputError`. `schema`: its JSON Schema. `folder`: of
+    the library, where the names are; "" where there is one file alone.
     """
 
     word: str
     title: str
     text: Callable[[str], str]
     schema: Callable[[], Mapping[str, Any]]
-    names: Callable[[], tuple[str, ...]] = no_names
+    folder: str = ""
+
+    @property
+    def names(self) -> list[str]:
+        """What may be given as a name, of the library."""
+        return library_names(self.folder) if self.folder else []
 
     @property
     def schema_name(self) -> str:
@@ -89,13 +91,6 @@ def point_sensors_text(name: str) -> str:
     return default_sensors_toml(require_held("retarder-synth init point-sensors", POSITIONS, name, BUILT_IN))
 
 
-def library_names(folder: str) -> tuple[str, ...]:
-    """The types of the library in `folder`."""
-    from plant_models.library import BUILT_IN
-
-    return BUILT_IN.names(kind_of(folder))
-
-
 def kind_of(folder: str) -> Kind:
     """The kind of types whose files lie in `folder`."""
     from plant_models.library.type_file import HUMPS, KINDS
@@ -120,9 +115,7 @@ def type_schema(folder: str) -> Mapping[str, Any]:
 
 def of_library(word: str, title: str, folder: str) -> FileKind:
     """A kind of types."""
-    return FileKind(
-        word, title, partial(type_text, folder), partial(type_schema, folder), partial(library_names, folder)
-    )
+    return FileKind(word, title, partial(type_text, folder), partial(type_schema, folder), folder)
 
 
 def hump_text(name: str) -> str:
@@ -154,14 +147,14 @@ FILE_KINDS: Final = (
         "Configuration of tables",
         configuration_text,
         partial(model_schema, "Configuration of retarder-synth", SETTINGS),
-        partial(library_names, "positions"),
+        "positions",
     ),
     FileKind(
         "point-sensors",
         "Configuration of tables for point sensors",
         point_sensors_text,
         partial(model_schema, "Configuration with point sensors of retarder-synth", SETTINGS),
-        partial(library_names, "positions"),
+        "positions",
     ),
     declared(
         "sweep",
@@ -193,7 +186,7 @@ FILE_KINDS: Final = (
         "synth.hump.making.short_hump:ShortHump",
         "synth.hump.making.template:example_short_toml",
     ),
-    FileKind("hump", "Hump file", hump_text, hump_schema, partial(library_names, "humps")),
+    FileKind("hump", "Hump file", hump_text, hump_schema, "humps"),
     of_library("position", "Position of retarders", "positions"),
     of_library("retarder", "Type of retarder", "retarders"),
     of_library("car", "Type of car", "cars"),

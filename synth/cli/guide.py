@@ -11,7 +11,7 @@ TOP: Final = CommandGuide(
     "",
     {
         "Design tables": ("init", "tune", "aim", "sensors", "sweep"),
-        "Check and understand them": ("inspect", "plot", "validate", "verify", "loop", "sensitivity", "permissions"),
+        "Check and understand them": ("inspect", "validate", "verify", "sensitivity", "permissions"),
         "The whole hump": ("hump", "computer"),
         "From measured passes": ("identify", "retune", "watch", "replay"),
         "For controllers": ("export",),
@@ -19,6 +19,7 @@ TOP: Final = CommandGuide(
     },
     {
         "tune": Shown("tune my.toml -o out", "results.md"),
+        "sensors": Shown("sensors my.toml --sensors 3-6", "point-sensors.md"),
         "aim": Shown("aim --hump my-hump.toml --track 7 -o out/aim", "aim.md"),
         "validate": Shown("validate out --passes 50000 --seed 7", "limits.md"),
         "sensitivity": Shown("sensitivity my.toml -o out/sensitivity", "sensitivity.md"),
@@ -29,9 +30,7 @@ TOP: Final = CommandGuide(
         "replay": Shown("replay log.csv --table out/book.h5 -o out/replay", "pass-log.md"),
         "retune": Shown("retune log.csv --config my.toml -o out/retune", "retune.md"),
         "verify": Shown("verify out", "verification.md"),
-        "plot": Shown("plot out -o out/pictures", "method.md"),
-        "loop": Shown("loop out -o out/loops", "loop.md"),
-        "inspect": Shown("inspect out", "table-format.md"),
+        "inspect": Shown("inspect out -o out/pictures", "table-format.md"),
         "export": Shown("export out --format st -o out/st", "controllers.md"),
         "init": Shown("init trial -o my-trial.toml", "own-types.md"),
         "study": Shown("study --list", "studies.md"),
@@ -49,21 +48,12 @@ HUMP: Final = CommandGuide(
         "check": Shown("hump check my-hump.toml", "hump-file.md"),
         "routes": Shown("hump routes my-hump.toml", "hump-file.md"),
         "draw": Shown("hump draw my-hump.toml -o out/hump --track 7", "hump-file.md"),
-        "export": Shown("hump export my-hump.toml -o my-hump.xlsx", "hump-file.md"),
+        "export": Shown("hump export my-hump.toml --format xlsx -o out/sheets", "hump-file.md"),
         "design": Shown("hump design my-hump.toml --speed 1.4", "hump-trials.md"),
         "simulate": Shown("hump simulate my-trial.toml --trains 1000 -o out/mine", "hump-trials.md"),
         "speed": Shown("hump speed my-trial.toml --train 3", "hump-trials.md"),
         "capacity": Shown("hump capacity my-trial.toml --exit-std 0.35,0.2,0.05", "hump-trials.md"),
         "compare": Shown("hump compare out/today out/new -o out/compared", "hump-trials.md"),
-    },
-)
-
-SENSORS: Final = CommandGuide(
-    "sensors",
-    {"Commands": ("plan", "tune")},
-    {
-        "plan": Shown("sensors plan my.toml --sensors 3-6", "point-sensors.md"),
-        "tune": Shown("sensors tune my-sensors.toml -o out/sensors", "point-sensors.md"),
     },
 )
 
@@ -77,5 +67,5 @@ SWEEP: Final = CommandGuide(
     },
 )
 
-GUIDES: Final[Mapping[str, CommandGuide]] = {guide.words: guide for guide in (TOP, HUMP, SENSORS, SWEEP)}
+GUIDES: Final[Mapping[str, CommandGuide]] = {guide.words: guide for guide in (TOP, HUMP, SWEEP)}
 """By the words of the group."""

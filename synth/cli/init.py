@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.cli.file_kinds import FILE_KINDS, FileKind
+from synth.frame.terminal.manner import Manner
 
 if TYPE_CHECKING:
     from plant_models.library import Kind
@@ -24,14 +25,14 @@ class AskedFile:
     output: Path | None = None
 
 
-def init_command(asked: AskedFile, as_json: bool) -> int:
+def init_command(asked: AskedFile, manner: Manner) -> int:
     """Print or write the file, or its schema; `InputError` for a kind or a name that does not exist."""
     kind = kind_called(asked.kind)
     if asked.schema:
         if asked.name:  # what has no such file has no schema of it
             kind.text(asked.name)
-        return give(kind, schema_text(kind), asked.output, as_json)
-    return give_file(kind, kind.text(asked.name), asked.output, as_json)
+        return give(kind, schema_text(kind), asked.output, manner)
+    return give_file(kind, kind.text(asked.name), asked.output, manner)
 
 
 def kind_called(word: str) -> FileKind:
@@ -45,7 +46,7 @@ def kind_called(word: str) -> FileKind:
     return kinds[word] if word else FILE_KINDS[0]
 
 
-def tables_command(trial: Path | None, position_number: int | None, asked: AskedFile, as_json: bool) -> int:
+def tables_command(trial: Path | None, position_number: int | None, asked: AskedFile, manner: Manner) -> int:
     """Give the configuration of the tables that a position needs in the hump `trial`."""
     from synth.frame.input_error import InputError
 
@@ -55,7 +56,7 @@ def tables_command(trial: Path | None, position_number: int | None, asked: Asked
         raise InputError("init --for prints the configuration of tables for a trial; give neither a kind nor --schema")
     from synth.hump.tables.tables_configuration import tables_toml
 
-    return give_file(FILE_KINDS[0], tables_toml(trial, position_number), asked.output, as_json)
+    return give_file(FILE_KINDS[0], tables_toml(trial, position_number), asked.output, manner)
 
 
 def schema_text(kind: FileKind) -> str:
@@ -63,17 +64,17 @@ def schema_text(kind: FileKind) -> str:
     return json.dumps(kind.schema(), indent=1, ensure_ascii=False) + "\n"
 
 
-def give_file(kind: FileKind, text: str, output: Path | None, as_json: bool) -> int:
+def give_file(kind: FileKind, text: str, output: Path | None, manner: Manner) -> int:
     """Print the `text` of a file, or write it, and its schema beside it; its first line names that for editors."""
-    code = give(kind, f"#:schema ./{kind.schema_name}\n{text}", output, as_json)
+    code = give(kind, f"#:schema ./{kind.schema_name}\n{text}", output, manner)
     if output is not None:
         beside = output.with_name(kind.schema_name)
         if not beside.exists():
-            give(kind, schema_text(kind), beside, as_json)
+            give(kind, schema_text(kind), beside, manner)
     return code
 
 
-def give(kind: FileKind, text: str, output: Path | None, as_json: bool) -> int:
+def give(kind: FileKind, text: str, output: Path | None, manner: Manner) -> int:
     """Print `text`, or write it into the new file `output`, in UTF-8, and print its name; a line of JSON if asked."""
     if output is None:
         told = {"kind": kind.word, "text": text}
@@ -84,28 +85,36 @@ def give(kind: FileKind, text: str, output: Path | None, as_json: bool) -> int:
         require_new(output)
         write_atomically(output, text.encode("utf-8"))
         told = {"kind": kind.word, "file": str(output)}
-    print(json.dumps(told, ensure_ascii=False) if as_json else told.get("file", text.removesuffix("\n")))
+    if manner.as_json:
+        print(json.dumps(told, ensure_ascii=False))
+    elif output is None:
+        print(text, end="")
+    elif not manner.quiet:
+        print(output)
     return 0
 
 
-def print_list(as_json: bool) -> int:
+def print_list(manner: Manner) -> int:
     """The kinds of files, and what the library holds."""
     from plant_models.library.type_file import HUMPS, KINDS
-    from synth.frame.terminal.printed_page import print_page
 
     titles = {kind.folder: titles_of(kind) for kind in (*KINDS, HUMPS)}
-    if as_json:
-        kinds = {kind.word: kind.title for kind in FILE_KINDS}
-        print(json.dumps({"kinds": kinds, "library": titles}, indent=1, ensure_ascii=False))
-        return 0
-    width = max(map(len, (*(kind.word for kind in FILE_KINDS), *(name for found in titles.values() for name in found))))
-    page = ["Files that init prints:", *(f"  {kind.word:<{width}}  {kind.title}" for kind in FILE_KINDS), ""]
-    page.append("In the library:")
-    for folder, found in titles.items():
-        page.append(f"{folder}:")
-        page += (f"  {name:<{width}}  {title}" for name, title in found.items())
-    print_page(*page)
+    kinds = {kind.word: kind.title for kind in FILE_KINDS}
+    manner.give(lambda: {"kinds": kinds, "library": titles}, lambda: list_page(kinds, titles))
     return 0
+
+
+def list_page(kinds: dict[str, str], titles: dict[str, dict[str, str]]) -> list[str]:
+    """The same in lines."""
+    sections = {
+        "Files that init prints": kinds,
+        **{f"{folder} of the library": found for folder, found in titles.items()},
+    }
+    width = max(len(name) for found in sections.values() for name in found)
+    page = []
+    for heading, found in sections.items():
+        page += [f"{heading}:", *(f"  {name:<{width}}  {title}" for name, title in found.items())]
+    return page
 
 
 def titles_of(kind: Kind) -> dict[str, str]:

@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from synth.cli.file_kinds import FILE_KINDS
-from synth.frame.arguments import Json, whole_number
+from synth.frame.arguments import in_its_manner, whole_number
+from synth.frame.terminal.manner import Manner
 
 
 def kinds_beginning(incomplete: str) -> list[tuple[str, str]]:
@@ -20,14 +21,12 @@ def kinds_beginning(incomplete: str) -> list[tuple[str, str]]:
 def names_beginning(context: typer.Context, incomplete: str) -> list[str]:
     """The names of the library of the kind that is typed, for completion."""
     word = context.params.get("kind")
-    return [
-        name for kind in FILE_KINDS if kind.word == word for name in kind.names() if name.startswith(incomplete)
-    ]  # fmt: skip
+    return [name for kind in FILE_KINDS if kind.word == word for name in kind.names if name.startswith(incomplete)]
 
 
 def add_init_command(app: typer.Typer) -> None:
     """Add the command to `app`."""
-    app.command()(init)
+    app.command()(in_its_manner(init))
 
 
 def init(
@@ -73,14 +72,15 @@ def init(
             help="With --for: which position, 1 being the first behind the crest.",
         ),
     ] = None,
-    as_json: Json = False,
+    *,
+    manner: Manner,
 ) -> int:
     """Print or write a commented file to start from, or its schema."""
     from synth.cli.init import AskedFile, init_command, print_list, tables_command
 
     if show_list:
-        return print_list(as_json)
+        return print_list(manner)
     asked = AskedFile(kind or "", name or "", schema, output)
     if for_trial is not None or position_number is not None:
-        return tables_command(for_trial, position_number, asked, as_json)
-    return init_command(asked, as_json)
+        return tables_command(for_trial, position_number, asked, manner)
+    return init_command(asked, manner)

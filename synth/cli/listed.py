@@ -17,8 +17,18 @@ COMMANDS: Final = (
         "synth.retarder.tune_options:TuneOptions",
         "init",
         "Make a book of tables, its pictures and report.\n\n"
-        "Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.",
+        "For a radar, or for point sensors where the configuration has some. Exit code 1 if the table of a feasible "
+        "case misses a limit of the configuration, or a case has no table.",
         folder="out",
+    ),
+    Listed(
+        "sensors",
+        "synth.retarder.sensors.plan_command:COMMAND",
+        "synth.retarder.sensors.plan_options:PlanOptions",
+        "init",
+        "Plan where point sensors stand: the least rms for each number, and the fewest for a wanted rms.\n\n"
+        "Compared with equal sections, with the rule that each change of stage ends inside its section, and with the "
+        "radar. Exit code 1 if none of the numbers gives the wanted rms.",
     ),
     Listed(
         "aim",
@@ -97,27 +107,6 @@ COMMANDS: Final = (
     ),
 )
 """By themselves."""
-
-SENSORS: Final = (
-    Listed(
-        "sensors tune",
-        "synth.retarder.sensors.tune_command:COMMAND",
-        "synth.retarder.sensors.tune_options:SensorsTuneOptions",
-        "init point-sensors",
-        "Make tables that decide where axles pass point sensors, with their code, pictures and report.\n\n"
-        "Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.",
-    ),
-    Listed(
-        "sensors plan",
-        "synth.retarder.sensors.plan_command:COMMAND",
-        "synth.retarder.sensors.plan_options:PlanOptions",
-        "init",
-        "Plan where point sensors stand: the least rms for each number, and the fewest for a wanted rms.\n\n"
-        "Compared with equal sections, with the rule that each change of stage ends inside its section, and with the "
-        "radar. Exit code 1 if none of the numbers gives the wanted rms.",
-    ),
-)
-"""Behind the word `sensors`."""
 
 SWEEP: Final = (
     Listed(

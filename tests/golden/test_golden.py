@@ -40,7 +40,7 @@ def test_every_configuration_is_read() -> None:
 
 
 def test_a_run_is_equal_to_itself(tmp_path: Path) -> None:
-    order, runs = Order("hump export medium", "medium.railml"), []
+    order, runs = Order("hump export medium --format railml", "hump-railml"), []
     for name in ("first", "second"):
         (tmp_path / name).mkdir()
         write_inputs(tmp_path / name)

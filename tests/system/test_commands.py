@@ -218,7 +218,12 @@ def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_cla
 
 
 def test_validate_refuses_a_plant_that_does_not_fit(command: Command, tuned: Path, tmp_path: Path) -> None:
-    ran = command("validate", tuned / "book.h5", "-o", tmp_path / "out")
+    beside = command("validate", tuned / "book.h5", "--passes", "1000", "-o", tmp_path / "beside", "-q")
+    assert beside.code == 0  # by the configuration that lies beside the book
+    assert beside.out.startswith("accepted: ")
+    assert (beside.err, beside.out.count("\n")) == ("", 1)
+    (tmp_path / "alone.h5").write_bytes((tuned / "book.h5").read_bytes())
+    ran = command("validate", tmp_path / "alone.h5", "-o", tmp_path / "out")
     assert ran.code == 2
     assert "no cut class fits the table gondola-4-22t-to-1.5-m-s" in ran.sentence
     assert "retarder.zones_m" in ran.sentence
@@ -437,13 +442,15 @@ def test_export_says_which_tables_a_controller_never_chooses(command: Command, t
 
 
 def test_plot_draws_without_solving(command: Command, tuned: Path, two_classes: Path, tmp_path: Path) -> None:
-    ran = command("plot", tuned, "-o", tmp_path / "plots", "--config", two_classes, "--json")
+    ran = command("inspect", tuned, "-o", tmp_path / "plots", "--config", two_classes, "--json")
     assert ran.code == 0
-    names = {Path(name).name for name in json.loads(ran.out)["files"]}
+    names = {Path(name).name for name in json.loads(ran.out)["pictures"]}
     kinds = ("lines", "surfaces", "passes")
     assert names == {f"{i}-{kind}.svg" for i in (ID, HEAVIER) for kind in kinds}
     assert names == set(results_in(tmp_path / "plots"))
-    without = command("plot", tuned / "tables" / f"{ID}.json", "-o", tmp_path / "bare")
+    alone = tmp_path / "alone.json"
+    alone.write_bytes((tuned / "tables" / f"{ID}.json").read_bytes())
+    without = command("inspect", alone, "-o", tmp_path / "bare")
     assert without.code == 0
     assert "no passes are drawn" in without.sentence
     assert len(results_in(tmp_path / "bare")) == 2

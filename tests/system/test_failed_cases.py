@@ -121,7 +121,7 @@ def test_tables_for_point_sensors_lose_none_but_the_bad_case(command: Command, t
         ("csv", "plots = false\ncsv"),
     )
     config.write_text(changed(POINTS, *swaps) + STEEP, encoding="utf-8")
-    ran = command("sensors", "tune", config, "-o", out, "--workers", "1")
+    ran = command("tune", config, "-o", out, "--workers", "1")
     assert ran.code == 1
     summary = json.loads((out / "summary.json").read_bytes())
     assert [path.stem for path in (out / "tables").glob("*.json")] == ["gondola-4-22t-to-2.5-m-s"]

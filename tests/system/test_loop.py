@@ -1,4 +1,4 @@
-"""`retarder-synth loop`: pictures and figures of exported tables as control loops, and what it refuses."""
+"""`retarder-synth inspect --loops`: pictures and figures of exported tables as control loops, and what it refuses."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def test_a_directory_gives_pictures_figures_and_a_table(
     command: Command, measured_once: Path, measured_classes: Path, tmp_path: Path, pages: list[Page]
 ) -> None:
     out = tmp_path / "loops"
-    ran = command("loop", measured_once, "-o", out, "--config", measured_classes)
+    ran = command("inspect", "--loops", measured_once, "-o", out, "--config", measured_classes)
     assert ran.code == 0
     told = table_of(pages[-1])
     document = json.loads((out / "loops.json").read_bytes())
     assert [each["id"] for each in document["loops"]] == [TABLE, "gondola-4-30t-to-1.5-m-s"]
     names = set(results_in(out)) - {"loops.json"}
-    assert {str(out / name) for name in names} == set(document["files"])
+    assert {str(out / name) for name in names} == set(document["pictures"])
     assert {f"{TABLE}-response.svg", f"{TABLE}-portrait.svg", f"{TABLE}-structure.svg"} <= names
     for each in document["loops"]:
         assert each["difference"]["agrees"] is True
@@ -59,7 +59,7 @@ def test_a_table_for_point_sensors_is_shown_too(command: Command, two_classes: P
     """The class is found though a configuration knows no sensors; a table of another cut is refused by name."""
     table = tmp_path / "points.json"
     write_json(passage_table(two_classes), table)
-    ran = command("loop", table, "-o", tmp_path / "out", "--config", two_classes, "--json")
+    ran = command("inspect", "--loops", table, "-o", tmp_path / "out", "--config", two_classes, "--json")
     assert ran.code == 0, ran.err
     [found] = json.loads(ran.out)["loops"]
     assert found["label"] == "gondola-4-22t"
@@ -72,14 +72,14 @@ def test_a_table_for_point_sensors_is_shown_too(command: Command, two_classes: P
     names = set(results_in(tmp_path / "out"))
     assert names == {
         "loops.json",
-        *(f"points-{name}.svg" for name in ("response", "structure")),
+        *(f"points-{name}.svg" for name in ("response", "structure", "switching-speeds", "passes")),
     }
-    told = command("loop", table, "-o", tmp_path / "again", "--config", two_classes)
+    told = command("inspect", "--loops", table, "-o", tmp_path / "again", "--config", two_classes)
     assert told.code == 0
     assert "–" in told.out
     changed = replace(passage_table(two_classes), cut=CutId("Л", 23.0, GONDOLA_OFFSETS_M, 1))
     write_json(changed, table)
-    refused = command("loop", table, "-o", tmp_path / "no", "--config", two_classes)
+    refused = command("inspect", "--loops", table, "-o", tmp_path / "no", "--config", two_classes)
     assert refused.code == 2
     assert "the nearest, gondola-4-22t, differs in cut.mass_t (22, in the table 23)" in refused.sentence
 
@@ -122,10 +122,11 @@ def test_json_is_the_file_and_the_same_table_gives_the_same_bytes(
     command: Command, tuned: Path, two_classes: Path, tmp_path: Path
 ) -> None:
     table = tuned / "tables" / f"{TABLE}.json"
-    first = command("loop", table, "-o", tmp_path / "one", "--config", two_classes, "--json")
+    first = command("inspect", "--loops", table, "-o", tmp_path / "one", "--config", two_classes, "--json")
     assert first.code == 0
-    assert json.loads(first.out) == json.loads((tmp_path / "one" / "loops.json").read_bytes())
-    assert command("loop", table, "-o", tmp_path / "two", "--config", two_classes).code == 0
+    stored = json.loads((tmp_path / "one" / "loops.json").read_bytes())
+    assert {key: json.loads(first.out)[key] for key in stored} == stored
+    assert command("inspect", "--loops", table, "-o", tmp_path / "two", "--config", two_classes).code == 0
     one, two = results_in(tmp_path / "one"), results_in(tmp_path / "two")
     del one["loops.json"], two["loops.json"]  # it names the files, which lie elsewhere
     assert one == two
@@ -135,26 +136,33 @@ def test_responses_that_do_not_agree_give_1(
     command: Command, tuned: Path, two_classes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("synth.retarder.control_loop.TOLERANCE_M_S", 1e-9)
-    ran = command("loop", tuned / "tables" / f"{TABLE}.json", "-o", tmp_path / "out", "--config", two_classes)
+    ran = command(
+        "inspect", "--loops", tuned / "tables" / f"{TABLE}.json", "-o", tmp_path / "out", "--config", two_classes
+    )
     assert ran.code == 1
-    assert "DO NOT agree" in ran.err
+    assert "not accepted: python-control and the simulator DO NOT agree: gondola-4-22t-to-1.5-m-s: 0." in ran.out
 
 
 def test_bad_input_is_one_sentence(command: Command, tuned: Path, tmp_path: Path) -> None:
     table = tuned / "tables" / f"{TABLE}.json"
-    refused = command("loop", table, "-o", tmp_path / "out")  # the built-in plant is another
+    alone = tmp_path / "alone.json"
+    alone.write_bytes(table.read_bytes())
+    refused = command("inspect", "--loops", alone, "-o", tmp_path / "out")  # the built-in plant is another
     assert refused.code == 2
     assert "no cut class fits the table" in refused.sentence
     assert not (tmp_path / "out").exists()
-    missing = command("loop", tmp_path / "nowhere.json")
+    missing = command("inspect", tmp_path / "nowhere.json")
     assert (missing.code, "there is no such file" in missing.sentence) == (2, True)
     (tmp_path / "empty").mkdir()
-    assert command("loop", tmp_path / "empty").code == 2
+    assert command("inspect", tmp_path / "empty").code == 2
     table.write_bytes(table.read_bytes().replace(b'"degree": 2', b'"degree": 3'))
-    assert command("loop", table).code == 3
+    assert command("inspect", table).code == 3
+    assert command("inspect", "--loops", alone).sentence.endswith("is about pictures; name a folder for them by -o")
 
 
 def test_help_loads_no_control_library() -> None:
-    program = "import sys; from synth.cli import main; main(['loop', '--help']); print(*sys.modules, file=sys.stderr)"
+    program = (
+        "import sys; from synth.cli import main; main(['inspect', '--help']); print(*sys.modules, file=sys.stderr)"
+    )
     ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True)
     assert {"control", "numba", "scipy", "matplotlib"}.isdisjoint(ran.stderr.split())

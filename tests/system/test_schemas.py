@@ -33,7 +33,7 @@ def validator(kind: FileKind) -> jsonschema.Draft202012Validator:
 
 @pytest.mark.parametrize("kind", FILE_KINDS, ids=[kind.word for kind in FILE_KINDS])
 def test_what_init_prints_is_what_its_schema_allows(kind: FileKind, command: Command) -> None:
-    for name in ("", *kind.names()[:3]):
+    for name in ("", *kind.names[:3]):
         printed = command("init", kind.word, *filter(None, [name])).out
         tree = tomllib.loads(printed)
         found = SCHEMA_LINE.fullmatch(printed.splitlines()[0])

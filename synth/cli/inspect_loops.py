@@ -1,19 +1,17 @@
-"""`retarder-synth loop`: exported tables in the loop as python-control sees it; nothing is solved."""
+"""Tables as control loops, for `retarder-synth inspect`: python-control beside the simulator; nothing is solved."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from synth.frame.input_error import InputError
-from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from synth.frame.terminal.printed_page import Exhibit
     from synth.retarder.configuration.resolved_config import ResolvedConfig
     from synth.retarder.line_control_loop import LineControlLoop
     from synth.retarder.passage_control_loop import PassageControlLoop
@@ -22,51 +20,6 @@ if TYPE_CHECKING:
     AnyLoop: TypeAlias = LineControlLoop | PassageControlLoop
 
 DOCUMENT = "loops.json"
-
-
-def loop_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
-    """Draw and tell the loops of the tables in `source`; 1 if python-control and the simulator do not agree on one."""
-    from synth.frame.results_directory import results_directory
-    from synth.frame.settings.settings_file import BUILT_IN
-    from synth.frame.terminal.interrupt import interruptible
-    from synth.kernels.cache import guarded
-    from synth.retarder.configuration.config_file import load_config
-    from synth.retarder.forms.table_file import file_stem, files_at
-
-    config = load_config(config_path)
-    closings = [closing(table, config, str(config_path or BUILT_IN)) for table in any_tables(source)]
-    from synth.frame.picture.figure_file import figure_files
-    from synth.frame.summary import plain
-
-    loops: list[AnyLoop] = []
-    files: list[str] = []
-    reads = [*files_at(source), *filter(None, [config_path])]
-    with results_directory(output, "loop", reads) as directory, interruptible(directory, DOCUMENT):
-        for close in closings:
-            loop = guarded(close)
-            for name, figure in pictures(loop).items():
-                files += map(str, directory.write_all(figure_files(figure, f"{file_stem(loop.table)}-{name}")))
-            loops.append(loop)
-            say(f"{loop.table.id}: {sentence(loop)}")
-        document = plain({"loops": [loop.document for loop in loops], "files": files})
-        text = json.dumps(document, indent=1, ensure_ascii=False)
-        directory.write(DOCUMENT, f"{text}\n".encode())
-    if as_json:
-        print(text)
-    else:
-        print_loops(loops, f"{len(files)} pictures and {DOCUMENT} in {output}")
-    return OK if all(loop.agrees for loop in loops) else LIMITS_MISSED
-
-
-def any_tables(source: Path) -> list[StageTable]:
-    """The tables at `source`, of both kinds of decision; faults as `read_tables` has them."""
-    from synth.retarder.forms.passage_file import read_passages
-    from synth.retarder.forms.table_file import holds_tables, read_tables
-
-    passages = read_passages(source)
-    if passages and not holds_tables(source):
-        return list(passages)
-    return [*passages, *(table for file in read_tables(source, directory_allowed=True) for table in file.tables)]
 
 
 def closing(table: StageTable, config: ResolvedConfig, source: str) -> Callable[[], AnyLoop]:
@@ -105,17 +58,25 @@ def pictures(loop: AnyLoop) -> dict[str, Figure]:
     return figures
 
 
-def sentence(loop: AnyLoop) -> str:
-    """How far response and trace are apart, in words."""
+def agreement(loops: Sequence[AnyLoop]) -> str:
+    """Whether response and trace agree: how far the farthest are apart, or each that is too far, in words."""
+    apart = [loop for loop in loops if not loop.agrees]
+    if apart:
+        each = "; ".join(f"{loop.table.id}: {distance(loop)} apart" for loop in apart)
+        return f"python-control and the simulator DO NOT agree: {each}"
+    farthest = max(loops, key=lambda loop: abs(loop.difference.largest_m_s))
+    return f"python-control and the simulator agree: at most {distance(farthest)} apart"
+
+
+def distance(loop: AnyLoop) -> str:
+    """How far response and trace are apart."""
     found = loop.difference
     parted = "" if found.parted_s is None else f" until {found.parted_s:.2f} s, when a speed on a line parts them"
-    word = "agree" if loop.agrees else "DO NOT agree"
-    return f"python-control and the simulator {word}: at most {1e3 * abs(found.largest_m_s):.3f} mm/s apart{parted}"
+    return f"{1e3 * abs(found.largest_m_s):.3f} mm/s{parted}"
 
 
-def print_loops(loops: Sequence[AnyLoop], files: str) -> None:
-    """A table with one row for each loop, what its columns mean, and where the `files` are."""
-    from synth.frame.terminal.printed_page import Exhibit, print_page
+def loops_page(loops: Sequence[AnyLoop]) -> list[Exhibit]:
+    """A table with one row for each loop, and what its columns mean."""
     from synth.frame.terminal.printed_table import Column, PrintedTable
     from synth.retarder.control_loop import TOLERANCE_M_S
 
@@ -142,7 +103,7 @@ def print_loops(loops: Sequence[AnyLoop], files: str) -> None:
         page.append(
             "*: up to a decision at a speed on a line. Rounding decides there; from then on these are two passes."
         )
-    print_page(*page, files)
+    return page
 
 
 def forecast(loop: AnyLoop) -> str | None:
