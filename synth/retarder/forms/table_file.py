@@ -49,6 +49,11 @@ def read_tables(path: Path, directory_allowed: bool = False) -> tuple[TableFile,
     return (read_table_file(path),)
 
 
+def book_in(path: Path) -> Path:
+    """The book in the directory `path` of a tune; else `path` itself, where tables may be or not."""
+    return path / BOOK if (path / BOOK).is_file() else path
+
+
 def table_files(directory: Path) -> list[Path]:
     """The JSON tables with lines of a directory, those in tables/ if it has that; its books where there are no tables.
 

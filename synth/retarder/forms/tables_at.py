@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from synth.frame.input_error import InputError
 from synth.retarder.forms.aim_file import AimFile, read_aims
 from synth.retarder.forms.passage_file import read_passages
-from synth.retarder.forms.table_file import BOOK, TableFile, holds_tables, read_table_file, read_tables
+from synth.retarder.forms.table_file import TableFile, book_in, holds_tables, read_table_file, read_tables
 
 if TYPE_CHECKING:
     from tuning_tables import AnyTable, ControllerTable
@@ -60,6 +60,6 @@ def tables_at(path: Path, else_there: bool = False) -> TablesAt:
     if (else_there or aims or passages) and not holds_tables(path):
         return TablesAt(path, (), (), passages, aims)
     files = read_tables(path, directory_allowed=True)
-    book = path / BOOK
-    in_order = (read_table_file(book),) if path.is_dir() and book.is_file() else files
+    book = book_in(path)
+    in_order = files if book == path else (read_table_file(book),)
     return TablesAt(path, tuple(table for file in in_order for table in file.tables), files, passages, aims)
