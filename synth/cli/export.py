@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.frame.input_error import InputError
+from synth.frame.printed_numbers import counted
 from synth.frame.terminal.manner import Manner
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, mann
         raise InputError(f"--format {form}: there is no such form; give {', '.join(FORMS)}")
     options = code_options(form, asked.prefix, asked.self_test, asked.split, asked.correction_m_s)
     tables = tables_at(source).of_one_kind
-    manner.step(f"read: {len(tables)} tables")
+    manner.step(f"read: {counted(len(tables), 'table')}")
     try:
         files = {**FORMS[form](tables, options), **correction_files(form, tables, options)}
     except (InputError, InvalidTable) as fault:  # each table is right, but together they make no export

@@ -4,6 +4,7 @@ Annotations are not postponed here: typer would compile every one of them anew a
 """
 
 from pathlib import Path
+from textwrap import fill
 from typing import Annotated
 
 import typer
@@ -26,7 +27,13 @@ def names_beginning(context: typer.Context, incomplete: str) -> list[str]:
 
 def add_init_command(app: typer.Typer) -> None:
     """Add the command to `app`."""
-    app.command()(in_its_manner(init))
+    app.command(help=f"{init.__doc__}\n\n\b\nKIND is one of\n{kinds_in_lines()}")(in_its_manner(init))
+
+
+def kinds_in_lines() -> str:
+    """The words of kinds, whole words in lines for the narrowest terminal."""
+    words = ", ".join(kind.word for kind in FILE_KINDS)
+    return fill(words, 54, initial_indent="  ", subsequent_indent="  ", break_on_hyphens=False)
 
 
 def init(
@@ -35,7 +42,7 @@ def init(
         typer.Argument(
             metavar="KIND",
             autocompletion=kinds_beginning,
-            help=f"{', '.join(each.word for each in FILE_KINDS)}; {FILE_KINDS[0].word} unless given.",
+            help=f"Of file, as above; {FILE_KINDS[0].word} unless given.",
         ),
     ] = None,
     name: Annotated[

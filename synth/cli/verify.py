@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from synth.frame.printed_numbers import counted
 from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.printed_page import Verdict as Told
 from synth.frame.terminal.telling import INPUT_FAULT, say
@@ -148,4 +149,4 @@ def verdict_words(verdict: Verdict) -> Told:
     """What it comes to."""
     found = state(verdict.findings) if verdict.findings else "nothing found"
     count = len(verdict.tables) + len(verdict.aims) + len(verdict.passages)
-    return Told(verdict.code == 0, f"{count} tables, {len(verdict.files)} files: {found}")
+    return Told(verdict.code == 0, f"{counted(count, 'table')}, {counted(len(verdict.files), 'file')}: {found}")

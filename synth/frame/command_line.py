@@ -13,7 +13,7 @@ from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperArgument, TyperGroup
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
@@ -74,6 +74,9 @@ def listed_group(listed: Sequence[Listed], guide: CommandGuide) -> type[TyperGro
             command = loaded(by_name[name]) if name in by_name else found
             if command is not None and name is not None and name in guide.shown:
                 command.epilog = guide.shown[name].epilog
+                for each in command.params:
+                    if isinstance(each, TyperArgument):  # its metavar says what it is; the type is Python's word for it
+                        each.display_type = no_type  # type: ignore[method-assign, assignment]
             return name, command, rest
 
         def format_commands(self, ctx: Any, formatter: Any) -> None:
@@ -82,6 +85,11 @@ def listed_group(listed: Sequence[Listed], guide: CommandGuide) -> type[TyperGro
                     formatter.write_dl([(name, first_sentence(self.commands[name].help or "")) for name in names])
 
     return ListedGroup
+
+
+def no_type(context: Any) -> str:
+    """What the help says of the type of an argument."""
+    return ""
 
 
 def first_sentence(text: str) -> str:
@@ -123,8 +131,13 @@ def annotation_of(field: FieldInfo) -> Any:
     if flag == BY_PLACE:
         return Annotated[words | None, typer.Argument(metavar=metavar, help=field.description)]
     unsaid = field.is_required() or field.default in (None, ())
-    default = "" if unsaid else f" [default: {field.default}]"
+    default = "" if unsaid else f" [default: {as_typed(field.default)}]"
     return Annotated[words | None, typer.Option(flag, metavar=metavar, help=f"{field.description}{default}")]
+
+
+def as_typed(value: object) -> str:
+    """A default as it would be typed; a list has commas."""
+    return ",".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
 def function(listed: Listed, options: tuple[Parameter, ...]) -> Callable[..., int]:

@@ -265,7 +265,7 @@ def test_the_template_of_init_is_read_by_simulate(command: Command, tmp_path: Pa
     ("arguments", "said"),
     [
         (["simulate", "nope"], "nope: there is no such file, and no such hump in the library"),
-        (["simulate", "nope.toml"], "there is no such file; write one with 'retarder-synth init trial > nope.toml'"),
+        (["simulate", "nope.toml"], "there is no such file; write one with 'retarder-synth init trial -o nope.toml'"),
         (["simulate", "--workers", "2", "--scheduler", "x"], "--workers and --scheduler are both given"),
         (["simulate", "--trains", "0"], "--trains is '0'; it must be a whole number from 1 to 10000000"),
         (["simulate", "--list", "none.csv"], "none.csv: there is no such file; give the path of a sorting list"),
