@@ -53,7 +53,7 @@ ORDERS = (
     Order("aim", ("aim",)),
     Order("hump simulate large, 1000 trains", ("hump", "simulate", "large", "--trains", "1000")),
     Order("sensors", ("sensors",)),
-    Order("permissions", ("permissions",)),
+    Order("hardware", ("hardware",)),
     Order("tune, commands at any time", ("tune", "any-time.toml")),
     Order("computer", ("computer",)),
     Order("tune, one coarse case", ("tune", "small.toml")),

@@ -11,7 +11,7 @@ TOP: Final = CommandGuide(
     "",
     {
         "Design tables": ("init", "tune", "aim", "sensors", "sweep"),
-        "Check and understand them": ("inspect", "validate", "verify", "sensitivity", "permissions"),
+        "Check and understand them": ("inspect", "validate", "verify", "sensitivity", "hardware"),
         "The whole hump": ("hump", "computer"),
         "From measured passes": ("identify", "retune", "watch", "replay"),
         "For controllers": ("export",),
@@ -23,7 +23,7 @@ TOP: Final = CommandGuide(
         "aim": Shown("aim --hump my-hump.toml --track 7 -o out/aim", "aim.md"),
         "validate": Shown("validate out --passes 50000 --seed 7", "limits.md"),
         "sensitivity": Shown("sensitivity my.toml -o out/sensitivity", "sensitivity.md"),
-        "permissions": Shown("permissions my.toml -o out/permissions", "any-time.md"),
+        "hardware": Shown("hardware my.toml -o out/hardware", "any-time.md"),
         "computer": Shown("computer my-computer.toml -o out/computer", "control-computer.md"),
         "watch": Shown("watch log.csv --config my.toml -o out/watch", "watch.md"),
         "identify": Shown("identify log.csv --config my.toml -o out/identify", "identify.md"),

@@ -57,7 +57,7 @@ COMMANDS: Final = (
         "number.",
     ),
     Listed(
-        "permissions",
+        "hardware",
         "synth.retarder.permissions.command:COMMAND",
         "synth.retarder.permissions.options:PermissionsOptions",
         "init",

@@ -76,7 +76,7 @@ ORDERS: tuple[Order, ...] = (
     Order(f"watch {LOG}", "watched"),
     Order(f"replay {LOG} --table measured/book.h5 --own {BOOK}", "replayed"),
     Order(f"retune {LOG} --table {BOOK}", "retuned"),
-    Order("permissions measured.toml --workers 1", "permissions"),
+    Order("hardware measured.toml --workers 1", "permissions"),
     Order("sensitivity measured.toml --points 200 --passes 100", "sensitivity"),
     Order("sweep run sweep.toml --workers 1", "swept"),
     Order("sweep status swept"),

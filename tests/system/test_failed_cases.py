@@ -154,7 +154,7 @@ def test_permissions_of_the_other_cases_are_told(command: Command, tmp_path: Pat
     config, out = tmp_path / "c.toml", tmp_path / "out"
     swaps = ("[2.5]", "[2.5, 1.5]"), ("speed_step_m_s = 0.05", WIDE[1]), ("[regulator]\n", MEASURED)
     config.write_text(changed(COARSE, *swaps) + STEEP, encoding="utf-8")
-    ran = command("permissions", config, "-o", out)
+    ran = command("hardware", config, "-o", out)
     assert ran.code == 1
     summary = json.loads((out / "summary.json").read_bytes())
     (case,), missing = summary["tables"]["permissions"], summary["tables"]["missing"]

@@ -77,7 +77,7 @@ DIRECTORIES = (
     Writing(("tune", "yard.toml"), "report.html", quick=True),
     Writing(("tune", "points.toml"), "report.html"),
     Writing(("sensors", "yard.toml"), "sensors-by-rule.toml"),
-    Writing(("permissions", "yard.toml"), "summary.json"),
+    Writing(("hardware", "yard.toml"), "summary.json"),
     Writing(("sensitivity", "yard.toml", "--table", "book.h5"), "sheets/overall.csv"),
     Writing(("sweep", "run", "sweep.toml"), "config.toml"),
     Writing(("aim", "aim.toml"), "report.html"),

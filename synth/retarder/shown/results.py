@@ -41,7 +41,7 @@ HOW_TO_READ: Final = (
     "see the same passes, and may act from the same place."
 )
 PERMISSIONS: Final = (
-    "What commands at any time and other permissions of the hardware would give: retarder-synth permissions."
+    "What commands at any time and other permissions of the hardware would give: retarder-synth hardware."
 )
 
 
