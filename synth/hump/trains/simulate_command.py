@@ -88,7 +88,7 @@ def humped(asked: AskedTrains, trial: HumpTrial, work: Work) -> TrainOutcomes:
     from synth.hump.trains.train_run import run_of, run_trials
 
     run = run_of(asked.trial.config, trial, asked.number, work.directory)
-    (found,) = run_trials((run,), partial(engine_for, asked.options), work.progress)
+    (found,) = run_trials((run,), partial(engine_for, asked.options, work.progress.note), work.progress)
     return found
 
 
