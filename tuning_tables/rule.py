@@ -45,7 +45,7 @@ def decide_for(
 
     Notes
     -----
-    The rule is that of "The decision rule" in docs/table-format.md, in float32; C and Structured Text give the same
+    The rule is that of the page "Table formats", section "The rule", in float32; C and Structured Text give the same
     bits.
 
     Examples
@@ -102,7 +102,7 @@ def speed_for(
 
     Notes
     -----
-    The estimator is a Kalman filter of speed, friction and resistance; see "The estimator" in docs/table-format.md.
+    The estimator is a Kalman filter of speed, friction and resistance; see the page "Table formats".
 
     Examples
     --------
