@@ -94,7 +94,7 @@ class OneCut:
         """Where the heads are at each mark of their routes, (n, elements · marks)."""
         axle = np.where(OF_FIRST_AXLE, self.first_m[chosen, None], self.last_m[chosen, None])
         places = self.hump.routes.place_m[self.routes[chosen]] + axle[:, None, :]
-        return np.asarray(places.reshape(len(places), -1))
+        return np.asarray(places.reshape(len(places), self.times[0].size))
 
     def cars(self, chosen: Bools) -> Cars:
         """The cuts `chosen` on their routes."""
