@@ -25,7 +25,8 @@ LIMITS_OF_USE = (
     CHANCE_ONLY,
     "A figure of 0 does not mean never: the upper end of its interval is what these trains show.",
     "Cuts that were misrouted, in contact, or stopped count as such; their couplings and gaps are not counted.",
-    "A cut in contact does not push the one ahead, which comes as far and as fast as it would alone.",
+    "Cuts that meet while both roll on their track roll on as one. Ahead of it a cut in contact does not push the one "
+    "ahead, which comes as far and as fast as it would alone.",
     "Each train, or each shift of trains (tracks.shift_trains), finds standing cars of its own. In a shift tracks are "
     "pushed up and pulled between two trains, by a rule, as soon as that is needed: no train waits for it.",
     NO_SAFETY,
