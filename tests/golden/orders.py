@@ -76,6 +76,7 @@ ORDERS: tuple[Order, ...] = (
     Order(f"validate {BOOK} {PARK} --log log.h5 --log-passes 150", "validated"),
     Order(f"verify {BOOK}"),
     Order(f"inspect {BOOK}"),
+    Order(f"explore {BOOK} {PARK}", "explored"),
     Order(f"plot {BOOK} {PARK}", "plots"),
     Order(f"loop {BOOK} {PARK}", "loops"),
     *(Order(f"export {BOOK} --format {form}", f"export-{form}") for form in ("json", "c", "st", "csv")),
