@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from synth.retarder.explore import command as explore
 from tests.system.conftest import CLASS, Command, changed
 from tests.tuning_tables.passages.made_tables import table_of
-from tuning_tables import to_json
+from tuning_tables import Decisions, read_json, to_json
 
 
 @pytest.fixture
@@ -56,6 +57,20 @@ def test_tables_for_point_sensors_are_refused(command: Command, tmp_path: Path) 
     assert (
         ran.sentence == f"{file}: its tables are for point sensors, which the page does not play; give those of a radar"
     )
+
+
+def test_a_table_at_any_time_on_a_drive_that_is_not_modelled_so_is_refused(
+    command: Command, tuned_once: tuple[Path, int], tmp_path: Path
+) -> None:
+    (file,) = (tuned_once[0] / "tables").glob("*22t*.json")
+    table = read_json(file)
+    any_time = tmp_path / "any-time.json"
+    any_time.write_bytes(to_json(replace(table, decisions=Decisions.AT_ANY_TIME)))
+    config = tmp_path / "late.toml"
+    config.write_text(CLASS + "[sensor]\ncomputing_delay_s = 0.2\n")
+    ran = command("explore", any_time, "--config", config, "-o", tmp_path / "page")
+    assert ran.code == 2
+    assert "computing_delay_s is 0.2; commands at every sample are modelled for delays shorter than" in ran.sentence
 
 
 def test_a_page_that_is_too_large_is_refused(

@@ -78,14 +78,20 @@ def radar_tables(path: Path) -> tuple[ControllerTable, ...]:
 def played_tables(
     tables: tuple[ControllerTable, ...], path: Path, config: ResolvedConfig, source: str
 ) -> Iterator[PlayedTable]:
-    """The tables with the plants of their classes; `InputError` where the configuration has none for one."""
+    """The tables with the plants of their classes; `InputError` where the configuration has none for one.
+
+    `PlantError` for a table at any time whose drive or delays are modelled for commands at rest alone.
+    """
     from synth.retarder.explore.explore_page import PlayedTable
     from synth.retarder.forms.table_file import is_infeasible, summary_beside
     from synth.retarder.served_class import served_class
+    from tuning_tables.decisions import Decisions
 
     summary, limits_t = summary_beside(path), {each.label: each.mass_limits_t for each in config.cuts}
     for table in tables:
         served = served_class(table, config, source)
+        if table.decisions is Decisions.AT_ANY_TIME:
+            served.plant.drive_at_any_time()  # refused here: the scripts know no other drive
         infeasible = is_infeasible(table, summary)
         yield PlayedTable(table, served.label, served.plant, limits_t[served.label], infeasible)
 

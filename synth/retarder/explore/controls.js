@@ -8,7 +8,7 @@ const Controls = (() => {
     { key: "entry", label: "entry speed", of: "cut", isSpeed: M_S, step: 0.01, digits: 2,
       range: ({ laws, max_entry_m_s: most }) => [Math.max(LOWEST_ENTRY_M_S, laws.entry[0] - 1), most],
       usual: ({ laws }) => laws.entry[Math.trunc(laws.entry.length / 2)] },
-    { key: "factor", label: "friction of the pads, × mean", of: "cut", step: 0.01, digits: 2,
+    { key: "factor", label: "pad friction, × mean", of: "cut", step: 0.01, digits: 2,
       range: ({ laws }) => [Math.max(laws.factor_floor, 0.4), 1.6], usual: () => 1 },
     { key: "resistance", label: "rolling resistance, N/kN", of: "cut", step: 0.01, digits: 2,
       range: ({ laws }) => [0, Math.max(2 * laws.resistance_mean, laws.resistance_mean + 5 * laws.resistance_std)],
@@ -16,9 +16,9 @@ const Controls = (() => {
     { key: "seed", label: "seed of chance", of: "cut", step: 1, digits: 0, range: () => [1, MOST_SEED], usual: () => 1 },
     { key: "mass", label: "mass of the cut, t", of: "plant", step: 0.1, digits: 1,
       range: ({ mass_limits_t: limits }) => limits, usual: ({ mass_t: mass }) => mass },
-    { key: "noise", label: "noise of the radar", of: "plant", isSpeed: M_S, step: 0.001, digits: 3,
+    { key: "noise", label: "radar noise", of: "plant", isSpeed: M_S, step: 0.001, digits: 3,
       range: ({ sensor }) => [0, Math.max(0.3, 4 * sensor.noise_m_s)], usual: ({ sensor }) => sensor.noise_m_s },
-    { key: "delay", label: "delays of the valves, × configured", of: "plant", step: 0.05, digits: 2,
+    { key: "delay", label: "valve delays, × configured", of: "plant", step: 0.05, digits: 2,
       range: () => [0, 4], usual: () => 1 },
   ];
 

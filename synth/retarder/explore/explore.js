@@ -93,7 +93,8 @@
     const checked = validated ? `; validated ${speed(validated.rms_m_s)} ` +
       `[${validated.rms_ci95_m_s.map(speed).join(", ")}] in ${validated.passes} passes` : "";
     const rows = [
-      row(`rms of the exit error, ${set.unit}`, speed, "rms", speed(predicted.rms_m_s) + checked),
+      [`rms of the exit error, ${set.unit}`, `${speed(found.rms)} of these cuts`, speed(predicted.rms_m_s) + checked],
+      row(`95 of 100 cuts leave within ±, ${set.unit}`, speed, "within", "not told"),
       row(`mean exit error, ${set.unit}`, speed, "bias", speed(predicted.bias_m_s)),
       row(`more than ${withUnit(overspeedMS, 1)} too fast`, percent, "overspeed", percent(predicted.p_overspeed)),
       row("stands in the position", percent, "stalled",

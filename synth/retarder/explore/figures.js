@@ -17,8 +17,28 @@ const Figures = (() => {
     return [average, average - half, average + half];
   }
 
-  // Root of the mean square, its interval that of the mean square.
-  const rms = (values) => mean(values.map((each) => each * each)).map((each) => Math.sqrt(Math.max(0, each)));
+  // Root of the mean square of these values. It has no interval: the rarest cuts can make most of it, and few cuts
+  // seldom hold one of them.
+  const rms = (values) => Math.sqrt(values.reduce((sum, each) => sum + each * each, 0) / values.length);
+
+  // Probability that at most so many of n are among the part `share` of all.
+  function atMost(many, n, share) {
+    let term = (1 - share) ** n, sum = 0;
+    for (let count = 0; count <= many; count++) {
+      sum += term;
+      term *= (n - count) / (count + 1) * share / (1 - share);
+    }
+    return sum;
+  }
+
+  // A quantile with the interval of order statistics, which holds for every distribution; Infinity: no upper end.
+  function quantile(values, part) {
+    const sorted = [...values].sort((one, other) => one - other), n = sorted.length, share = 1 - part;
+    let most = 0, least = -1;
+    while (most < n - 1 && atMost(most, n, share) < 0.975) most += 1;
+    while (atMost(least + 1, n, share) <= 0.025) least += 1;
+    return [sorted[Math.ceil(n * part) - 1], sorted[n - most - 1], least < 0 ? Infinity : sorted[n - least - 1]];
+  }
 
   // Share of passes, with Wilson's interval.
   function share(count, n) {
@@ -33,6 +53,7 @@ const Figures = (() => {
     return {
       n,
       rms: rms(errors),
+      within: quantile(errors.map(Math.abs), 0.95),
       bias: mean(errors),
       overspeed: share(errors.filter((each) => each > overspeedMS).length, n),
       stalled: share(exits.filter(({ stalled }) => stalled).length, n),
