@@ -30,7 +30,19 @@ def test_a_book_becomes_one_page(command: Command, book: Path, two_classes: Path
     assert [len(each["tables"]) for each in classes] == [1, 1]
     assert [each["plant"]["mass_t"] for each in classes] == [22.0, 30.0]
     assert classes[0]["plant"]["mass_limits_t"][0] >= 20.0
+    assert "the plant may differ" not in page
     assert 'href="explore.html"' in (tmp_path / "page" / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_plant_that_may_be_another_is_told_on_the_page(
+    command: Command, book: Path, two_classes: Path, tmp_path: Path
+) -> None:
+    config = tmp_path / "other.toml"
+    config.write_text(two_classes.read_text() + "[sensor]\nnoise_m_s = 0.06\n")
+    ran = command("explore", book, "--config", config, "-o", tmp_path / "page")
+    assert ran.code == 0
+    page = (tmp_path / "page" / "explore.html").read_text(encoding="utf-8")
+    assert "tables were made from another configuration than " in page
 
 
 def test_the_same_book_gives_the_same_bytes(command: Command, book: Path, two_classes: Path, tmp_path: Path) -> None:

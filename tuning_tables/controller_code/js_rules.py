@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tuning_tables.controller_code.code import programs_of
-from tuning_tables.controller_code.line_code import RULES, room_of, values_of
+from tuning_tables.controller_code.line_code import NAMED, RULES, room_of, values_of
 from tuning_tables.language.javascript import indented, js_functions, js_maker, js_values
 from tuning_tables.language.records import SizedRecord
 from tuning_tables.programs.estimate import ESTIMATE
@@ -18,10 +18,12 @@ from tuning_tables.table import ControllerTable
 @dataclass(frozen=True)
 class JsRules:
     """`text`: a script with one object, `Rule`: the programs by their names, and `table` and `estimate`, which make a
-    record. `tables`: what `Rule.table` is given, JSON, a table each."""
+    record. `tables`: what `Rule.table` is given, JSON, a table each. `alarms`: the bits of what `Rule.alarms` answers,
+    each with its meaning."""
 
     text: str
     tables: tuple[Mapping[str, Any], ...]
+    alarms: tuple[tuple[int, str], ...]
 
 
 def js_rules(tables: Sequence[ControllerTable]) -> JsRules:
@@ -29,7 +31,7 @@ def js_rules(tables: Sequence[ControllerTable]) -> JsRules:
     room = room_of(tables)
     records = {record.name: record.sized(room) for record in (LINE_TABLE, ESTIMATE)}
     held = tuple(js_values(records[LINE_TABLE.name], values_of(each.held, records[LINE_TABLE.name])) for each in tables)
-    return JsRules(rule_script(records), held)
+    return JsRules(rule_script(records), held, tuple((bit, meaning) for _, bit, meaning in NAMED))
 
 
 def rule_script(records: Mapping[str, SizedRecord]) -> str:

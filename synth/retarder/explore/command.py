@@ -51,15 +51,15 @@ def resolve(asked: Asked[ResolvedConfig | None, ExploreOptions]) -> ExplorePage:
     config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, ())
     played = tuple(played_tables(tables, path, config, source))
     made = {table.generator.config_sha256 for table in tables}
-    told = f"retarder-synth {__version__} · plant: {source} · one file, which loads nothing"
+    other = f"tables were made from another configuration than {source}; the plant may differ"
+    warnings = () if made == {config.sha256} else (other,)
+    told = " · ".join((f"retarder-synth {__version__}", f"plant: {source}", "one file, which loads nothing", *warnings))
     content = explore_page(config.title, told, played).encode()
     if len(content) > LARGEST_PAGE_BYTES:
         raise InputError(
             f"{path}: a page of its {len(tables)} tables would have {len(content) / 1e6:.1f} MB; "
             f"{LARGEST_PAGE_BYTES / 1e6:g} MB are allowed: give one table, or a folder of fewer"
         )
-    other = f"tables were made from another configuration than {source}; the plant may differ"
-    warnings = () if made == {config.sha256} else (other,)
     return ExplorePage(config, len(tables), File(PAGE, content, "Play with the tables"), warnings)
 
 

@@ -52,5 +52,5 @@ const Controls = (() => {
     return `#${words}`;
   }
 
-  return { SLIDERS, usual, isConfigured, asked, valuesAsked, link };
+  return { SLIDERS, MOST_SEED, usual, isConfigured, asked, valuesAsked, link };
 })();

@@ -1,7 +1,7 @@
 "use strict";
 // The page: what is set, one pass of it at once, then many. All data are in the element "data"; nothing is loaded.
 (() => {
-  const { classes, overspeed_m_s: overspeedMS } = JSON.parse(document.getElementById("data").textContent);
+  const { classes, overspeed_m_s: overspeedMS, alarms } = JSON.parse(document.getElementById("data").textContent);
   const UNITS = { "m/s": 1, "km/h": 3.6, mph: 3600 / 1609.344 };
   const LINK_AFTER_MS = 250, MANY_AFTER_MS = 200, FEW_PASSES = 100, ONE_PASS = 0;
   const at = (id) => document.getElementById(id);
@@ -67,7 +67,7 @@
     const moment = shown.pass.questions[set.cursor], slider = at("moment");
     slider.max = shown.pass.questions.length - 1;
     slider.value = set.cursor;
-    const sentences = moment ? Words.why(shown.plant, shown.table, moment, withUnit)
+    const sentences = moment ? Words.why(shown.plant, shown.table, moment, withUnit, alarms)
       : ["The pass ended before the first sample."];
     at("why").replaceChildren(...sentences.map((textContent) => Object.assign(document.createElement("li"), { textContent })));
   }
@@ -238,7 +238,7 @@
       showAll();
     });
     on("unit", "change", () => { set.unit = at("unit").value; showAll(); });
-    on("draw", "click", () => change({ seed: set.values.seed % 9999 + 1 }));
+    on("draw", "click", () => change({ seed: set.values.seed % Controls.MOST_SEED + 1 }));
     on("reset", "click", () => { set.cursor = null; change(Controls.usual(plantOf())); });
     on("moment", "input", () => go(Number(at("moment").value)));
     on("back", "click", () => goToCommand(-1));

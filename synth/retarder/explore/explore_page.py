@@ -48,7 +48,7 @@ class PlayedTable:
 def explore_page(title: str, meta: str, tables: Sequence[PlayedTable]) -> str:
     """One HTML document; `meta`: a line below the title. The same tables give the same text."""
     rules = js_rules([each.table for each in tables])
-    data = {"classes": list(class_data(tables, rules)), "overspeed_m_s": OVERSPEED_M_S}
+    data = {"classes": list(class_data(tables, rules)), "overspeed_m_s": OVERSPEED_M_S, "alarms": rules.alarms}
     content = (element("h1", title), element("p", meta, class_="meta"), Markup(part(PAGE)))
     scripts = [rules.text, *(part(name) for name in SCRIPTS)]
     return scripted_document(f"{title}: play with its tables", part("explore.css"), content, data, scripts)

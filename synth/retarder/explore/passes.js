@@ -22,6 +22,7 @@ const Passes = (() => {
       const { table, stage, plant } = this;
       const known = table.breaks > 0 ? Rule.observe(table, this.estimate, s, measured, this.passedKpa) : measured;
       const told = { s, measured, known, pressureKpa, isAsked, before: stage, wanted: stage };
+      told.alarms = table.breaks > 0 ? Rule.alarms(table, this.estimate) : 0;
       if (isAsked) told.wanted = admitted(plant, stage, Rule.decide(table, stage, s, known, pressureKpa), s);
       this.stage = told.wanted;
       return told;

@@ -61,14 +61,17 @@ const Words = (() => {
     return `${told} The speed is ${found}: ${ends}.`.replace(": but", ", but");
   }
 
-  // [sentence, …] for a question of a regulator at time `time`.
-  function why(plant, table, { time, v, question }, withUnit) {
+  // [sentence, …] for a question of a regulator at time `time`; `alarms`: bits of the alarm word and what they mean.
+  function why(plant, table, { time, v, question }, withUnit, alarms) {
     const { s, measured, known, before, wanted, isAsked, pressureKpa } = question;
     const told = [`${time.toFixed(2)} s: the first axle is at ${s.toFixed(2).replace("-", "−")} m, ${where(plant, s)}.`];
     told.push(Number.isNaN(measured) ? `The radar gives no reading; the true speed is ${withUnit(v)}.`
       : `The radar shows ${withUnit(measured)}; the true speed is ${withUnit(v)}.`);
     if (table.breaks > 0) {
       told.push(known < 0 ? "The estimator has no speed yet." : `The estimator makes ${withUnit(known)} of all readings.`);
+    }
+    for (const [bit, meaning] of alarms) {
+      if (question.alarms & bit) told.push(`${meaning[0].toUpperCase()}${meaning.slice(1)}.`);
     }
     if (!isAsked) {
       told.push(`The change to stage ${before} is under way, with ${pressureKpa.toFixed(0)} kPa in the cylinders. This ` +

@@ -28,23 +28,26 @@ for (const [pass, each] of cuts.entries()) {
     if (!question) return;
     const steps = question.isAsked && question.known >= 0 ? Words.steps(table, question) : null;
     found.push({ pass, ...question, steps,
-      told: Words.why(plant, table, { time, v, question }, (speed) => `${speed.toFixed(2)} m/s`) });
+      told: Words.why(plant, table, { time, v, question }, (speed) => `${speed.toFixed(2)} m/s`, given.alarms) });
   });
 }
 tell(found);
 """
 
 
-def questions_of(table: ControllerTable, count: int = 40) -> list[dict[str, Any]]:
-    """All questions of some passes, with what is told of them."""
+def questions_of(table: ControllerTable, count: int = 40, cut_factor: float | None = None) -> list[dict[str, Any]]:
+    """All questions of some passes, with what is told of them; `cut_factor`: of all cuts, else drawn."""
     plant, rules = plant_of(table), js_rules([table])
     loop = close_loop(plant, len(table.stages))
     passes = random_passes(3, 0, count, loop.cells)
     given = {
         "plant": plant_data(plant, LIMITS_T, len(table.stages)),
         "table": rules.tables[0],
+        "alarms": rules.alarms,
         "cuts": cuts_of(plant, passes, loop.draws(passes).noise_z),
     }
+    for cut in given["cuts"]:
+        cut["factor"] = cut_factor or cut["factor"]
     found: list[dict[str, Any]] = told(rules, SCRIPTS, TELLING, given)
     return found
 
@@ -87,6 +90,16 @@ def test_steps_lead_from_the_stage_in_force_to_the_one_that_is_commanded(name: s
             if answer == 0 and step["upper"] is not None and speed > step["upper"]:
                 answer = 1 if each["s"] >= 0.0 or step["stage"] < table.entrance_stage else 0
             assert step["answer"] == answer
+
+
+@needs_node
+def test_an_alarm_of_the_table_is_told() -> None:
+    table = estimating_table()
+    limit = 1.0 + 1.5 * table.estimator.unlikely_deviation if table.estimator else 0.0
+    found = {sentence for each in questions_of(table, 5, limit) for sentence in each["told"]}
+    assert "Alarm: the brake works more on this cut than on any of its category." in found
+    found = {sentence for each in questions_of(table, 5, 1.0) for sentence in each["told"]}
+    assert not any(sentence.startswith("Alarm") for sentence in found)
 
 
 @needs_node
