@@ -1,11 +1,8 @@
-"""The rule as JavaScript gives the golden answers in every bit, under node."""
+"""The rule as JavaScript gives the golden answers in every bit."""
 
 from __future__ import annotations
 
 import json
-import shutil
-import subprocess
-from base64 import b64encode
 from collections.abc import Callable
 from typing import Any
 
@@ -13,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests.controller_code.sample_book import approaching_book, estimating_book, park_book, sample_book, surface_book
+from tests.in_javascript import ENGINES, Engine, needs_javascript, packed, told
 from tuning_tables.controller_code.code import ControllerCode, Questions
 from tuning_tables.controller_code.js_rules import js_rules, rule_script
 from tuning_tables.controller_code.line_code import line_code
@@ -21,15 +19,8 @@ from tuning_tables.programs.decide import decide
 from tuning_tables.self_test_size import FULL
 from tuning_tables.table_book import TableBook
 
-NODE = shutil.which("node")
-needs_node = pytest.mark.skipif(NODE is None, reason="node is not installed")
-
 ASKING = """
-const given = JSON.parse(require("fs").readFileSync(0, "utf8"));
-const column = ({ kind, bytes }) => {
-  const raw = Uint8Array.from(Buffer.from(bytes, "base64")).buffer;
-  return kind === "f" ? new Float32Array(raw) : new Int32Array(raw);
-};
+const column = ({ kind, text }) => kind === "f" ? floats(text) : wholes(text);
 const tables = given.tables.map((values) => Rule.table(values));
 const faults = [];
 let asked = 0;
@@ -53,20 +44,16 @@ for (const { columns: packed, rules, expected, before } of given.questions) {
     }
   }
 }
-console.log(JSON.stringify({ asked, faults: faults.slice(0, 5) }));
+tell({ asked, faults: faults.slice(0, 5) });
 """
 
 
-def packed(questions: Questions, code: ControllerCode) -> dict[str, Any]:
+def asked_of(questions: Questions, code: ControllerCode) -> dict[str, Any]:
     """Questions as JSON that loses no bit."""
     rows, programs = questions.rows, {rule: code.program(rule) for rule in questions.rules}
     return {
         "columns": {
-            name: {
-                "kind": rows[name].dtype.kind,
-                "bytes": b64encode(rows[name].astype(rows[name].dtype).tobytes()).decode(),
-            }
-            for name in rows.dtype.names or ()
+            name: {"kind": rows[name].dtype.kind, "text": packed(rows[name])} for name in rows.dtype.names or ()
         },
         "rules": [
             {
@@ -81,35 +68,39 @@ def packed(questions: Questions, code: ControllerCode) -> dict[str, Any]:
     }
 
 
-def answered(script: str, tables: list[Any], questions: list[Any]) -> dict[str, Any]:
-    """How many answers node compared, and the first that differ."""
-    assert NODE is not None
-    text = json.dumps({"tables": tables, "questions": questions})
-    done = subprocess.run(
-        [NODE, "-e", script + ASKING], input=text, capture_output=True, text=True, check=True, timeout=300
-    )
-    found: dict[str, Any] = json.loads(done.stdout)
+def answered(script: str, tables: list[Any], questions: list[Any], engine: Engine | None = None) -> dict[str, Any]:
+    """How many answers were compared, and the first that differ."""
+    found: dict[str, Any] = told(script + ASKING, {"tables": tables, "questions": questions}, engine)
     return found
 
 
-@needs_node
+@needs_javascript
 @pytest.mark.parametrize("book_of", [sample_book, estimating_book, approaching_book, surface_book, park_book])
 def test_golden_questions_are_answered_alike_in_every_bit(book_of: Callable[[], TableBook]) -> None:
     code = line_code(book_of(), FULL)
     tables = [js_values(code.table, each.values) for each in code.tables]
-    found = answered(rule_script(code.sized), tables, [packed(each, code) for each in code.questions])
+    found = answered(rule_script(code.sized), tables, [asked_of(each, code) for each in code.questions])
     assert found["asked"] > 2_000
     assert found["faults"] == []
 
 
-@needs_node
+@pytest.mark.parametrize("engine", ENGINES)
+def test_every_engine_answers_alike(engine: Engine) -> None:
+    code = line_code(park_book(), FULL)
+    tables = [js_values(code.table, each.values) for each in code.tables]
+    found = answered(rule_script(code.sized), tables, [asked_of(each, code) for each in code.questions], engine)
+    assert found["asked"] > 2_000
+    assert found["faults"] == []
+
+
+@needs_javascript
 def test_a_changed_line_is_noticed() -> None:
     code = line_code(park_book(), FULL)
     tables = [js_values(code.table, each.values) for each in code.tables]
     first = tables[0]["coefficient"]
     place = next(place for place, value in enumerate(first) if value != 0.0)
     first[place] = float(np.nextafter(np.float32(first[place]), np.float32(np.inf)))
-    found = answered(rule_script(code.sized), tables, [packed(each, code) for each in code.questions])
+    found = answered(rule_script(code.sized), tables, [asked_of(each, code) for each in code.questions])
     assert found["faults"] != []
 
 

@@ -13,8 +13,9 @@ from plant_models import HistogramEntrySpeed, NormalEntrySpeed, Plant
 from synth.retarder.explore.plant_data import entry_quantiles_m_s, plant_data
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import random_passes
+from tests.in_javascript import needs_javascript
 from tests.synth.explore.braked import LIMITS_T, STAGES, estimating_table, plant_of
-from tests.synth.explore.scripts_in_node import needs_node, told
+from tests.synth.explore.scripts_of_page import told_by
 from tuning_tables.controller_code.js_rules import js_rules
 
 CUTS = 4000
@@ -29,13 +30,13 @@ tell(Array.from({ length: given.count }, (_, place) => Draws.cut(given.plant, gi
 
 def drawn(plant: Plant, count: int, seed: int = 11) -> list[dict[str, Any]]:
     """Cuts as the page draws them; null is a lost reading."""
-    found: list[dict[str, Any]] = told(
+    found: list[dict[str, Any]] = told_by(
         None, ("draws.js",), DRAWING, {"plant": plant_data(plant, LIMITS_T, STAGES), "count": count, "seed": seed}
     )
     return found
 
 
-@needs_node
+@needs_javascript
 def test_cuts_follow_the_laws_of_the_plant() -> None:
     plant = plant_of(estimating_table())
     cuts = drawn(plant, CUTS)
@@ -51,7 +52,7 @@ def test_cuts_follow_the_laws_of_the_plant() -> None:
     assert np.abs(np.corrcoef(numbers.T) - np.eye(4)).max() < 4.0 / np.sqrt(CUTS)
 
 
-@needs_node
+@needs_javascript
 def test_a_wide_law_of_the_resistance_has_its_gamma_shape_below_1() -> None:
     plant = plant_of(estimating_table())
     plant = replace(plant, resistance=replace(plant.resistance, std_n_per_kn=2.5))
@@ -61,7 +62,7 @@ def test_a_wide_law_of_the_resistance_has_its_gamma_shape_below_1() -> None:
     assert stats.kstest(found, "gamma", args=(law.shape, 0.0, law.scale_n_per_kn)).pvalue > LEAST_P
 
 
-@needs_node
+@needs_javascript
 def test_lost_readings_have_their_share_and_come_in_bursts() -> None:
     plant = plant_of(estimating_table())
     plant = replace(plant, sensor=replace(plant.sensor, missed_share=0.2, missed_burst_s=0.6))
@@ -71,7 +72,7 @@ def test_lost_readings_have_their_share_and_come_in_bursts() -> None:
     assert lost.sum() / begun.sum() == pytest.approx(plant.sensor.missed_readings, rel=0.06)
 
 
-@needs_node
+@needs_javascript
 def test_a_pass_has_the_same_numbers_whatever_the_length_of_the_path() -> None:
     plant = plant_of(estimating_table())
     one, same = drawn(plant, 2), drawn(plant, 2)
@@ -95,7 +96,7 @@ def sfc32(seed: int, stream: int, purpose: int, count: int) -> list[int]:
     return found[16:]
 
 
-@needs_node
+@needs_javascript
 def test_the_generator_is_sfc32() -> None:
     plant = plant_of(estimating_table())
     (cut,) = drawn(plant, 1, seed=77)
@@ -126,12 +127,12 @@ tell(given.samples.map((errors) => Figures.of(exits(errors), 0, 0.3).within));
 """
 
 
-@needs_node
+@needs_javascript
 @pytest.mark.parametrize("count", [100, 1000])
 def test_the_interval_of_a_quantile_holds_the_truth_in_95_of_100_samples(count: int) -> None:
     samples = np.random.default_rng(5).standard_t(3.0, (1000, count))
     truth = stats.t(3.0).ppf(0.975)
-    values = np.array(told(None, ("figures.js",), QUANTILES, {"samples": samples.tolist()}))
+    values = np.array(told_by(None, ("figures.js",), QUANTILES, {"samples": samples.tolist()}))
     ordered = np.sort(np.abs(samples), axis=1)
     assert (values[:, 0] == ordered[:, count * 95 // 100 - 1]).all()
     held = (values[:, 1] <= truth) & (truth <= values[:, 2])
@@ -141,7 +142,7 @@ def test_the_interval_of_a_quantile_holds_the_truth_in_95_of_100_samples(count: 
 FIGURES = "tell(Figures.of(given.exits, given.target, 0.3));"
 
 
-@needs_node
+@needs_javascript
 def test_figures_have_the_intervals_of_student_and_wilson() -> None:
     rng = np.random.default_rng(3)
     speeds = 3.0 + 0.2 * rng.standard_normal(100)
@@ -150,7 +151,7 @@ def test_figures_have_the_intervals_of_student_and_wilson() -> None:
         {"exitMS": v, "stalled": bool(v == 0.0), "commands": int(k), "time": 10.0 + v}
         for v, k in zip(speeds, rng.poisson(6.0, 100), strict=True)
     ]
-    found = told(None, ("figures.js",), FIGURES, {"exits": exits, "target": 3.0})
+    found = told_by(None, ("figures.js",), FIGURES, {"exits": exits, "target": 3.0})
     error = speeds - 3.0
     mean = stats.ttest_1samp(error, 0.0).confidence_interval(0.95)
     assert found["n"] == 100
@@ -168,12 +169,12 @@ tell(Array.from({ length: count }, (_, place) => Passes.run(plant, table, settin
 """
 
 
-@needs_node
+@needs_javascript
 def test_many_cuts_leave_as_those_of_the_closed_loop() -> None:
     table = estimating_table()
     plant, rules = plant_of(table), js_rules([table])
     given = {"plant": plant_data(plant, LIMITS_T, STAGES), "table": rules.tables[0], "count": CUTS}
-    found = told(rules, ("motion.js", "drive.js", "passes.js", "draws.js"), EXITS, given)
+    found = told_by(rules, ("motion.js", "drive.js", "passes.js", "draws.js"), EXITS, given)
     loop = close_loop(plant, STAGES)
     sample = loop.run(TableController(table), loop.draws(random_passes(1, 0, CUTS, loop.cells)))
     for key, theirs in (

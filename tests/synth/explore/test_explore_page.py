@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import subprocess
 from dataclasses import replace
 from pathlib import Path
@@ -14,12 +13,12 @@ import pytest
 
 from synth.retarder.explore.explore_page import explore_page
 from synth.retarder.explore.plant_data import plant_data
+from tests.in_javascript import CHROMIUM, needs_javascript
 from tests.synth.explore.braked import LIMITS_T, TABLES, played
-from tests.synth.explore.scripts_in_node import needs_node, told
+from tests.synth.explore.scripts_of_page import told_by
 from tuning_tables import Validated
 from tuning_tables.controller_code.js_rules import js_rules
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 EVIL = "</script><script>throw 1</script><img src=x onerror=alert(1)> & \u2028"
 MOST_MS = 100.0
 FRAGMENT = "#table=estimated&mass=25&factor=1.1&noise=0.02&seed=7&at=31&entry=nonsense&unknown=1"
@@ -147,7 +146,7 @@ def test_the_link_sets_what_it_names_and_what_is_no_number_stays(seen: dict[str,
     assert "delay" not in seen["link"]
 
 
-@needs_node
+@needs_javascript
 def test_the_exit_is_that_of_the_scripts(seen: dict[str, Any]) -> None:
     one = played("estimated")
     rules = js_rules([played(name).table for name in TABLES])
@@ -156,7 +155,7 @@ def test_the_exit_is_that_of_the_scripts(seen: dict[str, Any]) -> None:
         "table": rules.tables[list(TABLES).index("estimated")],
         "setting": {"mass": 25.0, "factor": 1.1, "noise": 0.02, "seed": 7},
     }
-    exit_ = told(rules, ("motion.js", "drive.js", "passes.js", "draws.js"), ONE, given)
+    exit_ = told_by(rules, ("motion.js", "drive.js", "passes.js", "draws.js"), ONE, given)
     assert seen["first"]["exit"].startswith(f"Exit {exit_['exitMS']:.2f} m/s, target 3.00 m/s: error ")
     assert f"{exit_['commands']} commands, {exit_['time']:.1f} s." in seen["first"]["exit"]
 

@@ -14,8 +14,9 @@ from plant_models import Plant, WeightForce
 from synth.retarder.explore.plant_data import plant_data
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import RandomPasses, random_passes
+from tests.in_javascript import needs_javascript, packed
 from tests.synth.explore.braked import LIMITS_T, any_time_table, blind_table, estimating_table, measured_table, plant_of
-from tests.synth.explore.scripts_in_node import needs_node, packed, told
+from tests.synth.explore.scripts_of_page import told_by
 from tuning_tables import ControllerTable
 from tuning_tables.controller_code.js_rules import js_rules
 
@@ -94,7 +95,7 @@ CASES = {
 }
 
 
-@needs_node
+@needs_javascript
 @pytest.mark.parametrize("case", CASES)
 def test_a_pass_is_that_of_python_event_by_event(case: str) -> None:
     table_of_case, plant_for, mass_t, noise_m_s, delay_times = CASES[case]
@@ -144,4 +145,4 @@ def both(
             :-1
         ]
         expected.append((events, sample.exit_speed_m_s[0], bool(sample.stalled[0]), int(sample.switchings[0])))
-    return told(rules, SCRIPTS, ASKING, given), expected
+    return told_by(rules, SCRIPTS, ASKING, given), expected

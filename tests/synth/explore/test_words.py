@@ -11,8 +11,9 @@ from synth.retarder.explore.plant_data import plant_data
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.logged_passes import drive_pressures_kpa
 from synth.simulation.random_passes import random_passes
+from tests.in_javascript import needs_javascript
 from tests.synth.explore.braked import LIMITS_T, TABLES, estimating_table, plant_of
-from tests.synth.explore.scripts_in_node import needs_node, told
+from tests.synth.explore.scripts_of_page import told_by
 from tests.synth.explore.test_passes import cuts_of
 from tuning_tables import ControllerTable, decide_for
 from tuning_tables.controller_code.js_rules import js_rules
@@ -48,11 +49,11 @@ def questions_of(table: ControllerTable, count: int = 40, cut_factor: float | No
     }
     for cut in given["cuts"]:
         cut["factor"] = cut_factor or cut["factor"]
-    found: list[dict[str, Any]] = told(rules, SCRIPTS, TELLING, given)
+    found: list[dict[str, Any]] = told_by(rules, SCRIPTS, TELLING, given)
     return found
 
 
-@needs_node
+@needs_javascript
 @pytest.mark.parametrize("name", TABLES)
 def test_every_sentence_ends_with_what_the_rule_commands(name: str) -> None:
     table = TABLES[name]()
@@ -70,7 +71,7 @@ def test_every_sentence_ends_with_what_the_rule_commands(name: str) -> None:
             assert each["wanted"] == each["before"]
 
 
-@needs_node
+@needs_javascript
 @pytest.mark.parametrize("name", TABLES)
 def test_steps_lead_from_the_stage_in_force_to_the_one_that_is_commanded(name: str) -> None:
     table = TABLES[name]()
@@ -92,7 +93,7 @@ def test_steps_lead_from_the_stage_in_force_to_the_one_that_is_commanded(name: s
             assert step["answer"] == answer
 
 
-@needs_node
+@needs_javascript
 def test_an_alarm_of_the_table_is_told() -> None:
     table = estimating_table()
     limit = 1.0 + 1.5 * table.estimator.unlikely_deviation if table.estimator else 0.0
@@ -102,7 +103,7 @@ def test_an_alarm_of_the_table_is_told() -> None:
     assert not any(sentence.startswith("Alarm") for sentence in found)
 
 
-@needs_node
+@needs_javascript
 def test_the_pressure_is_that_of_a_gauge_without_noise() -> None:
     table = estimating_table()
     plant = plant_of(table)
