@@ -41,14 +41,13 @@ def questions_of(table: ControllerTable, count: int = 40, cut_factor: float | No
     plant, rules = plant_of(table), js_rules([table])
     loop = close_loop(plant, len(table.stages))
     passes = random_passes(3, 0, count, loop.cells)
+    cuts = cuts_of(plant, passes, loop.draws(passes).noise_z)
     given = {
         "plant": plant_data(plant, LIMITS_T, len(table.stages)),
         "table": rules.tables[0],
         "alarms": rules.alarms,
-        "cuts": cuts_of(plant, passes, loop.draws(passes).noise_z),
+        "cuts": [{**cut, "factor": cut_factor or cut["factor"]} for cut in cuts],
     }
-    for cut in given["cuts"]:
-        cut["factor"] = cut_factor or cut["factor"]
     found: list[dict[str, Any]] = told_by(rules, SCRIPTS, TELLING, given)
     return found
 
