@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from importlib.resources import files
 from typing import Final
 
 from synth.frame.page.markup import Markup, element
 from synth.frame.page.page_style import STYLE
+
+SPEED_UNITS: Final = files("synth.frame.page").joinpath("speed_units.js").read_text(encoding="utf-8")
+"""The script of pages whose user chooses the unit of speeds."""
 
 POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"
 """Of the security of its content."""

@@ -42,13 +42,13 @@ const Controls = (() => {
     return found;
   }
 
-  // Only what differs from the configuration stands in the link, besides the table.
+  // Of the sliders only what differs from the configuration stands in the link.
   function link(plant, table, values, others) {
     const words = new URLSearchParams({ table });
     for (const { key, usual: as, step, digits } of SLIDERS) {
       if (Math.abs(values[key] - as(plant)) >= step / 2) words.set(key, values[key].toFixed(Math.max(digits, 3)));
     }
-    for (const [key, value] of Object.entries(others)) if (value !== null) words.set(key, value);
+    for (const [key, value] of Object.entries(others)) words.set(key, value);
     return `#${words}`;
   }
 

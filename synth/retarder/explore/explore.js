@@ -2,7 +2,6 @@
 // The page: what is set, one pass of it at once, then many. All data are in the element "data"; nothing is loaded.
 (() => {
   const { classes, overspeed_m_s: overspeedMS, alarms } = JSON.parse(document.getElementById("data").textContent);
-  const UNITS = { "m/s": 1, "km/h": 3.6, mph: 3600 / 1609.344 };
   const LINK_AFTER_MS = 250, MANY_AFTER_MS = 200, FEW_PASSES = 100, ONE_PASS = 0;
   const at = (id) => document.getElementById(id);
   const on = (id, event, act) => at(id).addEventListener(event, act);
@@ -12,7 +11,7 @@
   let shown = null, waitsForCloud = 0, waitsForLink = 0;
 
   const plantOf = () => choices[set.choice].of.plant;
-  const number = (m_s, digits = 2) => (m_s * UNITS[set.unit]).toFixed(digits);
+  const number = (m_s, digits = 2) => (m_s * SpeedUnits.FACTORS[set.unit]).toFixed(digits);
   const withUnit = (m_s, digits = 2) => `${number(m_s, digits)} ${set.unit}`;
   const signed = (m_s, digits) => `${m_s < 0 ? "−" : "+"}${number(Math.abs(m_s), digits)}`;
 
@@ -61,7 +60,7 @@
   }
 
   function drawPass() {
-    Object.assign(shown, { cursor: set.cursor, factor: UNITS[set.unit], unit: set.unit });
+    Object.assign(shown, { cursor: set.cursor, factor: SpeedUnits.FACTORS[set.unit], unit: set.unit });
     Pictures.speedOverPath(charts.speed, shown);
     Pictures.pressureOverTime(charts.pressure, shown);
     const moment = shown.pass.questions[set.cursor], slider = at("moment");
@@ -116,7 +115,7 @@
 
   // --- the state and its link
   function writeLink() {
-    const others = { unit: set.unit === "m/s" ? null : set.unit, at: set.cursor };
+    const others = { unit: set.unit, at: set.cursor };
     const link = Controls.link(plantOf(), choices[set.choice].told.id, set.values, others);
     try { history.replaceState(null, "", link); } catch { return; }  // a browser may refuse it for a file
   }
@@ -125,7 +124,7 @@
     const words = Controls.asked(), found = choices.findIndex(({ told }) => told.id === words.get("table"));
     set.choice = Math.max(0, found);
     set.values = Controls.valuesAsked(plantOf(), words);
-    set.unit = Object.hasOwn(UNITS, words.get("unit") ?? "") ? words.get("unit") : "m/s";
+    set.unit = SpeedUnits.known(words.get("unit")) ? words.get("unit") : SpeedUnits.remembered();
     const moment = Number(words.get("at") ?? NaN);
     set.cursor = Number.isInteger(moment) && moment >= 0 && words.has("at") ? moment : null;
   }
@@ -237,7 +236,11 @@
       set.values = Controls.usual(plantOf());
       showAll();
     });
-    on("unit", "change", () => { set.unit = at("unit").value; showAll(); });
+    on("unit", "change", () => {
+      set.unit = at("unit").value;
+      SpeedUnits.remember(set.unit);
+      showAll();
+    });
     on("draw", "click", () => change({ seed: set.values.seed % Controls.MOST_SEED + 1 }));
     on("reset", "click", () => { set.cursor = null; change(Controls.usual(plantOf())); });
     on("moment", "input", () => go(Number(at("moment").value)));
@@ -257,7 +260,7 @@
     of.made = (told) => { if (!made.has(told)) made.set(told, Rule.table(told.held)); return made.get(told); };
   }
   for (const { told } of choices) at("table").add(new Option(told.title));
-  for (const unit of Object.keys(UNITS)) at("unit").add(new Option(unit));
+  for (const unit of Object.keys(SpeedUnits.FACTORS)) at("unit").add(new Option(unit));
   makeSliders();
   listen();
   readLink();

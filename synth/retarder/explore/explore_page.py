@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from plant_models import Plant
 from synth.frame.page.markup import Markup, element
-from synth.frame.page.scripted_document import scripted_document
+from synth.frame.page.scripted_document import SPEED_UNITS, scripted_document
 from synth.retarder.explore.plant_data import plant_data
 from synth.simulation.exit_statistics import OVERSPEED_M_S
 from tuning_tables.controller_code.js_rules import JsRules, js_rules
@@ -50,7 +50,7 @@ def explore_page(title: str, meta: str, tables: Sequence[PlayedTable]) -> str:
     rules = js_rules([each.table for each in tables])
     data = {"classes": list(class_data(tables, rules)), "overspeed_m_s": OVERSPEED_M_S, "alarms": rules.alarms}
     content = (element("h1", title), element("p", meta, class_="meta"), Markup(part(PAGE)))
-    scripts = [rules.text, *(part(name) for name in SCRIPTS)]
+    scripts = [rules.text, SPEED_UNITS, *(part(name) for name in SCRIPTS)]
     return scripted_document(f"{title}: play with its tables", part("explore.css"), content, data, scripts)
 
 

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from plant_models.library.hump_entry import HumpEntry
 from synth.frame.page.markup import Markup, element
-from synth.frame.page.scripted_document import scripted_document
+from synth.frame.page.scripted_document import SPEED_UNITS, scripted_document
 from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.hump_page.plan_data import plan_data
 from synth.hump.trains.hump_page.train_data import train_data
@@ -47,7 +47,7 @@ def hump_page(title: str, runs: Sequence[PlayedRun], trains: Sequence[str]) -> s
         element("p", humps, class_="meta"),
         Markup(text_of("player.html")),
     )
-    scripts = [text_of(name) for name in SCRIPTS]
+    scripts = [SPEED_UNITS, *(text_of(name) for name in SCRIPTS)]
     return scripted_document(f"{title}: {humps}", text_of("player.css"), content, data, scripts)
 
 
