@@ -11,7 +11,15 @@ TOP: Final = CommandGuide(
     "",
     {
         "Design tables": ("init", "tune", "aim", "sensors", "sweep"),
-        "Check and understand them": ("inspect", "validate", "verify", "loop", "sensitivity", "hardware"),
+        "Check and understand them": (
+            "inspect",
+            "explore",
+            "validate",
+            "verify",
+            "loop",
+            "sensitivity",
+            "hardware",
+        ),  # fmt: skip
         "The whole hump": ("hump", "computer"),
         "From measured passes": ("identify", "retune", "watch", "replay"),
         "For controllers": ("export",),
@@ -22,6 +30,7 @@ TOP: Final = CommandGuide(
         "sensors": Shown("sensors my.toml --sensors 3-6", "how-to/point-sensors.md"),
         "aim": Shown("aim --hump my-hump.toml --track 7 -o out/aim", "how-to/aim.md"),
         "validate": Shown("validate out --passes 50000 --seed 7", "reference/limits.md"),
+        "explore": Shown("explore out -o out/explore", "how-to/explore.md"),
         "sensitivity": Shown("sensitivity my.toml -o out/sensitivity", "how-to/sensitivity.md"),
         "hardware": Shown("hardware my.toml -o out/hardware", "explanation/any-time.md"),
         "computer": Shown("computer my-computer.toml -o out/computer", "how-to/control-computer.md"),

@@ -57,6 +57,15 @@ COMMANDS: Final = (
         "cycles. Exit code 1 if the two responses do not agree.",
     ),
     Listed(
+        "explore",
+        "synth.retarder.explore.command:COMMAND",
+        "synth.retarder.explore.options:ExploreOptions",
+        "init",
+        "Make one page on which tables brake cuts in the browser.\n\n"
+        "Sliders set the cut and the plant; the page tells the exit error at once, why each command is given, and what "
+        "a hundred cuts do.",
+    ),
+    Listed(
         "sensitivity",
         "synth.retarder.sensitivity.command:COMMAND",
         "synth.retarder.sensitivity.options:SensitivityOptions",

@@ -64,6 +64,7 @@ ORDERS: tuple[Order, ...] = (
     Order(f"validate {BOOK} {PARK} --log log.h5 --log-passes 150", "validated"),
     Order(f"verify {BOOK}", "verified"),
     Order(f"inspect {BOOK} {PARK}", "pictures"),
+    Order(f"explore {BOOK} {PARK}", "explored"),
     Order(f"loop {BOOK} {PARK}", "loops"),
     *(Order(f"export {BOOK} --format {form}", f"export-{form}") for form in ("json", "c", "st", "csv")),
     Order(f"export {BOOK} --format st --split --self-test small --correction 0.2 --prefix PARK", "export-split"),

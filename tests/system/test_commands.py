@@ -146,13 +146,13 @@ def test_plot_draws_without_solving(command: Command, tuned: Path, two_classes: 
     names = {Path(name).name for name in json.loads(ran.out)["pictures"]}
     kinds = ("lines", "surfaces", "passes")
     assert names == {f"{i}-{kind}.svg" for i in (ID, HEAVIER) for kind in kinds}
-    assert names == set(results_in(tmp_path / "plots"))
+    assert names | {"report.html"} == set(results_in(tmp_path / "plots"))
     alone = tmp_path / "alone.json"
     alone.write_bytes((tuned / "tables" / f"{ID}.json").read_bytes())
     without = command("inspect", alone, "-o", tmp_path / "bare")
     assert without.code == 0
     assert "no passes are drawn" in without.sentence
-    assert len(results_in(tmp_path / "bare")) == 2
+    assert len(results_in(tmp_path / "bare")) == 3
 
 
 def test_init_prints_what_tune_reads(command: Command) -> None:

@@ -142,7 +142,8 @@ def test_responses_that_do_not_agree_give_1(
 
 
 def test_bad_input_is_one_sentence(command: Command, tuned: Path, tmp_path: Path) -> None:
-    table = tuned / "tables" / f"{TABLE}.json"
+    table = tmp_path / "alone.json"
+    table.write_bytes((tuned / "tables" / f"{TABLE}.json").read_bytes())
     refused = command("loop", table, "-o", tmp_path / "out")  # the built-in plant is another
     assert refused.code == 2
     assert "no cut class fits the table" in refused.sentence

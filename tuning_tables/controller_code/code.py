@@ -188,12 +188,7 @@ class ControllerCode:
     @cached_property
     def programs(self) -> tuple[Program, ...]:
         """All rules and those that they ask, folded, each once, none before one that it asks."""
-        found: dict[str, Program] = {}
-        for rule in (*self.chooses, *self.rules):
-            for program in with_asked(folded(program_of(rule.function), self.sized)):
-                if found.setdefault(program.name, program) != program:
-                    raise ValueError(f"{program.name} is a rule, and is asked with other parameters.")
-        return tuple(found.values())
+        return programs_of((*self.chooses, *self.rules), self.sized)
 
     def beginning(self, state: str) -> Rule:
         """The rule that begins a state."""
@@ -224,6 +219,16 @@ class ControllerCode:
         for table in self.tables:
             content += words_of(self.table, table.values).astype("<u4").tobytes()
         return zlib.crc32(content)
+
+
+def programs_of(rules: Sequence[Rule], sized: Mapping[str, SizedRecord]) -> tuple[Program, ...]:
+    """The rules and those that they ask, folded for these records, each once, none before one that it asks."""
+    found: dict[str, Program] = {}
+    for rule in rules:
+        for program in with_asked(folded(program_of(rule.function), sized)):
+            if found.setdefault(program.name, program) != program:
+                raise ValueError(f"{program.name} is a rule, and is asked with other parameters.")
+    return tuple(found.values())
 
 
 def with_asked(program: Program) -> list[Program]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -29,16 +29,20 @@ from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALA
 from tuning_tables.programs.choose import Tables, blend, choose
 from tuning_tables.programs.decide import decide
 from tuning_tables.programs.estimate import ESTIMATE
-from tuning_tables.programs.line_table import LINE_TABLE
+from tuning_tables.programs.line_table import LINE_TABLE, LineTable
 from tuning_tables.programs.motion_filter import begin_cut
 from tuning_tables.programs.observe import observe
 from tuning_tables.self_test_size import SelfTestSize
+from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import TableBook
 
 BEGIN: Final = Rule(begin_cut, "begin")
 OBSERVE: Final = Rule(observe, "observe", "-1.0f")
 DECIDE: Final = Rule(decide, "decide", "stage")
 ALARMS: Final = Rule(alarms, "alarms", "0")
+RULES: Final = (BEGIN, OBSERVE, DECIDE, ALARMS)
+"""What a regulator asks while a cut is in the position."""
+
 CHOOSE: Final = Rule(choose, "choose")
 BLEND: Final = Rule(blend, "blend")
 
@@ -72,7 +76,7 @@ NAMED: Final = (
 
 def line_code(book: TableBook, self_test: SelfTestSize) -> ControllerCode:
     """The export of a book. Raises `InvalidTable` for a category without number."""
-    room = room_of(book)
+    room = room_of(book.tables)
     record = LINE_TABLE.sized(room)
     held = tuple(HeldTable(table.id, held_values(book, number, record)) for number, table in enumerate(book.tables))
     return ControllerCode(
@@ -85,7 +89,7 @@ def line_code(book: TableBook, self_test: SelfTestSize) -> ControllerCode:
         declared=(LINE_TABLE, ESTIMATE, record_of(Tables)),
         room=room,
         tables=held,
-        rules=(BEGIN, OBSERVE, DECIDE, ALARMS),
+        rules=RULES,
         chooses=(CHOOSE, BLEND) if book.has_pairs else (CHOOSE,),
         questions=(decisions(book, self_test), estimates(book)),
         commands=tuple(commands(book, record)),
@@ -94,14 +98,15 @@ def line_code(book: TableBook, self_test: SelfTestSize) -> ControllerCode:
     )
 
 
-def room_of(book: TableBook) -> Mapping[str, int]:
-    """The least room that every table of the book fits into."""
+def room_of(tables: Sequence[ControllerTable]) -> Mapping[str, int]:
+    """The least room that every one of the tables fits into."""
+    held = [table.held for table in tables]
     return {
-        "tables": len(book.tables),
-        "stages": book.most_stages,
-        "powers": book.highest_degree + 1,
-        "breaks": max(table.held.breaks for table in book.tables),
-        "gauge": max(table.held.has_gauge for table in book.tables),
+        "tables": len(tables),
+        "stages": max(each.stages for each in held),
+        "powers": max(each.powers for each in held),
+        "breaks": max(each.breaks for each in held),
+        "gauge": max(each.has_gauge for each in held),
     }
 
 
@@ -114,6 +119,11 @@ def held_values(book: TableBook, number: int, record: SizedRecord, lines: Active
         family_no=book.families[number],
         mass_t=np.float32(source.cut.mass_t),
     )
+    return values_of(held, record)
+
+
+def values_of(held: LineTable, record: SizedRecord) -> Values:
+    """The numbers of a table in the room of a record."""
     if held.has_gauge == 0:  # a difference of pressures that nobody looks at must not keep two tables apart
         held = held._replace(highest_kpa=np.float32(0.0), pressure_kpa=np.zeros_like(held.pressure_kpa))
     return {name: sized(getattr(held, name), record.shape(name)) for name in record.members}

@@ -17,7 +17,7 @@ from tuning_tables.table_book import TableBook
 
 def held_record(book: TableBook) -> SizedRecord:
     """The table of the book's export."""
-    return LINE_TABLE.sized(room_of(book))
+    return LINE_TABLE.sized(room_of(book.tables))
 
 
 def table_words(book: TableBook) -> int:

@@ -12,5 +12,5 @@ class LoopOptions(Options):
 
     source: Path = word_option(BY_PLACE, "TABLE|BOOK|DIR", NEEDED, "A table, a book, or a folder of tables.")
     config: Path | None = word_option(
-        "--config", "C", None, "Configuration with the plant; that of the tables unless given."
+        "--config", "C", None, "Configuration with the plant; that of the tables, or built-in, unless given."
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.resources import files
@@ -11,7 +10,7 @@ from typing import Any, Final
 from plant_models.library.hump_entry import HumpEntry
 from plant_models.library.weight_category import WeightCategory
 from synth.frame.page.markup import Markup, element
-from synth.frame.page.page_style import STYLE
+from synth.frame.page.scripted_document import SPEED_UNITS, scripted_document
 from synth.frame.picture.category_colour import category_colour
 from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.hump_page.plan_data import plan_data
@@ -20,9 +19,6 @@ from synth.hump.trains.train_trace import TrainTrace
 
 PLAYER: Final = "hump.html"
 """The name of its file."""
-
-POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"
-"""The browser itself keeps the page from loading anything."""
 
 SCRIPTS: Final = ("train_ways.js", "plan_panel.js", "alarms.js", "player.js")
 
@@ -48,23 +44,13 @@ def hump_page(title: str, runs: Sequence[PlayedRun], trains: Sequence[str]) -> s
     """
     data = {"trains": list(trains), "runs": [run_data(run) for run in runs]}
     humps = "; ".join(f"{run.name}: {run.hump.title}" if run.name else run.hump.title for run in runs)
-    head = element(
-        "head",
-        element("meta", charset="utf-8"),
-        Markup(f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'),
-        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        element("title", f"{title}: {humps}"),
-        element("style", Markup(STYLE + "\n" + text_of("player.css"))),
-    )
-    body = element(
-        "body",
+    content = (
         element("h1", title),
         element("p", humps, class_="meta"),
         Markup(text_of("player.html")),
-        element("script", Markup(script_safe(data)), id="data", type="application/json"),
-        *(element("script", Markup(text_of(name))) for name in SCRIPTS),
     )
-    return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
+    scripts = [SPEED_UNITS, *(text_of(name) for name in SCRIPTS)]
+    return scripted_document(f"{title}: {humps}", text_of("player.css"), content, data, scripts)
 
 
 def run_data(run: PlayedRun) -> dict[str, Any]:
@@ -78,12 +64,6 @@ def run_data(run: PlayedRun) -> dict[str, Any]:
         "coupling_limits_m_s": list(run.couplings.classes_m_s),
         "trains": [train_data(trace) for trace in run.traces],
     }
-
-
-def script_safe(data: object) -> str:
-    """JSON in which nothing can end the script element that holds it."""
-    text = json.dumps(data, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
 def text_of(name: str) -> str:

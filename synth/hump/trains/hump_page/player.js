@@ -2,7 +2,6 @@
 // Plays one train of each run on one clock. All data are in the element "data"; nothing is loaded.
 (() => {
   const { runs, trains } = JSON.parse(document.getElementById("data").textContent);
-  const UNITS = { "m/s": 1, "km/h": 3.6, mph: 3600 / 1609.344 };
   const PASSES_TOLD = 10;
   const at = (id) => document.getElementById(id);
   const slider = at("slider");
@@ -12,11 +11,9 @@
   };
   const chosen = Math.min(Math.trunc(Math.abs(asked("train") || 0)), trains.length - 1);
 
-  // --- the unit of speeds; a browser may refuse a page from a disk to remember it
-  const remembered = () => { try { return localStorage.getItem("unit"); } catch { return null; } };
-  const remember = () => { try { localStorage.setItem("unit", unit); } catch { return; } };
-  let unit = Object.hasOwn(UNITS, remembered() || "") ? remembered() : "m/s";
-  const number = (m_s, digits = 2) => (m_s * UNITS[unit]).toFixed(digits);
+  // --- the unit of speeds
+  let unit = SpeedUnits.remembered();
+  const number = (m_s, digits = 2) => (m_s * SpeedUnits.FACTORS[unit]).toFixed(digits);
   const withUnit = (m_s) => `${number(m_s)} ${unit}`;
 
   // --- the runs, one below the other
@@ -156,7 +153,7 @@
   on("view", "change", draw);
   on("unit", "change", () => {
     unit = at("unit").value;
-    remember();
+    SpeedUnits.remember(unit);
     words();
     clock.show(clock.now);
   });
@@ -179,7 +176,7 @@
   slider.max = clock.end;
   for (const title of trains) at("train").add(new Option(title));
   at("train").selectedIndex = chosen;
-  for (const each of Object.keys(UNITS)) at("unit").add(new Option(each));
+  for (const each of Object.keys(SpeedUnits.FACTORS)) at("unit").add(new Option(each));
   at("unit").value = unit;
   at("next").disabled = at("before").disabled = alarms.severe.length === 0;
   words();

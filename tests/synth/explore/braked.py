@@ -1,0 +1,66 @@
+"""Tables that brake cuts of the pilot plant often, and the plants of their classes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from plant_models import Approach, Plant, TrackProfile
+from synth.retarder.estimation.estimator_design import estimator_of
+from synth.retarder.explore.explore_page import PlayedTable
+from tests.controller_code.sample_book import FOUR_AXLES, table_of, with_slopes
+from tests.synth.conftest import pilot_plant
+from tuning_tables import Approach as TableApproach
+from tuning_tables import ControllerTable, Decisions, ValidRange
+
+STAGES = 5
+LIMITS_T = (22.0, 28.0)
+APPROACH_M = 4.0
+
+
+def plant_of(table: ControllerTable) -> Plant:
+    """The pilot plant on a track with two grades, with the approach of the table."""
+    approach = Approach() if table.approach is None else Approach(APPROACH_M, 1, 1)
+    return replace(pilot_plant(22.0), approach=approach, profile=TrackProfile((0.0, 11.0), (9.0, 6.0)))
+
+
+def measured_table() -> ControllerTable:
+    """Decides at rest on the measured speed."""
+    return table_of("plain", "Л", 22.0, FOUR_AXLES, 3.0, stages=STAGES)
+
+
+def approached_table() -> ControllerTable:
+    """The same from before the entrance on, where no stage above 1 may be commanded."""
+    table = measured_table()
+    valid = ValidRange((-APPROACH_M, table.valid.s_m[1]), table.valid.v_m_s)
+    return replace(table, valid=valid, approach=TableApproach(APPROACH_M, 1))
+
+
+def estimating_table() -> ControllerTable:
+    """Decides at rest on the estimated speed, from before the entrance on."""
+    table = approached_table()
+    return replace(table, estimator=estimator_of(plant_of(table)))
+
+
+def any_time_table() -> ControllerTable:
+    """Decides at every sample, by the pressure and the estimated speed."""
+    return with_slopes(estimating_table(), -0.001, -0.0012)
+
+
+def blind_table() -> ControllerTable:
+    """Decides at every sample without a gauge."""
+    return replace(measured_table(), decisions=Decisions.AT_ANY_TIME)
+
+
+TABLES: Mapping[str, Callable[[], ControllerTable]] = {
+    "measured": measured_table,
+    "estimated": estimating_table,
+    "any time": any_time_table,
+    "any time without gauge": blind_table,
+}
+
+
+def played(name: str, infeasible: bool = False) -> PlayedTable:
+    """One of them as the page takes it."""
+    table = replace(TABLES[name](), id=name)
+    return PlayedTable(table, f"class of {name}", plant_of(table), LIMITS_T, infeasible)
