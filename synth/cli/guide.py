@@ -19,7 +19,7 @@ TOP: Final = CommandGuide(
             "loop",
             "sensitivity",
             "hardware",
-        ),  # fmt: skip
+        ),
         "The whole hump": ("hump", "computer"),
         "From measured passes": ("identify", "retune", "watch", "replay"),
         "For controllers": ("export",),
