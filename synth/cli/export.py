@@ -29,7 +29,7 @@ class AskedCode:
 def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_json: bool) -> int:
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
     from synth.frame.results_directory import results_directory
-    from synth.retarder.forms.code_options import CONTROLLER_NAMES, code_options
+    from synth.retarder.forms.code_options import CONTROLLER_NAMES, FMU, code_options
     from synth.retarder.forms.configuration_beside import configuration_file
     from synth.retarder.forms.correction_form import correction_files
     from synth.retarder.forms.table_file import files_at
@@ -47,6 +47,10 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
     if form in CONTROLLER_NAMES:
         files |= configuration_file(source, tables, options.prefix)
         warn_of_shadows(source, tables)
+    if form == FMU:
+        from synth.retarder.forms.position_form import position_files
+
+        files |= position_files(source, tables, options.prefix)
     with results_directory(output, "export", files_at(source)) as directory:
         names = [str(file) for file in directory.write_all(files)]
     print(json.dumps({"files": names}, indent=1, ensure_ascii=False) if as_json else "\n".join(names))

@@ -20,11 +20,19 @@ NAME: Final = f"retarder_{CONFIGURATION}"
 def configuration_file(source: Path, tables: Sequence[AnyTable], prefix: ExportPrefix) -> Mapping[str, bytes]:
     """The user's file that the tables, all of one kind, were made of; none where no command at `source` kept it.
 
-    `source`: a table, a book, or the directory of a command; what it left lies there, or in a folder above a file. The
-    summary must have the hash of the tables' configuration, and that of the copy.
+    `source`: a table, a book, or the directory of a command.
+    """
+    kept = kept_configuration(source, tables)
+    named = prefix.of_kind(AIM) if isinstance(tables[0], AimTable) else prefix
+    return {} if kept is None else {named.renamed(NAME): kept[1]}
+
+
+def kept_configuration(source: Path, tables: Sequence[AnyTable]) -> tuple[Path, bytes] | None:
+    """Path and content of the copy that lies at `source`, or in a folder above a file; None where there is none.
+
+    The summary must have the hash of the tables' configuration, and that of the copy.
     """
     sha256s = {table.generator.config_sha256 for table in tables}
-    named = prefix.of_kind(AIM) if isinstance(tables[0], AimTable) else prefix
     here = source if source.is_dir() else source.parent
     for folder in (here, here.parent):
         try:
@@ -35,5 +43,5 @@ def configuration_file(source: Path, tables: Sequence[AnyTable], prefix: ExportP
         except (OSError, ValueError, KeyError, TypeError):  # no summary, none of ours, or no copy
             continue
         if is_theirs and is_whole:
-            return {named.renamed(NAME): content}
-    return {}
+            return folder / CONFIGURATION, content
+    return None
