@@ -40,6 +40,10 @@ def controller_unit(book: TableBook, prefix: ExportPrefix) -> Unit:
     )
 
 
+MOST_AXLES: Final = 10_000
+MOST_M_S: Final = 40.0
+"""Beyond any cut: limits for whoever asks for them; the choice of a table tells what it has."""
+
 INPUTS: Final = (
     Variable("path_m", Kind.FLOAT64, Causality.INPUT,
              "path of the first axle from the entrance of the first retarder, negative before it", (0.0,), "m"),
@@ -75,9 +79,9 @@ def parameters(book: TableBook) -> tuple[Variable, ...]:
         Variable("category", Kind.INT32, Causality.PARAMETER, "number of the weight category", (category,), low=1,
                  high=255),
         Variable("axles", Kind.INT32, Causality.PARAMETER, "axles of the cut", (len(first.cut.axle_offsets_m),),
-                 low=1),
+                 low=1, high=MOST_AXLES),
         Variable("commanded_m_s", Kind.FLOAT64, Causality.PARAMETER, "exit speed that is commanded",
-                 (float(first.target_speed_m_s),), "m/s", low=0.0),
+                 (float(first.target_speed_m_s),), "m/s", low=0.0, high=MOST_M_S),
         Variable("initial_stage", Kind.INT32, Causality.PARAMETER, "stage that is commanded when the cut comes", (0,),
                  low=0, high=MOST_STAGES - 1),
     )  # fmt: skip

@@ -14,7 +14,7 @@ from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
 from plant_models.plant import SLOWEST_START_M_S
 from plant_models.retarder import ForceLaw
 from plant_models.rolling.random_numbers import Purpose
-from plant_models.speed_sensor import MOST_MISSED, DopplerSensor
+from plant_models.speed_sensor import DopplerSensor
 from plant_models.stage_regulator import resting_modes
 from synth.retarder.fmi.variables import shown
 from synth.simulation.closed_loop import SUBSTEP_S
@@ -103,13 +103,11 @@ def numbers_of(plant: Plant) -> Mapping[str, str]:
         "PERIOD_S": sensor.sample_period_s,
         "COMPUTING_DELAY_S": sensor.computing_delay_s,
         "START_M": start_m,
-        "HIGHEST_ENTRY_M_S": plant.position.max_entry_speed_m_s,
         "SLOWEST_START_M_S": SLOWEST_START_M_S,
         "GRAVITY_M_S2": GRAVITY_M_S2,
         "ROTATING_MASS_PER_AXLE_T": ROTATING_MASS_PER_AXLE_T,
         "CORRELATION_LENGTH_M": plant.friction.correlation_length_m,
         "CELL_M": min(CELL_M, plant.friction.correlation_length_m / 4.0),
-        "MOST_MISSED": MOST_MISSED,
     }
     return {name: f"({shown(float(number))})" for name, number in found.items()}
 
@@ -123,7 +121,6 @@ def rooms_of(plant: Plant, axle_room: int) -> Mapping[str, int]:
         "GRADES": grades,
         "STAGES": plant.position.top_stage + 1,
         "SLOPES": len(slopes(plant.position.force, axle_room)[0]),
-        "AXLE_ROOM": axle_room,
         "BREAK_ROOM": breaks,
         "PATH_CELLS": PATH_CELLS,
         "CELL_ROOM": PATH_CELLS + breaks,

@@ -8,6 +8,9 @@ from typing import Final
 import numpy as np
 
 from plant_models import Plant
+from plant_models.friction import MOST_CV
+from plant_models.plant import SLOWEST_START_M_S
+from plant_models.speed_sensor import MOST_MISSED
 from synth.retarder.fmi.position_data import position_data_h
 from synth.retarder.fmi.unit import Unit, c_part
 from synth.retarder.fmi.variables import Causality, Kind, Value, Variable
@@ -19,6 +22,7 @@ MEANING: Final = (
 )
 
 PARTS: Final = ("position.h", "position.c", "position_path.c", "position_drive.c", "position_chance.c")
+LARGEST_INT32: Final = 2**31 - 1
 LEAST_ROOM: Final = 64
 """Axles that a cut may have at least: some sixteen cars."""
 
@@ -45,14 +49,17 @@ def position_unit(plants: Sequence[Plant], tool: str, prefix: ExportPrefix) -> U
     )
 
 
-def parameter(name: str, meaning: str, start: float, unit: str | None = None, low: float | None = 0.0) -> Variable:
+Limits = tuple[float, float]
+
+
+def parameter(name: str, meaning: str, start: float, limits: Limits, unit: str | None = None) -> Variable:
     """A number that is given before a pass."""
-    return Variable(name, Kind.FLOAT64, Causality.PARAMETER, meaning, (float(start),), unit, low)
+    return Variable(name, Kind.FLOAT64, Causality.PARAMETER, meaning, (float(start),), unit, *limits)
 
 
-def whole(name: str, meaning: str, start: int, low: int, high: int | None = None) -> Variable:
+def whole(name: str, meaning: str, start: int, limits: tuple[int, int]) -> Variable:
     """A whole number that is given before a pass."""
-    return Variable(name, Kind.INT32, Causality.PARAMETER, meaning, (start,), low=low, high=high)
+    return Variable(name, Kind.INT32, Causality.PARAMETER, meaning, (start,), None, *limits)
 
 
 def inputs(plant: Plant) -> Iterator[Variable]:
@@ -64,32 +71,36 @@ def inputs(plant: Plant) -> Iterator[Variable]:
 
 def cut_parameters(plant: Plant, room: int) -> Iterator[Variable]:
     """The cut, and how it comes."""
-    cut = plant.cut
+    cut, position = plant.cut, plant.position
     offsets = (*map(float, cut.axle_offsets_m), *(0.0,) * (room - cut.axles))
-    yield parameter("mass_t", "mass of the cut", cut.mass_t, "t", 1.0)
-    yield whole("axles", "axles of the cut", cut.axles, 1, room)
+    yield parameter("mass_t", "mass of the cut", cut.mass_t, (1.0, 20_000.0), "t")
+    yield whole("axles", "axles of the cut", cut.axles, (1, room))
     yield Variable("axle_offsets_m", Kind.FLOAT64, Causality.PARAMETER,
                    "distances of the axles behind the first, whose own is 0; beyond the last axle they do not count",
-                   offsets, "m")  # fmt: skip
+                   offsets, "m", 0.0, 2000.0)  # fmt: skip
     entry_m_s = float(plant.entry.speed_m_s(np.array([0.5]))[0])
-    yield parameter("entry_speed_m_s", "speed at the entrance, with the brake released before it", entry_m_s, "m/s")
-    yield parameter("resistance_n_per_kn", "specific rolling resistance", plant.resistance.mean_n_per_kn, "N/kN")
-    yield whole("initial_stage", "stage in which the brake rests when the cut comes", plant.approach.initial_stage, 0,
-                plant.position.top_stage)  # fmt: skip
+    yield parameter("entry_speed_m_s", "speed at the entrance, with the brake released before it", entry_m_s,
+                    (SLOWEST_START_M_S, position.max_entry_speed_m_s), "m/s")  # fmt: skip
+    yield parameter("resistance_n_per_kn", "specific rolling resistance", plant.resistance.mean_n_per_kn, (0.0, 100.0),
+                    "N/kN")  # fmt: skip
+    yield whole("initial_stage", "stage in which the brake rests when the cut comes", plant.approach.initial_stage,
+                (0, position.top_stage))  # fmt: skip
 
 
 def chance_parameters(plant: Plant) -> Iterator[Variable]:
     """Friction and radar of a pass."""
     sensor = plant.sensor
-    yield parameter("friction_factor", "friction of the pads on this cut; 1 is the mean of all cuts", 1.0)
+    yield parameter("friction_factor", "friction of the pads on this cut; 1 is the mean of all cuts", 1.0, (0.0, 10.0))
     yield parameter("path_std", "standard deviation of the friction along the path; 0: the same everywhere",
-                    plant.friction.path_std)  # fmt: skip
-    yield parameter("noise_m_s", "standard deviation of a reading of the radar", sensor.noise_m_s, "m/s")
-    yield parameter("resolution_m_s", "what readings are rounded to; 0: not rounded", sensor.resolution_m_s, "m/s")
-    yield parameter("missed_share", "share of readings that are lost", sensor.missed_share)
-    yield parameter("first_sample_s", "time from the begin of the path to the first sample, which is time 0", 0.0, "s")
-    yield whole("seed", "of the random numbers, as in retarder-synth", 1, 0)
-    yield whole("pass_number", "number of the pass in the row of this seed", 0, 0)
+                    plant.friction.path_std, (0.0, MOST_CV))  # fmt: skip
+    yield parameter("noise_m_s", "standard deviation of a reading of the radar", sensor.noise_m_s, (0.0, 1.0), "m/s")
+    yield parameter("resolution_m_s", "what readings are rounded to; 0: not rounded", sensor.resolution_m_s,
+                    (0.0, 1.0), "m/s")  # fmt: skip
+    yield parameter("missed_share", "share of readings that are lost", sensor.missed_share, (0.0, MOST_MISSED))
+    yield parameter("first_sample_s", "time from the begin of the path to the first sample, which is time 0", 0.0,
+                    (0.0, sensor.sample_period_s), "s")  # fmt: skip
+    yield whole("seed", "of the random numbers, as in retarder-synth", 1, (0, LARGEST_INT32))
+    yield whole("pass_number", "number of the pass in the row of this seed", 0, (0, LARGEST_INT32))
 
 
 OUTPUTS: Final = (

@@ -51,7 +51,7 @@ class Causality(Enum):
 class Variable:
     """A variable of a unit. `start`: its values, one unless it is an array; `unit`: a key of `UNITS`, or None.
 
-    Of a number that is given, `low` and `high` are the limits, None where there is none.
+    Of a number that is given, `low` and `high` are the limits, of each value of an array too; None where there is none.
     """
 
     name: str
@@ -122,13 +122,18 @@ def variables_c(variables: Sequence[Variable]) -> str:
     for each in variables:
         causality = f"UNIT_{each.causality.value.upper()}"
         place = f"offsetof(unit_values, {each.name})"
-        places.append(f"    {{{each.kind.c_name}, {causality}, {place}, {len(each.start)}}},")
+        low = "-HUGE_VAL" if each.low is None else shown(float(each.low))
+        high = "HUGE_VAL" if each.high is None else shown(float(each.high))
+        fields = (f'"{each.name}"', each.kind.c_name, causality, place, str(len(each.start)), low, high)
+        places.append(f"    {{{', '.join(fields)}}},")
         values = ", ".join(map(shown, each.start))
         starts.append(f"    .{each.name} = {f'{{{values}}}' if each.is_array else values},")
     return "\n".join(
         [
             "/* The variables of the unit. Generated: do not edit, export again. */",
             '#include "unit.h"',
+            "",
+            "#include <math.h>",
             "",
             "const unit_variable unit_variables[UNIT_VARIABLES] = {",
             *places,

@@ -14,9 +14,13 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from synth.frame.input_error import InputError
 from synth.retarder.fmi.controller_unit import controller_unit
+from synth.retarder.forms.code_options import PLAIN
+from synth.retarder.forms.table_forms import FORMS
 from tests.controller_code.conftest import Tool
 from tests.controller_code.fmi.importer import Imported, RefusedCall
+from tests.controller_code.passage_tables import passage_book
 from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
 from tuning_tables.estimator import begin, unseen_samples
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
@@ -105,6 +109,8 @@ def test_faults_are_told_in_one_sentence(imported: Callable[[TableBook], Importe
             unit.begin(category=9, commanded_m_s=2.0)
         with pytest.raises(RefusedCall, match="initial_stage is 20; the table has the stages 0 to"):
             unit.begin(initial_stage=20)
+        with pytest.raises(RefusedCall, match="category is 0; give 1 to 255"):
+            unit.begin(category=0)
         with pytest.raises(RefusedCall, match="not initialised"):
             unit.step(0.0, 0.1)
         unit.begin()
@@ -112,6 +118,88 @@ def test_faults_are_told_in_one_sentence(imported: Callable[[TableBook], Importe
             unit.set(axles=6)
         with pytest.raises(RefusedCall, match="the step is -1 s"):
             unit.step(0.0, -1.0)
+
+
+FUNCTIONS = [
+    "GetVersion",
+    "SetDebugLogging",
+    "InstantiateModelExchange",
+    "InstantiateCoSimulation",
+    "InstantiateScheduledExecution",
+    "FreeInstance",
+    "EnterInitializationMode",
+    "ExitInitializationMode",
+    "EnterEventMode",
+    "Terminate",
+    "Reset",
+    "GetBinary",
+    "SetBinary",
+    "GetClock",
+    "SetClock",
+    "GetNumberOfVariableDependencies",
+    "GetVariableDependencies",
+    "GetFMUState",
+    "SetFMUState",
+    "FreeFMUState",
+    "SerializedFMUStateSize",
+    "SerializeFMUState",
+    "DeserializeFMUState",
+    "GetDirectionalDerivative",
+    "GetAdjointDerivative",
+    "EnterConfigurationMode",
+    "ExitConfigurationMode",
+    "GetIntervalDecimal",
+    "GetIntervalFraction",
+    "GetShiftDecimal",
+    "GetShiftFraction",
+    "SetIntervalDecimal",
+    "SetIntervalFraction",
+    "SetShiftDecimal",
+    "SetShiftFraction",
+    "EvaluateDiscreteStates",
+    "UpdateDiscreteStates",
+    "EnterContinuousTimeMode",
+    "CompletedIntegratorStep",
+    "SetTime",
+    "SetContinuousStates",
+    "GetContinuousStateDerivatives",
+    "GetEventIndicators",
+    "GetContinuousStates",
+    "GetNominalsOfContinuousStates",
+    "GetNumberOfEventIndicators",
+    "GetNumberOfContinuousStates",
+    "EnterStepMode",
+    "GetOutputDerivatives",
+    "DoStep",
+    "ActivateModelPartition",
+]
+"""Of FMI 3.0.1 without those of a type."""
+TYPED = (
+    "Float32",
+    "Float64",
+    "Int8",
+    "UInt8",
+    "Int16",
+    "UInt16",
+    "Int32",
+    "UInt32",
+    "Int64",
+    "UInt64",
+    "Boolean",
+    "String",
+)
+
+
+def test_the_library_has_every_function_of_the_standard(imported: Callable[[TableBook], Imported]) -> None:
+    typed = [f"{what}{name}" for what in ("Get", "Set") for name in TYPED]
+    with imported(sample_book()) as unit:
+        assert [name for name in (*FUNCTIONS, *typed) if not hasattr(unit.library, f"fmi3{name}")] == []
+        assert not hasattr(unit.library, "unit_begin")  # two units in one process must not meet
+
+
+def test_other_kinds_of_tables_are_refused() -> None:
+    with pytest.raises(InputError, match="--format fmu is for tables with lines"):
+        FORMS["fmu"](passage_book().tables, PLAIN)
 
 
 def test_the_archive_holds_what_it_says_and_the_same_bytes(tool: Tool) -> None:

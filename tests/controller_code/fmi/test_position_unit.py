@@ -98,12 +98,20 @@ def test_faults_are_told_in_one_sentence(tmp_path: Path, tool: Tool) -> None:
         room = len(unit.get("axle_offsets_m"))
         for parameters, sentence in (
             ({"axles": 0}, f"axles is 0; give 1 to {room}"),
-            ({"axle_offsets_m": [0.0, 3.0, 2.0, 4.0] + [0.0] * (room - 4)}, r"axle_offsets_m\[2\] is 2"),
-            ({"mass_t": float("nan")}, "mass_t is nan; give 1 to 20000 t"),
-            ({"entry_speed_m_s": 9.0}, "entry_speed_m_s is 9; give more than 0 and at most 7 m/s"),
-            ({"first_sample_s": 0.2}, "first_sample_s is 0.2; give 0 to 0.1 s"),
-            ({"missed_share": 0.7}, "missed_share, seed or pass_number"),
-            ({"initial_stage": 5}, "initial_stage is 5; this position has the stages 0 to 4"),
+            (
+                {"axle_offsets_m": [0.0, 3.0, 2.0, 4.0] + [0.0] * (room - 4)},
+                r"axle_offsets_m\[2\] is 2; the first must be",
+            ),
+            (
+                {"axle_offsets_m": [0.0, 3.0, 2000.1, 4.0] + [0.0] * (room - 4)},
+                "axle_offsets_m is 2000.1; give 0 to 2000",
+            ),
+            ({"mass_t": float("nan")}, "mass_t is nan; give 1 to 20000"),
+            ({"entry_speed_m_s": 9.0}, "entry_speed_m_s is 9; give 0.3 to 7"),
+            ({"first_sample_s": 0.2}, "first_sample_s is 0.2; give 0 to 0.1"),
+            ({"friction_factor": -1.0}, "friction_factor is -1; give 0 to 10"),
+            ({"missed_share": 0.7}, "missed_share is 0.7; give 0 to 0.5"),
+            ({"initial_stage": 5}, "initial_stage is 5; give 0 to 4"),
         ):
             with pytest.raises(RefusedCall, match=sentence):
                 unit.begin(**parameters)
@@ -111,7 +119,7 @@ def test_faults_are_told_in_one_sentence(tmp_path: Path, tool: Tool) -> None:
         with pytest.raises(RefusedCall, match=r"the step is 0.15 s; it must be a whole number of times 0.1 s"):
             unit.step(0.0, 0.15)
         unit.set(stage=7)
-        with pytest.raises(RefusedCall, match="stage is 7; this position has the stages 0 to 4"):
+        with pytest.raises(RefusedCall, match="stage is 7; give 0 to 4"):
             unit.step(0.0, 0.1)
 
 

@@ -21,7 +21,6 @@ typedef struct {
 
 typedef struct {
     moment now;
-    bool is_logging;
     fmi3InstanceEnvironment environment;
     fmi3LogMessageCallback log;
 } instance;
@@ -47,11 +46,43 @@ static void forget(instance *unit)
     unit->now.values = unit_start;
 }
 
+static double number_at(const unit_values *values, const unit_variable *variable, size_t place)
+{
+    const unsigned char *at = (const unsigned char *)values + variable->offset + place * SIZES[variable->kind];
+    int32_t whole;
+    double number;
+    if (variable->kind == UNIT_INT32) {
+        memcpy(&whole, at, sizeof whole);
+        return whole;
+    }
+    memcpy(&number, at, sizeof number);
+    return number;
+}
+
+/* Whether all that is given of this causality keeps its limits, in which NaN does not lie. */
+static fmi3Status within_limits(instance *unit, unit_causality causality)
+{
+    for (size_t each = 0; each < UNIT_VARIABLES; ++each) {
+        const unit_variable *variable = &unit_variables[each];
+        const int has_limits = variable->low > -HUGE_VAL || variable->high < HUGE_VAL;
+        for (size_t place = 0; has_limits && variable->causality == causality && place < variable->count; ++place) {
+            const double number = number_at(&unit->now.values, variable, place);
+            if (!(number >= variable->low && number <= variable->high)) {
+                return refused(unit, "%s is %g; give %g to %g", variable->name, number, variable->low, variable->high);
+            }
+        }
+    }
+    return fmi3OK;
+}
+
 static fmi3Status begun(instance *unit)
 {
     char fault[FAULT_ROOM] = "";
     if (unit->now.is_begun) {
         return fmi3OK;
+    }
+    if (within_limits(unit, UNIT_PARAMETER) != fmi3OK) {
+        return fmi3Error;
     }
     memset(&unit->now.memory, 0, sizeof unit->now.memory);
     if (!unit_begin(&unit->now.values, &unit->now.memory, fault)) {
@@ -135,9 +166,7 @@ FMI3_EXPORT const char *FMI3(GetVersion)(void)
 
 FMI3_EXPORT fmi3Status FMI3(SetDebugLogging)(fmi3Instance given, bool on, size_t count, const fmi3String categories[])
 {
-    (void)count;
-    (void)categories;
-    ((instance *)given)->is_logging = on;
+    (void)given, (void)on, (void)count, (void)categories; /* faults alone are logged, and always */
     return fmi3OK;
 }
 
@@ -146,13 +175,13 @@ FMI3_EXPORT fmi3Instance FMI3(InstantiateCoSimulation)(fmi3String name, fmi3Stri
     size_t count, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, fmi3AnyCallback update)
 {
     instance *unit = calloc(1, sizeof *unit);
-    (void)name, (void)resources, (void)visible, (void)returns_early, (void)intermediate, (void)update;
+    (void)name, (void)resources, (void)visible, (void)is_logging, (void)returns_early, (void)intermediate;
+    (void)update;
     if (unit == 0) {
         return 0;
     }
     unit->environment = environment;
     unit->log = log;
-    unit->is_logging = is_logging;
     forget(unit);
     if (token == 0 || strcmp(token, UNIT_TOKEN) != 0) {
         refused(unit, "instantiate: the token is not that of this unit; its modelDescription.xml is of another");
@@ -227,6 +256,9 @@ FMI3_EXPORT fmi3Status FMI3(DoStep)(fmi3Instance given, double from_s, double st
     if (count == 0) {
         return refused(unit, "fmi3DoStep: the step is %g s; it must be a whole number of times %g s", step_s,
             UNIT_PERIOD_S);
+    }
+    if (within_limits(unit, UNIT_INPUT) != fmi3OK) {
+        return fmi3Error;
     }
     for (long each = 0; each < count; ++each) {
         char fault[FAULT_ROOM] = "";

@@ -83,3 +83,16 @@ ANSWER(SetIntervalFraction, fmi3Instance unit, const reference which[], size_t c
 ANSWER(SetShiftDecimal, fmi3Instance unit, const reference which[], size_t count, const double shifts[])
 ANSWER(SetShiftFraction, fmi3Instance unit, const reference which[], size_t count, const fmi3UInt64 counters[],
     const fmi3UInt64 resolutions[])
+
+/* Of the other interfaces; importers that load every function at once need them. */
+ANSWER(EnterContinuousTimeMode, fmi3Instance unit)
+ANSWER(CompletedIntegratorStep, fmi3Instance unit, bool is_final, bool *has_event, bool *terminates)
+ANSWER(SetTime, fmi3Instance unit, double time_s)
+ANSWER(SetContinuousStates, fmi3Instance unit, const double states[], size_t count)
+ANSWER(GetContinuousStates, fmi3Instance unit, double states[], size_t count)
+ANSWER(GetContinuousStateDerivatives, fmi3Instance unit, double derivatives[], size_t count)
+ANSWER(GetNominalsOfContinuousStates, fmi3Instance unit, double nominals[], size_t count)
+ANSWER(GetNumberOfContinuousStates, fmi3Instance unit, size_t *count)
+ANSWER(GetEventIndicators, fmi3Instance unit, double indicators[], size_t count)
+ANSWER(GetNumberOfEventIndicators, fmi3Instance unit, size_t *count)
+ANSWER(ActivateModelPartition, fmi3Instance unit, reference clock, double time_s)
