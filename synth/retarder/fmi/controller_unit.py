@@ -15,8 +15,8 @@ from tuning_tables.table_book import TableBook
 
 MEANING: Final = (
     "Controller of a car retarder: from path, measured speed and pressure to the stage to command. One step is one "
-    "sample of the radar; the decision at the beginning of a step is the output at its end. The controller steps "
-    "first, then the position, with the stage of this same step."
+    "sample of the radar, with the period that the tables were made for. The decision at the beginning of a step is "
+    "the output at its end. The controller steps first, then the position, with the stage of this same step."
 )
 
 

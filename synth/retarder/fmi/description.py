@@ -18,8 +18,7 @@ NAME: Final = {"fmiVersion": VERSION}
 class Head:
     """What a unit says of itself.
 
-    `identifier`: a name in C; `token`: of this unit alone; `period_s`: length of a step, 0 where a step may have any;
-    `usual_step_s`: what an importer steps by unless told otherwise.
+    `identifier`: a name in C; `token`: of this unit alone; `period_s`: length of a step, 0 where a step may have any.
     """
 
     identifier: str
@@ -28,7 +27,6 @@ class Head:
     tool: str
     token: str
     period_s: float
-    usual_step_s: float
 
 
 def model_description(head: Head, variables: Sequence[Variable]) -> bytes:
@@ -60,7 +58,8 @@ def model_description(head: Head, variables: Sequence[Variable]) -> bytes:
             SubElement(SubElement(units, "Unit", name=name), "BaseUnit", base)
     category = {"name": "logStatusError", "description": "Why a call was refused"}
     SubElement(SubElement(root, "LogCategories"), "Category", category)
-    SubElement(root, "DefaultExperiment", startTime="0.0", stepSize=shown(head.usual_step_s))
+    if head.period_s:
+        SubElement(root, "DefaultExperiment", startTime="0.0", stepSize=shown(head.period_s))
     listed = SubElement(root, "ModelVariables")
     for reference, variable in enumerate(variables):
         add_variable(listed, reference, variable)

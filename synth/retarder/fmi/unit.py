@@ -7,7 +7,7 @@ import io
 import uuid
 import zipfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib.resources import files
 from typing import Final
 
@@ -31,7 +31,7 @@ def c_part(name: str) -> str:
 class Unit:
     """A unit: what it says of itself, its variables without time, and its own files of C by name.
 
-    `period_s`: length of a step, 0 where a step may have any; `usual_step_s` then.
+    `period_s`: length of a step, 0 where a step may have any.
     """
 
     identifier: str
@@ -41,7 +41,6 @@ class Unit:
     own: Sequence[Variable]
     c: Mapping[str, str]
     period_s: float = 0.0
-    usual_step_s: float = field(default=0.1, kw_only=True)
 
     @property
     def variables(self) -> tuple[Variable, ...]:
@@ -67,10 +66,7 @@ class Unit:
 
     def content(self, sources: Mapping[str, str]) -> dict[str, bytes]:
         """The files of the archive, by path; the library is there where a C compiler has made it."""
-        head = Head(
-            self.identifier, self.name, self.meaning, self.tool, self.token, self.period_s,
-            self.period_s or self.usual_step_s,
-        )  # fmt: skip
+        head = Head(self.identifier, self.name, self.meaning, self.tool, self.token, self.period_s)
         compilable = sorted(name for name in sources if name.endswith(".c"))
         library = compiled(sources, self.identifier)
         binaries = {} if library is None else {f"binaries/{platform()}/{library.name}": library.content}
