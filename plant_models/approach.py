@@ -14,12 +14,32 @@ ANY_STAGE = 31
 
 @dataclass(frozen=True)
 class Approach:
-    """The regulator acts from `length_m` before the entrance on; 0: from the entrance, as without a sensor ahead.
+    """The path before the entrance on which the regulator already acts. Nothing brakes there.
 
-    `entrance_stage`: the highest stage that it may command while the first axle is before the entrance, so that no
-    cut runs into a retarder that is closed harder. `initial_stage`: the stage at rest when it takes over the cut, left
-    from the cut ahead. Nothing brakes before the entrance. That the cut ahead has left is the interlock of the
-    permission to act there, and not part of the motion.
+    Parameters
+    ----------
+    length_m
+        It acts from so far before the entrance, m; 0: from the entrance, as without a sensor ahead.
+    entrance_stage
+        The highest stage that it may command while the first axle is before the entrance, so that no cut runs into a
+        retarder that is closed harder.
+    initial_stage
+        The stage at rest when it takes over the cut, left from the cut ahead.
+
+    Raises
+    ------
+    PlantError
+        A length or stage out of range.
+
+    Notes
+    -----
+    That the cut ahead has left is the interlock of the permission to act there, and not part of the motion.
+
+    Examples
+    --------
+    >>> from plant_models import Approach
+    >>> Approach(length_m=4.0, entrance_stage=2).initial_stage
+    0
     """
 
     length_m: float = 0.0

@@ -19,10 +19,38 @@ LONGEST_CAR_M = 200.0
 
 @dataclass(frozen=True)
 class Car:
-    """One car type: where its axles stand and what it may weigh.
+    """One car type, where its axles stand and what it may weigh.
 
-    `axle_offsets_m` are distances of the axles behind the first axle (first entry 0, increasing);
-    `length_m` is over couplers; masses in tonnes.
+    Parameters
+    ----------
+    name
+        Its name.
+    axle_offsets_m
+        Distances of the axles behind the first axle, m; the first is 0, and they rise.
+    length_m
+        Length over couplers, m.
+    tare_t
+        Mass of the empty car, t.
+    gross_t
+        Mass of the full car, t.
+
+    Raises
+    ------
+    PlantError
+        A length or mass that no car has.
+
+    Examples
+    --------
+    >>> from plant_models import Car
+    >>> gondola = Car(
+    ...     "gondola",
+    ...     axle_offsets_m=(0.0, 1.85, 8.65, 10.5),
+    ...     length_m=13.92,
+    ...     tare_t=22.0,
+    ...     gross_t=94.0,
+    ... )
+    >>> gondola.axle_offsets_m[-1]
+    10.5
     """
 
     name: str
@@ -42,10 +70,37 @@ class Car:
 class Cut:
     """A cut as the retarder sees it.
 
-    `axle_offsets_m`: distances of all axles behind the first (first entry 0, increasing), metres;
-    `mass_t`: mass of the whole cut, Q; `allowed_stage`: the highest braking stage that the weight
-    category may be given (light wheels slide or are squeezed out under the high ones);
-    `category_number`: what stands for the category in controllers, None where it has no number.
+    Parameters
+    ----------
+    category
+        Name of its weight category.
+    mass_t
+        Mass of the whole cut, Q, t.
+    axle_offsets_m
+        Distances of all axles behind the first, m; the first is 0, and they rise.
+    allowed_stage
+        The highest braking stage that the category may be given; light wheels slide or are squeezed out under the high
+        ones.
+    category_number
+        What stands for the category in controllers, None where it has no number.
+
+    Raises
+    ------
+    PlantError
+        A mass, offsets or a stage that no cut has.
+
+    Examples
+    --------
+    >>> from plant_models import Cut
+    >>> cut = Cut(
+    ...     "С",
+    ...     mass_t=52.0,
+    ...     axle_offsets_m=(0.0, 1.85, 8.65, 10.5),
+    ...     allowed_stage=3,
+    ...     category_number=3,
+    ... )
+    >>> cut.axles, cut.axle_load_t, round(cut.reduced_gravity_m_s2, 3)
+    (4, 13.0, 9.503)
     """
 
     category: str
@@ -66,12 +121,12 @@ class Cut:
 
     @property
     def inertia_t(self) -> float:
-        """Q + 0.42 n: mass plus the equivalent mass of the wheel sets, tonnes."""
+        """Mass plus the equivalent mass of the wheel sets, Q + 0.42 n, tonnes."""
         return self.mass_t + ROTATING_MASS_PER_AXLE_T * self.axles
 
     @property
     def reduced_gravity_m_s2(self) -> float:
-        """g' = g / (1 + 0.42 n / Q)."""
+        """Acceleration of gravity less the share of the rotating wheels, g' = g/(1 + 0.42 n/Q), m/s²."""
         return GRAVITY_M_S2 * self.mass_t / self.inertia_t
 
     @property
@@ -83,7 +138,40 @@ class Cut:
 def couple(
     cars: tuple[Car, ...], mass_t: float, category: str, allowed_stage: int, category_number: int | None = None
 ) -> Cut:
-    """The cut made of `cars` coupled in this order, together weighing `mass_t` tonnes."""
+    """Couple cars to a cut.
+
+    Parameters
+    ----------
+    cars
+        The cars, the first one ahead.
+    mass_t
+        What they weigh together, t.
+    category
+        Name of the weight category.
+    allowed_stage
+        The highest braking stage that the category may be given.
+    category_number
+        What stands for the category in controllers, or None.
+
+    Returns
+    -------
+    Cut
+        The cut, with the axles of all cars.
+
+    Raises
+    ------
+    PlantError
+        No car, or a mass that no cut has.
+
+    Examples
+    --------
+    >>> from plant_models import couple
+    >>> from plant_models.library import load_car
+    >>> gondola = load_car("gondola-4").car
+    >>> cut = couple((gondola, gondola), mass_t=60.0, category="ЛС", allowed_stage=2)
+    >>> cut.axles, cut.axle_offsets_m[4]
+    (8, 13.92)
+    """
     require(len(cars) > 0, "cut: cars is empty; a cut has at least one car")
     offsets: list[float] = []
     front_coupler = 0.0

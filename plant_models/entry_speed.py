@@ -20,6 +20,13 @@ class EntryLaw(Protocol):
     """Distribution of the speed of the first axle at the entrance, m/s.
 
     No cut is slower than `low_m_s` or faster than `high_m_s`.
+
+    Examples
+    --------
+    >>> from plant_models import EntryLaw, EntrySpeed
+    >>> law: EntryLaw = EntrySpeed(5.0, 6.5)
+    >>> law.high_m_s
+    6.5
     """
 
     @property
@@ -41,7 +48,18 @@ class EntryLaw(Protocol):
         ...
 
     def speed_m_s(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Entry speed for uniform `u` in [0, 1): the inverse of the distribution function."""
+        """Entry speeds: the inverse of the distribution function.
+
+        Parameters
+        ----------
+        u
+            Uniform numbers in [0, 1), of any shape.
+
+        Returns
+        -------
+        ndarray
+            Speeds, m/s, of that shape.
+        """
         ...
 
     def stretched(self, low_m_s: float, high_m_s: float) -> EntryLaw:
@@ -51,7 +69,28 @@ class EntryLaw(Protocol):
 
 @dataclass(frozen=True)
 class EntrySpeed:
-    """Speed of the first axle at the entrance, uniform in [low, high], m/s."""
+    """Speed of the first axle at the entrance, uniform between two limits.
+
+    Parameters
+    ----------
+    low_m_s
+        Lowest speed, m/s.
+    high_m_s
+        Highest speed, m/s.
+
+    Raises
+    ------
+    PlantError
+        Limits that are no speeds, or in the wrong order.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from plant_models import EntrySpeed
+    >>> entry = EntrySpeed(5.0, 6.5)
+    >>> entry.sentence, entry.speed_m_s(np.array([0.0, 0.5]))
+    ('uniform from 5 to 6.5 m/s', array([5.  , 5.75]))
+    """
 
     low_m_s: float
     high_m_s: float
@@ -76,7 +115,32 @@ class EntrySpeed:
 
 @dataclass(frozen=True)
 class NormalEntrySpeed:
-    """Normal with `mean_m_s` and `std_m_s`, of which only the part in [low, high] is taken, m/s."""
+    """Speed of the first axle at the entrance, normal, of which only the part between two limits is taken.
+
+    Parameters
+    ----------
+    low_m_s
+        Lowest speed, m/s.
+    high_m_s
+        Highest speed, m/s.
+    mean_m_s
+        Mean of the whole law, m/s.
+    std_m_s
+        Standard deviation of the whole law, m/s.
+
+    Raises
+    ------
+    PlantError
+        Numbers that are no speeds, or a law that has hardly a cut between the limits.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from plant_models import NormalEntrySpeed
+    >>> entry = NormalEntrySpeed(low_m_s=4.0, high_m_s=7.0, mean_m_s=5.5, std_m_s=0.5)
+    >>> entry.speed_m_s(np.array([0.5])).round(3)
+    array([5.5])
+    """
 
     low_m_s: float
     high_m_s: float
@@ -132,9 +196,28 @@ class NormalEntrySpeed:
 
 @dataclass(frozen=True)
 class HistogramEntrySpeed:
-    """Uniform within each of several bins: `shares`[i] of the cuts enter from `edges_m_s`[i] to the next edge, m/s.
+    """Speed of the first axle at the entrance, uniform within each of n bins.
 
-    Shares are counts or probabilities: only their ratios matter. Bins without cuts at both ends are allowed.
+    Parameters
+    ----------
+    edges_m_s
+        Edges of the bins, m/s, (n + 1,), rising.
+    shares
+        How many cuts enter in each bin, (n,), counts or probabilities: only their ratios matter. Bins without cuts at
+        both ends are allowed.
+
+    Raises
+    ------
+    PlantError
+        Edges that do not rise, or shares that do not belong to them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from plant_models import HistogramEntrySpeed
+    >>> entry = HistogramEntrySpeed(edges_m_s=(4.0, 5.0, 6.0), shares=(1.0, 3.0))
+    >>> entry.speed_m_s(np.array([0.0, 0.25, 0.625]))
+    array([4. , 5. , 5.5])
     """
 
     edges_m_s: tuple[float, ...]

@@ -15,15 +15,42 @@ MOST_CV, MOST_MEAN_CV = 0.6, 0.3
 
 @dataclass(frozen=True)
 class Friction:
-    """ξ(s) = ξ_cut·(1 + η(s)).
+    """Friction factor ξ(s) = ξ_cut·(1 + η(s)) of a cut.
 
-    ξ_cut ~ N(1, CV²) is drawn once per cut and kept, CV² = `common_cv`² + `axle_cv`²/N̄, and never falls
-    under `floor`; η is stationary and Gaussian with std `path_std` and exponential correlation over
-    `correlation_length_m`.
+    ξ_cut ~ N(1, CV²) is drawn once for a cut and kept, `CV² = common_cv² + axle_cv²/N̄`. η is stationary and Gaussian.
 
-    `mean_cv`: how far the mean of ξ_cut, taken as 1, may itself be off on a day: standard deviation of that mean by
-    weather, the oil of the day, a wrong weight. No pass is drawn with it. What must keep a reserve is designed for
-    `of_any_day`.
+    Parameters
+    ----------
+    common_cv
+        Part of the coefficient of variation of ξ_cut that all axles share.
+    axle_cv
+        Part of each axle, which is less for more braked axles N̄.
+    path_std
+        Standard deviation of η.
+    correlation_length_m
+        Length over which the correlation of η falls to 1/e, m.
+    floor
+        ξ_cut never falls under this.
+    mean_cv
+        How far the mean of ξ_cut, taken as 1, may itself be off on a day, by weather, the oil of the day, a wrong
+        weight; a standard deviation. No pass is drawn with it. What must keep a reserve is designed for `of_any_day`.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from plant_models import Friction
+    >>> friction = Friction(
+    ...     common_cv=0.15, axle_cv=0.2, path_std=0.1, correlation_length_m=2.0
+    ... )
+    >>> round(friction.cut_cv(mean_braked_axles=4.0), 4)
+    0.1803
+    >>> friction.cut_factor(np.array([-1.0, 0.0, 1.0]), cv=0.18)
+    array([0.82, 1.  , 1.18])
     """
 
     common_cv: float
@@ -42,7 +69,7 @@ class Friction:
 
     @property
     def of_any_day(self) -> Friction:
-        """The friction of a cut on an unknown day: the spread of the mean is part of that of ξ_cut.
+        """The friction of a cut on an unknown day, where the spread of the mean is part of that of ξ_cut.
 
         Its `common_cv` is never above the highest that one may have.
         """
@@ -53,7 +80,20 @@ class Friction:
         return math.sqrt(self.common_cv**2 + self.axle_cv**2 / max(mean_braked_axles, 1.0))
 
     def cut_factor(self, z: NDArray[np.float64], cv: float) -> NDArray[np.float64]:
-        """ξ_cut for standard normal `z`."""
+        """The friction factor ξ_cut.
+
+        Parameters
+        ----------
+        z
+            Standard normal numbers, of any shape.
+        cv
+            Its coefficient of variation, as of `cut_cv`.
+
+        Returns
+        -------
+        ndarray
+            Factors of that shape, `floor` or more.
+        """
         return np.maximum(self.floor, 1.0 + cv * z)
 
     def path_cell_std(self, cell_m: NDArray[np.float64] | float) -> NDArray[np.float64]:

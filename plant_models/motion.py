@@ -22,10 +22,22 @@ from plant_models.track_profile import TrackProfile
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class PathCoefficients:
-    """Cell means along the path of the first axle.
+    """What of a cut and a position acts on the motion, as means over n cells of the path of the first axle.
 
-    `edges_m` shape (n + 1,); `gravity_m_s2` = g'·i·1e-3 and `brake_m_s2_per_kpa` = β, shape (n,);
-    `resistance_m_s2_per_n_kn` = g'·1e-3: deceleration by one N/kN of specific resistance.
+    Parameters
+    ----------
+    edges_m
+        Edges of the cells, m, (n + 1,).
+    gravity_m_s2
+        g'·i·1e-3, m/s², (n,).
+    brake_m_s2_per_kpa
+        β, deceleration by one kPa above the touch pressure, m/s² per kPa, (n,).
+    resistance_m_s2_per_n_kn
+        g'·1e-3, deceleration by one N/kN of specific resistance, m/s² per N/kN.
+
+    Examples
+    --------
+    See `path_coefficients`.
     """
 
     edges_m: NDArray[np.float64]
@@ -34,7 +46,18 @@ class PathCoefficients:
     resistance_m_s2_per_n_kn: float
 
     def free_m_s2(self, resistance_n_per_kn: float) -> NDArray[np.float64]:
-        """Acceleration of a cut of this specific resistance with the brake released, (n,)."""
+        """Acceleration of a cut with the brake released.
+
+        Parameters
+        ----------
+        resistance_n_per_kn
+            Its specific resistance, N/kN.
+
+        Returns
+        -------
+        ndarray
+            m/s², (n,).
+        """
         return self.gravity_m_s2 - self.resistance_m_s2_per_n_kn * resistance_n_per_kn
 
 
@@ -63,7 +86,42 @@ def path_breaks_m(
 def path_coefficients(
     position: RetarderPosition, cut: Cut, profile: TrackProfile, edges_m: NDArray[np.float64]
 ) -> PathCoefficients:
-    """Exact means of gravity and brake coefficient over the cells between `edges_m`."""
+    """Reduce the motion of a cut through a position to means over cells of the path.
+
+    Parameters
+    ----------
+    position
+        The retarders.
+    cut
+        The cut.
+    profile
+        The track.
+    edges_m
+        Edges of n cells, rising, path of the first axle, m, (n + 1,).
+
+    Returns
+    -------
+    PathCoefficients
+        Exact means of gravity and of the brake coefficient, (n,).
+
+    Notes
+    -----
+    With e = v²/2 per metre of path: de/ds = g'(i - w)·1e-3 - ξ·β·p, where p = max(0, P - P0).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from plant_models import Cut, path_coefficients
+    >>> from plant_models.library import load_position
+    >>> at = load_position("knp-5-bunch")
+    >>> cut = Cut("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5), allowed_stage=3)
+    >>> cells = path_coefficients(at.position, cut, at.profile, np.array([0.0, 1.0, 20.0]))
+    >>> (
+    ...     cells.brake_m_s2_per_kpa.shape,
+    ...     bool(cells.brake_m_s2_per_kpa[1] > cells.brake_m_s2_per_kpa[0]),
+    ... )
+    ((2,), True)
+    """
     fine = np.unique(np.concatenate([path_breaks_m(position, cut, profile, min(0.0, float(edges_m[0]))), edges_m]))
     middle = 0.5 * (fine[1:] + fine[:-1])
     axles = braked_axles(position, cut, middle)

@@ -25,7 +25,49 @@ SLOWEST_START_M_S = 0.3
 
 @dataclass(frozen=True)
 class Plant:
-    """Everything about a pass but the commanded speed."""
+    """Everything about a pass but the commanded speed.
+
+    Parameters
+    ----------
+    position
+        The retarders.
+    cut
+        The cut.
+    profile
+        The track.
+    friction
+        What the friction of cuts is.
+    resistance
+        What the rolling resistance of such cuts is.
+    sensor
+        The radar, and the computer behind it.
+    entry
+        How fast cuts enter.
+    approach
+        Where the regulator begins to act; by default at the entrance.
+
+    Raises
+    ------
+    PlantError
+        Two of these do not fit each other.
+
+    Examples
+    --------
+    A cut of 52 t at a position of the library:
+
+    >>> from plant_models import Cut, Plant, RollingResistance
+    >>> from plant_models.library import load_position
+    >>> at = load_position("knp-5-bunch")
+    >>> cut = Cut("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5), allowed_stage=3)
+    >>> resistance = RollingResistance(mean_n_per_kn=1.5, std_n_per_kn=0.5)
+    >>> plant = Plant(
+    ...     at.position, cut, at.profile, at.friction, resistance, at.sensor, at.entry
+    ... )
+    >>> plant
+    Plant(knp-5-bunch, 52 t on 4 axles, entry 5 to 6.5 m/s)
+    >>> plant.top_stage, plant.start_m, plant.exit_m
+    (3, 0.0, 37.45)
+    """
 
     position: RetarderPosition
     cut: Cut
@@ -81,10 +123,20 @@ class Plant:
     def start_speed_m_s(
         self, entrance_speed_m_s: NDArray[np.float64], resistance_n_per_kn: NDArray[np.float64] | float
     ) -> NDArray[np.float64]:
-        """Speed at `start_m` of cuts that reach the entrance with `entrance_speed_m_s`: nothing brakes in between.
+        """Speed where the regulator begins to act: nothing brakes between there and the entrance.
 
-        No slower than `SLOWEST_START_M_S`: a cut that rolls so much easier than the mean that a steep approach would
-        have brought it from less begins with that.
+        Parameters
+        ----------
+        entrance_speed_m_s
+            Speeds at the entrance, m/s, of any shape.
+        resistance_n_per_kn
+            Specific resistance of the cuts, N/kN, of that shape or one for all.
+
+        Returns
+        -------
+        ndarray
+            Speeds at `start_m`, m/s. No slower than `SLOWEST_START_M_S`: a cut that rolls so much easier than the mean
+            that a steep approach would have brought it from less begins with that.
         """
         if self.start_m == 0.0:
             return entrance_speed_m_s
@@ -101,12 +153,12 @@ class Plant:
 
     @property
     def pass_m(self) -> float:
-        """Length of a pass: path from where the regulator acts to S_exit."""
+        """Length of a pass, from where the regulator acts to S_exit, m."""
         return self.exit_m - self.start_m
 
     @property
     def exit_m(self) -> float:
-        """S_exit, metres."""
+        """S_exit, path of the first axle at which the last one leaves the last retarder, m."""
         return self.position.exit_m(self.cut)
 
     @property

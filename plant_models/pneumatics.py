@@ -24,26 +24,64 @@ MAX_SWITCHINGS = 40
 
 @dataclass(frozen=True)
 class Pneumatics:
-    """Constants of the drive; pressures kPa gauge, times s (symbols of zhukovitsky-2012 in brackets)."""
+    """The drive of a retarder, with the symbols of [zhukovitsky-2012] in brackets.
+
+    Parameters
+    ----------
+    supply_pressure_kpa
+        [P_max], kPa gauge.
+    exhaust_pressure_kpa
+        [P_min], kPa gauge.
+    brake_delay_s
+        [tZ2], delay of the supply valve, s.
+    touch_delay_s
+        [t00], extra dead time while the pads do not touch (P ≤ P0), s.
+    release_delay_s
+        [tZ0], delay of the exhaust valve, s.
+    fill_time_constant_s
+        Time constant while connected to the supply, s.
+    exhaust_time_constant_s
+        Time constant while connected to the exhaust, s.
+    dead_band_kpa
+        [ε], half dead band of the regulator of the pressure, kPa.
+    closing_delay_s
+        For so long a valve stays open after the pressure has reached the band, s.
+    day_spread
+        Standard deviation of the logarithm of all delays and time constants from day to day, by cold, long pipes, wear.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
+
+    Examples
+    --------
+    >>> from plant_models import Pneumatics
+    >>> drive = Pneumatics(
+    ...     supply_pressure_kpa=700.0,
+    ...     exhaust_pressure_kpa=0.0,
+    ...     brake_delay_s=0.1,
+    ...     touch_delay_s=0.2,
+    ...     release_delay_s=0.1,
+    ...     fill_time_constant_s=0.3,
+    ...     exhaust_time_constant_s=0.3,
+    ...     dead_band_kpa=15.0,
+    ... )
+    >>> history = drive.respond(start_kpa=0.0, target_kpa=300.0, touch_kpa=50.0)
+    >>> round(history.duration_s, 3), history.end_kpa
+    (0.457, 285.0)
+    """
 
     supply_pressure_kpa: float
-    """[P_max]"""
     exhaust_pressure_kpa: float
-    """[P_min]"""
     brake_delay_s: float
-    """[tZ2] supply valve delay"""
     touch_delay_s: float
-    """[t00] extra dead time while the pads do not touch (P ≤ P0)"""
     release_delay_s: float
-    """[tZ0] exhaust valve delay"""
     fill_time_constant_s: float
     exhaust_time_constant_s: float
     dead_band_kpa: float
-    """[ε] half dead band of the stage regulator"""
     closing_delay_s: float = 0.0
-    """time for which a valve stays open after the pressure has reached the band"""
     day_spread: float = 0.0
-    """standard deviation of the logarithm of all delays and time constants from day to day: cold, long pipes, wear"""
 
     def __post_init__(self) -> None:
         require_between("pneumatics: supply_pressure_kpa", self.supply_pressure_kpa, 1.0, 2000.0)
@@ -109,9 +147,26 @@ class Pneumatics:
         return self.valves(touch_kpa)
 
     def respond(self, start_kpa: float, target_kpa: float, touch_kpa: float) -> PressureHistory:
-        """Pressure after the command `target_kpa`, given at t = 0 while the pressure rests at `start_kpa`.
+        """Pressure after a command that is given at t = 0, while the pressure rests.
 
-        Raises `PlantError` if the regulator hunts (closing delay too long for the dead band).
+        Parameters
+        ----------
+        start_kpa
+            The pressure before, kPa gauge.
+        target_kpa
+            The pressure that is commanded, kPa gauge.
+        touch_kpa
+            The pressure at which the pads touch the wheels, kPa gauge.
+
+        Returns
+        -------
+        PressureHistory
+            P(t), in closed form.
+
+        Raises
+        ------
+        PlantError
+            The regulator hunts: the closing delay is too long for the dead band.
         """
         pieces: list[tuple[float, float, float, float]] = []
         time, pressure, drive = 0.0, start_kpa, self.valves(touch_kpa)
@@ -136,10 +191,29 @@ class Pneumatics:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class PressureHistory:
-    """P(t) after one command, as pieces P∞ + (P_start − P∞)·exp(−(t − t_start)/T).
+    """Pressure after one command, as n pieces P∞ + (P_start − P∞)·exp(−(t − t_start)/T).
 
-    All arrays of shape (pieces,): `starts_s`, `pressures_kpa` at the starts, `asymptotes_kpa`,
-    `time_constants_s`. The last piece is constant and lasts for ever; it starts at `duration_s`.
+    The last piece is constant and lasts for ever.
+
+    Parameters
+    ----------
+    starts_s
+        Beginning of each piece, s after the command, (n,).
+    pressures_kpa
+        Pressure there, kPa gauge, (n,).
+    asymptotes_kpa
+        P∞ of each piece, kPa gauge, (n,).
+    time_constants_s
+        T of each piece, s, (n,).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from plant_models.library import load_position
+    >>> drive = load_position("knp-5-bunch").position.pneumatics
+    >>> history = drive.respond(start_kpa=0.0, target_kpa=300.0, touch_kpa=50.0)
+    >>> history.pressure_kpa(np.array([0.0, 10.0]))
+    array([  0., 285.])
     """
 
     starts_s: NDArray[np.float64]
@@ -158,14 +232,38 @@ class PressureHistory:
         return float(self.pressures_kpa[-1])
 
     def pressure_kpa(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """P at the times `t_s` ≥ 0."""
+        """Pressure at some times.
+
+        Parameters
+        ----------
+        t_s
+            Times since the command, s, 0 or more, of any shape.
+
+        Returns
+        -------
+        ndarray
+            kPa gauge, of that shape.
+        """
         piece = np.clip(np.searchsorted(self.starts_s, t_s, side="right") - 1, 0, None)
         decay = np.exp(-(t_s - self.starts_s[piece]) / self.time_constants_s[piece])
         asymptote = self.asymptotes_kpa[piece]
         return asymptote + (self.pressures_kpa[piece] - asymptote) * decay
 
     def overpressure_integral(self, t_s: NDArray[np.float64], touch_kpa: float) -> NDArray[np.float64]:
-        """∫₀ᵗ max(0, P − touch) dt in kPa·s, closed form piece by piece."""
+        """∫₀ᵗ max(0, P − touch) dt, in closed form piece by piece.
+
+        Parameters
+        ----------
+        t_s
+            Times since the command, s, 0 or more, (n,).
+        touch_kpa
+            The pressure at which the pads touch the wheels, kPa gauge.
+
+        Returns
+        -------
+        ndarray
+            kPa·s, (n,).
+        """
         total = np.zeros_like(t_s)
         ends = np.append(self.starts_s[1:], np.inf)
         for start, end, pressure, asymptote, constant in zip(

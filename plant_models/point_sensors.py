@@ -28,12 +28,46 @@ Axles = Callable[[Cut], tuple[int, ...]]
 
 
 def first_axle(cut: Cut) -> tuple[int, ...]:
-    """The first axle alone."""
+    """The first axle alone, for `PointSensors.axles`.
+
+    Parameters
+    ----------
+    cut
+        A cut.
+
+    Returns
+    -------
+    tuple of int
+        Numbers of its axles, from 0.
+
+    Examples
+    --------
+    >>> from plant_models import Cut, first_axle
+    >>> first_axle(Cut("С", mass_t=26.0, axle_offsets_m=(0.0, 6.0), allowed_stage=3))
+    (0,)
+    """
     return (0,)
 
 
 def every_axle(cut: Cut) -> tuple[int, ...]:
-    """Every axle: the later version of zhukovitsky-2012."""
+    """Every axle, for `PointSensors.axles`: the later version of [zhukovitsky-2012].
+
+    Parameters
+    ----------
+    cut
+        A cut.
+
+    Returns
+    -------
+    tuple of int
+        Numbers of its axles, from 0.
+
+    Examples
+    --------
+    >>> from plant_models import Cut, every_axle
+    >>> every_axle(Cut("С", mass_t=26.0, axle_offsets_m=(0.0, 6.0), allowed_stage=3))
+    (0, 1)
+    """
     return tuple(range(cut.axles))
 
 
@@ -41,13 +75,39 @@ def every_axle(cut: Cut) -> tuple[int, ...]:
 class PointSensors:
     """Sensors along a retarder position, and the regulator that listens to them.
 
-    `path_m`: middle of the base of each sensor, from the entrance of the first retarder, rising, negative ahead of it.
-    `base_m`: distance of the coils; `base_tolerance`: std of its relative error, lasting for each sensor and unknown to
-    the regulator. `timer_noise_s`: std of a measured time; `timer_resolution_s`: times are whole multiples of it, 0:
-    not quantised. `computing_delay_s`: from the second pulse to the command on the wires. `scan_period_s`: step of
-    the regulator's clock; a transient is over at the first step after its end. `missed_share`: of the passages, each by
-    itself, that the design of a table counts as not heard, so that a lost one costs less; a simulated pass loses none
-    unless a fault says so. `axles`: those that the regulator decides on.
+    Parameters
+    ----------
+    path_m
+        Middle of the base of each sensor, from the entrance of the first retarder, m, rising; negative ahead of it.
+    base_m
+        Distance of the two coils of a sensor, m.
+    base_tolerance
+        Standard deviation of the relative error of the base, lasting for each sensor and unknown to the regulator.
+    timer_noise_s
+        Standard deviation of a measured time, s.
+    timer_resolution_s
+        Times are whole multiples of it, s; 0: not quantised.
+    computing_delay_s
+        From the second pulse to the command on the wires, s.
+    scan_period_s
+        Step of the clock of the regulator, s; a transient is over at the first step after its end.
+    missed_share
+        Of the passages, each by itself, that the design of a table counts as not heard, so that a lost one costs less.
+        A simulated pass loses none unless a fault says so.
+    axles
+        Those that the regulator decides on, `first_axle` or `every_axle`.
+
+    Raises
+    ------
+    PlantError
+        Sensors that overlap, or a number out of range.
+
+    Examples
+    --------
+    >>> from plant_models import PointSensors, every_axle
+    >>> sensors = PointSensors(path_m=(-1.0, 6.0, 13.0), axles=every_axle)
+    >>> sensors.base_m, float(sensors.reading_std_m_s(5.0).round(4))
+    (0.2, 0.0164)
     """
 
     path_m: tuple[float, ...]
@@ -87,7 +147,7 @@ class PointSensors:
 
     @property
     def sample_period_s(self) -> float:
-        """Step of the clock in which durations of commands are counted: `scan_period_s`."""
+        """Step of the clock in which durations of commands are counted, `scan_period_s`."""
         return self.scan_period_s
 
     @property
@@ -96,7 +156,18 @@ class PointSensors:
         return max(math.hypot(self.timer_noise_s, self.timer_resolution_s / math.sqrt(12.0)), 1e-6)
 
     def reading_std_m_s(self, speed_m_s: NDArray[np.float64] | float) -> NDArray[np.float64]:
-        """Std of a reading at true speeds: v²·σ_t/base and v times the tolerance of the base, together."""
+        """Standard deviation of a reading: v²·σ_t/base and v times the tolerance of the base, together.
+
+        Parameters
+        ----------
+        speed_m_s
+            True speeds, m/s, of any shape.
+
+        Returns
+        -------
+        ndarray
+            m/s, of that shape.
+        """
         v = np.asarray(speed_m_s, dtype=np.float64)
         return np.hypot(v * v * self.timing_std_s / self.base_m, v * self.base_tolerance)
 

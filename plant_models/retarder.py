@@ -20,15 +20,55 @@ class ForceLaw(Protocol):
         ...
 
     def slope_kn_per_kpa(self, cut: Cut, axles_inside: int) -> float:
-        """K·c(N): mean slope for one wheel pair while `axles_inside` wheel pairs are braked."""
+        """Mean slope K·c(N) of the force of one wheel pair.
+
+        Parameters
+        ----------
+        cut
+            The cut.
+        axles_inside
+            N: so many wheel pairs are braked.
+
+        Returns
+        -------
+        float
+            kN for each kPa above the touch pressure.
+        """
         ...
 
 
 @dataclass(frozen=True)
 class PressingForce:
-    """Pressing retarder: the force is set by the drive and does not depend on the car (zhukovitsky-2012).
+    """Pressing retarder: the force is set by the drive and does not depend on the car ([zhukovitsky-2012]).
 
-    `slope_factor_by_axles[j]` is c(j + 1); beyond its end the last entry holds.
+    Parameters
+    ----------
+    slope_kn_per_kpa_per_pair
+        Force of one wheel pair, kN for each kPa above the touch pressure.
+    touch_pressure_kpa
+        Pressure P0 at which the pads touch the wheels, kPa gauge.
+    slope_factor_by_axles
+        c(1), c(2), …: factors of the mean slope by the number of braked wheel pairs; beyond the end the last one holds.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
+
+    Examples
+    --------
+    >>> from plant_models import Cut, PressingForce
+    >>> cut = Cut("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5), allowed_stage=3)
+    >>> force = PressingForce(
+    ...     slope_kn_per_kpa_per_pair=0.04,
+    ...     touch_pressure_kpa=50.0,
+    ...     slope_factor_by_axles=(1.0, 0.9),
+    ... )
+    >>> (
+    ...     force.slope_kn_per_kpa(cut, axles_inside=1),
+    ...     round(force.slope_kn_per_kpa(cut, axles_inside=3), 3),
+    ... )
+    (0.04, 0.036)
     """
 
     slope_kn_per_kpa_per_pair: float
@@ -47,9 +87,32 @@ class PressingForce:
 
 @dataclass(frozen=True)
 class WeightForce:
-    """Weight-proportional retarder (КВ type): the wheel's own load sets the force.
+    """Weight-proportional retarder (КВ type): the load of the wheel itself sets the force.
 
     Force of a wheel pair = slope · axle load · max(0, P − P0).
+
+    Parameters
+    ----------
+    slope_kn_per_kpa_per_t
+        kN for each kPa above the touch pressure and each tonne of axle load.
+    touch_pressure_kpa
+        Pressure P0 at which the pads touch the wheels, kPa gauge.
+    slope_factor_by_axles
+        As of `PressingForce`.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
+
+    Examples
+    --------
+    >>> from plant_models import Cut, WeightForce
+    >>> cut = Cut("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5), allowed_stage=3)
+    >>> WeightForce(slope_kn_per_kpa_per_t=0.25, touch_pressure_kpa=50.0).slope_kn_per_kpa(
+    ...     cut, axles_inside=1
+    ... )
+    3.25
     """
 
     slope_kn_per_kpa_per_t: float
@@ -68,10 +131,42 @@ class WeightForce:
 
 @dataclass(frozen=True)
 class RetarderPosition:
-    """One or more retarders commanded together.
+    """One or more retarders that are commanded together.
 
-    `zones_m`: (start, end) of each retarder from the entrance of the first (which starts at 0), metres;
-    `stage_pressures_kpa`: P_0 < P_1 < … < P_K, gauge; `max_entry_speed_m_s`: limit of the type.
+    Parameters
+    ----------
+    name
+        Its name.
+    zones_m
+        Beginning and end of each retarder, m from the entrance of the first one, which begins at 0.
+    stage_pressures_kpa
+        P_0 < P_1 < … < P_K, kPa gauge.
+    force
+        The force law of its type, `PressingForce` or `WeightForce`.
+    pneumatics
+        The drive.
+    max_entry_speed_m_s
+        Limit of the type, m/s.
+
+    Raises
+    ------
+    PlantError
+        Zones that overlap, pressures that do not rise or cannot be reached, or a number out of range.
+
+    Examples
+    --------
+    >>> from plant_models import PressingForce, RetarderPosition
+    >>> from plant_models.library import load_position
+    >>> position = RetarderPosition(
+    ...     "my-retarder",
+    ...     zones_m=((0.0, 12.0),),
+    ...     stage_pressures_kpa=(0.0, 200.0, 400.0),
+    ...     force=PressingForce(0.04, touch_pressure_kpa=50.0),
+    ...     pneumatics=load_position("knp-5-bunch").position.pneumatics,
+    ...     max_entry_speed_m_s=7.0,
+    ... )
+    >>> position.top_stage
+    2
     """
 
     name: str

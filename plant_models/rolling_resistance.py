@@ -13,9 +13,31 @@ from plant_models.errors import require_between
 
 @dataclass(frozen=True)
 class RollingResistance:
-    """Specific resistance w0 in N/kN (= permille of weight), gamma distributed over cuts.
+    """Specific resistance w of cuts, gamma distributed; it is drawn once for a cut ([hump-norm]).
 
-    `mean_n_per_kn` and `std_n_per_kn` belong to the weight category; a zero std means w0 is known.
+    Parameters
+    ----------
+    mean_n_per_kn
+        Mean of the weight category, N/kN, that is permille of the weight.
+    std_n_per_kn
+        Standard deviation of the category, N/kN; 0: w is known.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from plant_models import RollingResistance
+    >>> resistance = RollingResistance(mean_n_per_kn=1.5, std_n_per_kn=0.5)
+    >>> values, probabilities = resistance.nodes(3)
+    >>> (
+    ...     float((values @ probabilities).round(9)),
+    ...     resistance.sample(np.random.default_rng(1), 4).shape,
+    ... )
+    (1.5, (4,))
     """
 
     mean_n_per_kn: float
@@ -36,13 +58,37 @@ class RollingResistance:
         return self.std_n_per_kn**2 / self.mean_n_per_kn
 
     def sample(self, rng: np.random.Generator, size: int) -> NDArray[np.float64]:
-        """`size` independent draws, N/kN."""
+        """Independent draws.
+
+        Parameters
+        ----------
+        rng
+            Where random numbers come from.
+        size
+            How many.
+
+        Returns
+        -------
+        ndarray
+            N/kN, (size,).
+        """
         if self.std_n_per_kn == 0.0:
             return np.full(size, self.mean_n_per_kn)
         return rng.gamma(self.shape, self.scale_n_per_kn, size)
 
     def nodes(self, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Gauss quadrature of the gamma law: (values in N/kN, probabilities), each of shape (count,)."""
+        """Gauss quadrature of the gamma law.
+
+        Parameters
+        ----------
+        count
+            Number of nodes.
+
+        Returns
+        -------
+        tuple of two ndarray
+            Values, N/kN, and probabilities, each (count,).
+        """
         if count == 1 or self.std_n_per_kn == 0.0:
             return np.array([self.mean_n_per_kn]), np.array([1.0])
         # Golub–Welsch for the generalised Laguerre polynomials: Γ(shape) never appears, so that a narrow law

@@ -19,12 +19,37 @@ LONGEST_BURST_S = 10.0
 
 @dataclass(frozen=True)
 class DopplerSensor:
-    """Measured speed = round((v + noise)/resolution)·resolution, once every `sample_period_s`.
+    """Radar: measured speed = round((v + noise)/resolution)·resolution, once every period.
 
-    `noise_m_s`: std of white Gaussian noise; `resolution_m_s`: 0 means not quantised, else 1e-6 or more, for the
-    quotient must be a number; `computing_delay_s`: from the sample to the command on the valves' wires. `missed_share`
-    of the readings are lost, in bursts of `missed_burst_s` on average, of at least one reading each: a Markov chain of
-    two states, stationary, one step a sample.
+    Parameters
+    ----------
+    noise_m_s
+        Standard deviation of white Gaussian noise, m/s.
+    resolution_m_s
+        Step of the readings, m/s, 1e-6 or more; 0: not quantised.
+    sample_period_s
+        Time between two readings, s.
+    computing_delay_s
+        From the sample to the command on the wires of the valves, s.
+    missed_share
+        Share of the readings that are lost.
+    missed_burst_s
+        They are lost in bursts of this mean length, s, of at least one reading each: a stationary Markov chain of two
+        states, one step a sample.
+
+    Raises
+    ------
+    PlantError
+        A number out of range, or bursts shorter than a reading.
+
+    Examples
+    --------
+    >>> from plant_models import DopplerSensor
+    >>> radar = DopplerSensor(
+    ...     noise_m_s=0.05, resolution_m_s=0.04, sample_period_s=0.1, computing_delay_s=0.02
+    ... )
+    >>> radar.exact, round(radar.reading_std_m_s, 4)
+    (False, 0.0513)
     """
 
     noise_m_s: float
@@ -64,14 +89,15 @@ class DopplerSensor:
 
     @property
     def reading_std_m_s(self) -> float:
-        """Std of one reading: `measured_speed_std` of noise and quantisation together."""
+        """Std of one reading, `measured_speed_std` of noise and quantisation together, m/s."""
         return measured_speed_std(self.noise_m_s, self.resolution_m_s)
 
     @property
     def repeat_probability(self) -> float:
-        """Probability that two readings of one speed are equal: the mean of max(0, 1 - |d|/resolution), d their noise.
+        """Probability that two readings of one speed are equal.
 
-        That is the chance of one cell for both, its place being uniform. 0 without quantisation, 1 without noise.
+        It is the mean of `max(0, 1 - |d|/resolution)`, d their noise: the chance of one cell for both, its place being
+        uniform. 0 without quantisation, 1 without noise.
         """
         if self.resolution_m_s == 0.0:
             return 0.0

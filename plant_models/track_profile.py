@@ -13,9 +13,30 @@ from plant_models.errors import require, require_between
 
 @dataclass(frozen=True)
 class TrackProfile:
-    """Piecewise constant grade i(s): `grades_permille[j]` holds from `starts_m[j]` on, downhill positive.
+    """Piecewise constant grade of the track along the position.
 
-    The first grade also holds before its start (the cut's tail is still on the approach).
+    Parameters
+    ----------
+    starts_m
+        Where each grade begins, m from the entrance, rising; the first one also holds before.
+    grades_permille
+        The grades, permille, positive where the track falls.
+
+    Raises
+    ------
+    PlantError
+        Two rows that do not belong together, or a number out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from plant_models import TrackProfile
+    >>> TrackProfile(starts_m=(0.0, 20.0), grades_permille=(11.0, 7.0)).grade_permille(
+    ...     np.array([5.0, 25.0])
+    ... )
+    array([11.,  7.])
+    >>> TrackProfile.uniform(8.0).grades_permille
+    (8.0,)
     """
 
     starts_m: tuple[float, ...]

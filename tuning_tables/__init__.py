@@ -1,11 +1,13 @@
 """Tuning tables: the artefact that a trackside controller loads, and the rule by which it decides.
 
 A controller with a radar needs `read_json` and `decide_for`; one with point sensors needs `read_table`,
-`believed_passage` and `wanted_stage`. numpy is all they use. Books in HDF5 need h5py when called.
+`begin_tracking` and `stage_at_pulse`. numpy is all they use. Books in HDF5 need h5py when called. Aim tables are in
+`tuning_tables.aim`, measured passes in `tuning_tables.pass_log`.
 """
 
 from tuning_tables.active_table import ActiveTable
-from tuning_tables.approach import Approach
+from tuning_tables.alarm import Alarm
+from tuning_tables.approach import Approach, Interlock
 from tuning_tables.csv_file import to_csv, write_csv
 from tuning_tables.decisions import Decisions
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OtherKind, TableError, UnknownFormat
@@ -17,6 +19,7 @@ from tuning_tables.passages.passage_book import PassageBook, PassageChoice
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.plausible_motion import PlausibleMotion
+from tuning_tables.passages.rule import begin_tracking, stage_at_pulse
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.rule import alarms_for, decide_for, decide_many, speed_for
@@ -27,6 +30,7 @@ from tuning_tables.table_book import Choice, Status, TableBook
 
 __all__ = [
     "ActiveTable",
+    "Alarm",
     "Approach",
     "Choice",
     "ControllerTable",
@@ -36,6 +40,7 @@ __all__ = [
     "Decisions",
     "Estimator",
     "Generator",
+    "Interlock",
     "InvalidTable",
     "NewerVersion",
     "OtherKind",
@@ -56,6 +61,7 @@ __all__ = [
     "Validated",
     "alarms_for",
     "begin",
+    "begin_tracking",
     "decide_for",
     "decide_many",
     "from_json",
@@ -64,6 +70,7 @@ __all__ = [
     "read_json",
     "read_table",
     "speed_for",
+    "stage_at_pulse",
     "table_schema",
     "to_csv",
     "to_json",

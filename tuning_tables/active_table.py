@@ -17,20 +17,35 @@ from tuning_tables.table import ControllerTable
 
 @dataclass(frozen=True, eq=False)
 class ActiveTable:
-    """Lines ready for `rule.decide`; arrays are read-only, shapes and units those of `ControllerTable`.
+    """Lines ready for `decide_for`, chosen from a book; arrays are read-only.
 
-    target_speed_m_s  float32, the exit speed that the lines aim at
-    coefficients      float32 (K+1, 2, degree+1), ascending powers of s in m; NaN where there is no line
-    has_line          bool (K+1, 2)
-    valid_range       float32 (4,): s_min, s_max in m, v_min, v_max in m/s
-    slopes            float32 (K+1, 2), m/s per kPa; 0 where a line has none
-    pressures         float32 (K+1,), kPa
-    estimator         of the speed that the lines are for; None: for the measured speed
-    approach          on which the regulator already acts; None: it acts from the entrance on
-    decisions         at rest or at any time
-    has_gauge         whether the lines depend on the pressure
+    Attributes
+    ----------
+    target_speed_m_s
+        float32, the exit speed that the lines aim at.
+    coefficients, has_line, valid_range, slopes, pressures
+        As of `ControllerTable`.
+    estimator
+        Of the speed that the lines are for; None: for the measured speed.
+    approach
+        On which the regulator already acts; None: it acts from the entrance on.
+    decisions
+        At rest or at any time.
+    has_gauge
+        Whether the lines depend on the pressure.
+    held
+        What the programs take.
 
-    Derived: held, what the programs take.
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import TableBook, decide_for
+    >>> lines = TableBook((table,)).choose("С", axles=4, commanded_m_s=3.0).table
+    >>> lines
+    ActiveTable(to 3 m/s, 2 stages)
+    >>> decide_for(lines, stage=0, s_m=5.0, v_m_s=5.0)
+    1
     """
 
     target_speed_m_s: np.float32
@@ -60,12 +75,12 @@ class ActiveTable:
 
     @property
     def entrance_stage(self) -> int:
-        """The highest stage that may be commanded at s < 0, for `rule.decide`: stage K without approach."""
+        """The highest stage that may be commanded at s < 0; stage K without approach."""
         return entrance_stage(self.approach, len(self.coefficients))
 
     @property
     def farthest(self) -> int:
-        """By how many stages one command may go, for `rule.decide`."""
+        """By how many stages one command may go."""
         return farthest(self.decisions, len(self.coefficients))
 
 

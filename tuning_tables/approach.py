@@ -32,6 +32,12 @@ class Approach:
 
     Before the entrance, s < 0, no stage above `entrance_stage` (0..K of its table) may be commanded; at the entrance
     and behind it, any. Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables import Approach
+    >>> Approach(length_m=4.0, entrance_stage=2).interlock
+    <Interlock.POSITION_CLEAR: 'position_clear'>
     """
 
     length_m: Annotated[float, Number("it acts from so far before the entrance", *LENGTH_RANGE_M)]

@@ -34,9 +34,30 @@ from tuning_tables.table_kinds import AnyTable
 
 
 def to_csv(table: AnyTable) -> bytes:
-    """The CSV text of `table`, UTF-8, CR LF line ends; equal tables give equal bytes.
+    """A table as CSV (RFC 4180), for spreadsheets and for controllers that read nothing else.
 
-    Raises `InvalidTable` for a text that a spreadsheet would take for a formula and compute.
+    Parameters
+    ----------
+    table
+        A table of any kind.
+
+    Returns
+    -------
+    bytes
+        UTF-8 with CR LF line ends; equal tables give equal bytes.
+
+    Raises
+    ------
+    InvalidTable
+        A text that a spreadsheet would take for a formula and compute.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import to_csv
+    >>> to_csv(table).decode().splitlines()[4]
+    'text,id,by-hand,,,'
     """
     document = to_document(table)
     format_word, version, kind = (document[key] for key in HEAD)
@@ -48,7 +69,32 @@ def to_csv(table: AnyTable) -> bytes:
 
 
 def write_csv(table: AnyTable, path: str | os.PathLike[str]) -> None:
-    """Write `to_csv(table)` to the file at `path`, complete or not at all; raises `OSError`, and as `to_csv`."""
+    """Write `to_csv` of a table to a file, complete or not at all.
+
+    Parameters
+    ----------
+    table
+        A table of any kind.
+    path
+        The file; one that is there is replaced.
+
+    Raises
+    ------
+    InvalidTable
+        As `to_csv`.
+    OSError
+        The disk refuses it.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from tuning_tables import write_csv
+    >>> with TemporaryDirectory() as folder:
+    ...     write_csv(table, Path(folder, "table.csv"))
+    """
     write_atomically(path, to_csv(table))
 
 

@@ -45,8 +45,32 @@ class Estimator:
     Energies are those per inertia from the first path break on, linear between breaks. Breaks are a millimetre apart at
     least, as float32. The work of the brake never falls along the path.
 
-    Derived (read-only): `numbers`, those that a controller holds, by their names in `LineTable`; work float32 (3, B).
+    Derived (read-only): `numbers`, those that a controller holds, by their names in `LineTable`; `work`, float32
+    (3, B).
     Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables import Estimator
+    >>> estimator = Estimator(
+    ...     speed_noise_m_s=0.05,
+    ...     friction_cv=0.15,
+    ...     resistance_std_m_s2=0.006,
+    ...     path_std=0.1,
+    ...     correlation_length_m=2.0,
+    ...     frozen_readings=7,
+    ...     doubted_readings=20,
+    ...     lost_speed_std_m_s=0.2,
+    ...     unlikely_deviation=0.5,
+    ...     touch_pressure_kpa=50.0,
+    ...     s_m=(0.0, 22.5),
+    ...     drive_m2_s2=(0.0, 1.0),
+    ...     brake_m2_s2_per_kpa=(0.0, 0.03),
+    ... )
+    >>> estimator
+    Estimator(2 path breaks from 0 to 22.5 m)
+    >>> estimator.work.shape
+    (3, 2)
     """
 
     speed_noise_m_s: Annotated[
@@ -124,13 +148,44 @@ class Estimator:
 
 
 def begin() -> Floats:
-    """The state before the first sample of a cut, float32 (16,)."""
+    """The state of an estimate before the first sample of a cut.
+
+    Returns
+    -------
+    ndarray
+        float32 (16,), all 0.
+
+    Examples
+    --------
+    >>> from tuning_tables import begin
+    >>> begin().shape
+    (16,)
+    """
     return np.zeros(STATE_SIZE, dtype=np.float32)
 
 
 def unseen_samples(state: Floats) -> int:
-    """For how many samples no reading was believed: 0 after one that was; before the first, since `begin`.
+    """For how many samples no reading was believed: so long has the model alone stood in for the sensor.
 
-    The model alone has stood in for the sensor that long. It stays at 2**24, beyond which float32 does not count.
+    Parameters
+    ----------
+    state
+        The state of the cut, float32 (16,).
+
+    Returns
+    -------
+    int
+        0 after a reading that was believed; before the first one, the samples since `begin`. It stays at 2**24, beyond
+        which float32 does not count.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import begin, speed_for, unseen_samples
+    >>> state = begin()
+    >>> _ = speed_for(table, state, s_m=0.4, v_m_s=float("nan"), overpressure_kpa=0.0)
+    >>> unseen_samples(state)
+    1
     """
     return int(state[UNSEEN])

@@ -23,6 +23,12 @@ class ValidRange:
     """The path and the speeds on which the lines were fitted.
 
     The rule clamps the path into this range and does not look at the speed range (see `rule.decide`). Both rise.
+
+    Examples
+    --------
+    >>> from tuning_tables import ValidRange
+    >>> ValidRange(s_m=(0.0, 22.5), v_m_s=(0.5, 8.0))
+    ValidRange(s_m=(0.0, 22.5), v_m_s=(0.5, 8.0))
     """
 
     s_m: Annotated[tuple[float, float], Row(Number("least and greatest path", -FARTHEST, FARTHEST), "end", 2, 2)]
@@ -39,7 +45,16 @@ class ValidRange:
 
 @dataclass(frozen=True)
 class Predicted:
-    """What the solver expects of this table."""
+    """What the solver expects of this table.
+
+    Examples
+    --------
+    >>> from tuning_tables import Predicted
+    >>> Predicted(
+    ...     rms_m_s=0.025, bias_m_s=0.001, p_overspeed=0.0, switchings=7.1
+    ... ).passes is None  # not sampled
+    True
+    """
 
     rms_m_s: Annotated[float, Number("error of the exit speed, root of its mean square", 0.0)]
     bias_m_s: Annotated[float, Number("mean error of the exit speed")]
@@ -56,7 +71,14 @@ class Predicted:
 
 @dataclass(frozen=True)
 class Validated:
-    """What a closed loop confirmed; null before it was run."""
+    """What a closed loop confirmed; null before it was run.
+
+    Examples
+    --------
+    >>> from tuning_tables import Validated
+    >>> Validated(passes=20_000, rms_m_s=0.025, rms_ci95_m_s=(0.0247, 0.0253)).rms_m_s
+    0.025
+    """
 
     passes: Annotated[int, Count("simulated passes", 1)]
     rms_m_s: Annotated[float, Number("error of the exit speed, root of its mean square", 0.0)]

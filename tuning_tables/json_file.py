@@ -22,9 +22,30 @@ _T = TypeVar("_T")
 
 
 def to_json(table: AnyTable) -> bytes:
-    """The JSON text of `table`, UTF-8, laid out for people, floats in shortest round-trip form.
+    """A table as JSON, laid out for people.
 
-    Equal tables give equal bytes. Raises `InvalidTable` where a number is -0.0 (see `document.to_document`).
+    Parameters
+    ----------
+    table
+        A table of any kind.
+
+    Returns
+    -------
+    bytes
+        UTF-8, floats in the shortest form that reads back exactly; equal tables give equal bytes.
+
+    Raises
+    ------
+    InvalidTable
+        A number is -0.0.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import from_json, to_json
+    >>> from_json(to_json(table)) == table
+    True
     """
     return laid_out(to_document(table))
 
@@ -34,11 +55,40 @@ def from_json(content: bytes, *, source: str = "table") -> ControllerTable: ...
 @overload
 def from_json(content: bytes, *kinds: type[_T], source: str = "table") -> _T: ...
 def from_json(content: bytes, *kinds: type[Any], source: str = "table") -> Any:
-    """The table in the JSON text `content`, of one of `kinds`, by default with lines; `source` names it in messages.
+    """The table in a JSON text.
 
-    Raises `DamagedTable` for text that is too long (over 4 MiB), no UTF-8, no JSON, nested too deep, with a key given
-    twice or a number that is not finite; then as `document.from_document`; at last `DamagedTable` for a text that is,
-    byte for byte, neither `to_json` of the table nor the canonical form (RFC 8785) of the document.
+    Parameters
+    ----------
+    content
+        The text, UTF-8, 4 MiB at most.
+    *kinds
+        The classes that the table may be of; by default `ControllerTable`.
+    source
+        What messages call the text.
+
+    Returns
+    -------
+    ControllerTable, PassageTable or AimTable
+        The table.
+
+    Raises
+    ------
+    DamagedTable
+        A text that is not, byte for byte, what an export writes: cut off, changed, laid out otherwise.
+    UnknownFormat, OtherKind, NewerVersion
+        It holds something else, a table of another kind, or one of a later version of the format.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import from_json, to_json
+    >>> from_json(to_json(table)).id
+    'by-hand'
+    >>> from_json(to_json(table).replace(b"52.0", b"53.0"))
+    Traceback (most recent call last):
+    ...
+    tuning_tables.errors.DamagedTable: table: crc32 is ..., but the content gives ...: it was changed after ...
     """
     wanted = kinds or (ControllerTable,)
     document, table = read_json_text(content, source, lambda found, at: from_document(found, at, wanted))
@@ -47,7 +97,34 @@ def from_json(content: bytes, *kinds: type[Any], source: str = "table") -> Any:
 
 
 def write_json(table: AnyTable, path: str | os.PathLike[str]) -> None:
-    """Write `to_json(table)` to the file at `path`, complete or not at all; raises as `to_json`, and `OSError`."""
+    """Write `to_json` of a table to a file, complete or not at all.
+
+    Parameters
+    ----------
+    table
+        A table of any kind.
+    path
+        The file; one that is there is replaced.
+
+    Raises
+    ------
+    InvalidTable
+        As `to_json`.
+    OSError
+        The disk refuses it.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from tuning_tables import read_json, write_json
+    >>> with TemporaryDirectory() as folder:
+    ...     write_json(table, Path(folder, "table.json"))
+    ...     read_json(Path(folder, "table.json")) == table
+    True
+    """
     write_atomically(path, to_json(table))
 
 
@@ -56,13 +133,67 @@ def read_json(path: str | os.PathLike[str]) -> ControllerTable: ...
 @overload
 def read_json(path: str | os.PathLike[str], *kinds: type[_T]) -> _T: ...
 def read_json(path: str | os.PathLike[str], *kinds: type[Any]) -> Any:
-    """The table in the file at `path`; raises as `from_json`, and `OSError` for what is no readable regular file."""
+    """Read a table from a JSON file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    *kinds
+        The classes that the table may be of; by default `ControllerTable`.
+
+    Returns
+    -------
+    ControllerTable, PassageTable or AimTable
+        The table.
+
+    Raises
+    ------
+    DamagedTable, UnknownFormat, OtherKind, NewerVersion
+        As `from_json`.
+    OSError
+        There is no such regular file, or it cannot be read.
+
+    Examples
+    --------
+    See `write_json`.
+    """
     content = read_regular_file(path, LARGEST_FILE_BYTES)
     return from_json(content, *(kinds or (ControllerTable,)), source=os.fspath(path))
 
 
 def read_table(path: str | os.PathLike[str]) -> AnyTable:
-    """The table of any kind in the file at `path`; raises as `read_json`."""
+    """Read a table of any kind from a JSON file.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    ControllerTable, PassageTable or AimTable
+        The table.
+
+    Raises
+    ------
+    DamagedTable, UnknownFormat, NewerVersion
+        As `from_json`.
+    OSError
+        There is no such regular file, or it cannot be read.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from tuning_tables import read_table, write_json
+    >>> with TemporaryDirectory() as folder:
+    ...     write_json(table, Path(folder, "table.json"))
+    ...     type(read_table(Path(folder, "table.json"))).__name__
+    'ControllerTable'
+    """
     return read_json(path, *KINDS.values())
 
 

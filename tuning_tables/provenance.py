@@ -19,7 +19,14 @@ CREATED: Final = Text("instant of creation, which the caller gives", UTC_INSTANT
 
 @dataclass(frozen=True)
 class Generator:
-    """The program that made the table."""
+    """The program that made the table.
+
+    Examples
+    --------
+    >>> from tuning_tables import Generator
+    >>> Generator(name="by hand", version="1", config_sha256="0" * 64).name
+    'by hand'
+    """
 
     name: Annotated[str, Text("its name")]
     version: Annotated[str, Text("its version")]
@@ -36,6 +43,17 @@ class RetarderId:
     """The retarder position that the table is for.
 
     Zones are in the order of the path and do not overlap; the exit does not lie before the end of the last one.
+
+    Examples
+    --------
+    >>> from tuning_tables import RetarderId
+    >>> RetarderId(
+    ...     "my-retarder",
+    ...     zones_m=((0.0, 12.0), (14.0, 26.0)),
+    ...     exit_m=36.5,
+    ...     dead_band_kpa=15.0,
+    ... ).exit_m
+    36.5
     """
 
     name: Annotated[str, Text("its name")]
@@ -66,6 +84,12 @@ class CutId:
     """The class of cuts that the table is for.
 
     Axle offsets rise from 0.0. A category of the yard has its number whether the table states it or not.
+
+    Examples
+    --------
+    >>> from tuning_tables import CutId
+    >>> CutId(category="С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5)).number
+    3
     """
 
     category: Annotated[str, Text("weight category")]
@@ -104,5 +128,5 @@ class CutId:
 
     @property
     def number(self) -> int | None:
-        """What stands for the category in controllers: as stated, else that of a category of the yard, else None."""
+        """What stands for the category in controllers, as stated, else that of a category of the yard, else None."""
         return KNOWN_NUMBERS.get(self.category) if self.category_number is None else self.category_number

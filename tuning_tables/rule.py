@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.active_table import ActiveTable
+from tuning_tables.alarm import Alarm
 from tuning_tables.programs.alarms import alarms
 from tuning_tables.programs.decide import decide
 from tuning_tables.programs.observe import observe
@@ -21,10 +22,44 @@ NO_GAUGE: Final = math.nan
 def decide_for(
     table: ControllerTable | ActiveTable, stage: int, s_m: float, v_m_s: float, pressure_kpa: float = NO_GAUGE
 ) -> int:
-    """The stage to command by `table`, or by lines chosen from a book, for one reading of path and speed at `stage`.
+    """Ask a table for one reading.
 
-    `stage` is the one commanded last; a table that decides at rest (`table.decisions`) may only be asked when its
-    pressure is reached. `pressure_kpa`, gauge, is looked at where the table has slopes.
+    Parameters
+    ----------
+    table
+        A table, or lines chosen from a book.
+    stage
+        The stage commanded last. A table that decides at rest (`table.decisions`) may only be asked when the pressure
+        of this stage is reached.
+    s_m
+        Path of the first axle, m.
+    v_m_s
+        Measured speed, m/s; of a table with estimator what `speed_for` gives.
+    pressure_kpa
+        Gauge pressure, kPa. It is looked at where the table has slopes; NaN: no gauge.
+
+    Returns
+    -------
+    int
+        The stage to command; `stage` itself: command nothing. That is the answer to a reading that cannot be true, too.
+
+    Notes
+    -----
+    The rule is that of "The decision rule" in docs/reference/table-format.md, in float32; C and Structured Text give
+    the same bits.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import decide_for
+    >>> (
+    ...     decide_for(table, stage=0, s_m=5.0, v_m_s=5.0),
+    ...     decide_for(table, stage=1, s_m=5.0, v_m_s=3.5),
+    ... )
+    (1, 0)
+    >>> decide_for(table, stage=0, s_m=5.0, v_m_s=float("nan"))
+    0
     """
     return int(decide(table.held, stage, *readings(s_m, v_m_s, pressure_kpa)))
 
@@ -42,18 +77,70 @@ def speed_for(
     v_m_s: float,
     overpressure_kpa: float,
 ) -> float:
-    """The speed to ask `decide_for` with, m/s: that of the table's estimator, or the measured one, rounded to float32.
+    """Take one sample into the estimate of a cut, and tell the speed to ask `decide_for` with.
 
-    To be called once at every sample, also during a change of stage; `state` is the cut's own (`estimator.begin`), the
-    overpressure the mean of max(0, P - P0) since the sample before. See `programs.observe`; with either kind of table
-    `estimator.unseen_samples` says for how long no reading was believed.
+    To be called once at every sample, also during a change of stage.
+
+    Parameters
+    ----------
+    table
+        A table, or lines chosen from a book.
+    state
+        The state of the cut, float32 (16,), which is brought up to date; `begin` makes it.
+    s_m
+        Path of the first axle, m.
+    v_m_s
+        Measured speed, m/s; NaN: the reading is lost.
+    overpressure_kpa
+        Mean of max(0, P - P0) since the sample before, kPa.
+
+    Returns
+    -------
+    float
+        The speed of the table's estimator, m/s; that which was measured, rounded to float32, where the table has none.
+        -1 as long as no speed was measured.
+
+    Notes
+    -----
+    The estimator is a Kalman filter of speed, friction and resistance; see "The estimator" in
+    docs/reference/table-format.md.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import begin, speed_for
+    >>> state = begin()
+    >>> speed_for(table, state, s_m=0.4, v_m_s=5.25, overpressure_kpa=0.0)
+    5.25
     """
     return float(observe(table.held, state, *readings(s_m, v_m_s, overpressure_kpa)))
 
 
-def alarms_for(table: ControllerTable | ActiveTable, state: npt.NDArray[np.float32]) -> int:
-    """The alarm word of a cut after `speed_for`, see `programs.alarms`; 0 for a table without estimator."""
-    return int(alarms(table.held, state))
+def alarms_for(table: ControllerTable | ActiveTable, state: npt.NDArray[np.float32]) -> Alarm:
+    """What is wrong with a cut, or with what is known of it, after `speed_for`.
+
+    Parameters
+    ----------
+    table
+        A table, or lines chosen from a book.
+    state
+        The state of the cut, float32 (16,).
+
+    Returns
+    -------
+    Alarm
+        The alarms, added up; 0 for none, and for a table without estimator.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import alarms_for, begin
+    >>> alarms_for(table, begin())
+    <Alarm: 0>
+    """
+    return Alarm(int(alarms(table.held, state)))
 
 
 def decide_many(
@@ -63,10 +150,39 @@ def decide_many(
     v_m_s: npt.ArrayLike,
     pressure_kpa: npt.ArrayLike = NO_GAUGE,
 ) -> npt.NDArray[np.integer[Any]]:
-    """`decide_for` for whole arrays at once, with identical answers.
+    """Ask a table for whole arrays of readings, with the answers of `decide_for`.
 
-    stage (integers), s_m, v_m_s and pressure_kpa broadcast against each other; the result has the broadcast shape and
-    the type of the stages. Raises `TypeError` where the stages are not integers.
+    Parameters
+    ----------
+    table
+        A table, or lines chosen from a book.
+    stage
+        Integers: the stages commanded last.
+    s_m
+        Paths, m.
+    v_m_s
+        Speeds, m/s.
+    pressure_kpa
+        Gauge pressures, kPa; NaN: no gauge. All four broadcast against each other.
+
+    Returns
+    -------
+    ndarray
+        The stages to command, of the broadcast shape and of the type of `stage`.
+
+    Raises
+    ------
+    TypeError
+        Stages that are not integers.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import decide_many
+    >>> decide_many(table, [0, 1], 5.0, [[5.0, 5.0], [3.5, 3.5]])
+    array([[1, 1],
+           [0, 0]])
     """
     with np.errstate(over="ignore", invalid="ignore"):
         wide = (np.asarray(each, dtype=np.float64) for each in (s_m, v_m_s, pressure_kpa))

@@ -14,7 +14,29 @@ from tuning_tables.table_kinds import KINDS
 
 
 def table_schema(kind: str) -> Json:
-    """A new dict with the JSON Schema of the tables of a kind, one of `table_kinds.KINDS`."""
+    """The JSON Schema (draft 2020-12) of the tables of a kind.
+
+    Parameters
+    ----------
+    kind
+        "lines", "passages" or "aim".
+
+    Returns
+    -------
+    dict
+        A new schema.
+
+    Raises
+    ------
+    KeyError
+        There is no such kind.
+
+    Examples
+    --------
+    >>> from tuning_tables import table_schema
+    >>> table_schema("lines")["title"]
+    'retarder-table 1, lines'
+    """
     members = schema_of(KINDS[kind])
     head = {"format": {"const": FORMAT}, "version": {"const": VERSION}, "kind": {"const": kind}}
     checksum = {CHECKSUM_KEY: {"type": "string", "pattern": "^[0-9a-f]{8}$"}}

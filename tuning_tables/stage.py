@@ -42,6 +42,13 @@ class Stage:
     of the stage, P_k. None: the line is the same at every pressure.
 
     Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables import Stage
+    >>> stage = Stage(k=1, pressure_kpa=300.0, lower=(4.0, -0.0625), upper=None)
+    >>> stage.lines
+    ((4.0, -0.0625), None)
     """
 
     k: Annotated[int, Count("number of the stage, as its place", 0, MOST_STAGES - 1)]

@@ -34,20 +34,60 @@ class ControllerTable:
     stage 0 and no `upper` at stage K. With an approach the path range begins at s = -approach.length_m and ends behind
     the entrance, and the breaks of an estimator begin no later. At any time all lines have a slope, or none has.
 
-    Derived from these, as arrays for `rule.decide` (read-only; line 0 is `lower`, line 1 is `upper`):
-
-    coefficients      float32 (K+1, 2, degree+1), ascending powers of s in m; NaN where there is no line
-    has_line          bool (K+1, 2)
-    valid_range       float32 (4,): s_min, s_max in m, v_min, v_max in m/s
-    slopes            float32 (K+1, 2), m/s per kPa; 0 where a line has none
-    pressures         float32 (K+1,), kPa; the largest float32 number where one exceeds it
-    held              what the programs take, `programs.line_table`
-
     On the valid path range lower(s) < upper(s) holds at every stage that has both, also as evaluated in float32, and
     with slopes at every pressure from that of stage 0 to that of the highest stage that the table raises to, and at the
     stage's own.
 
-    Raises `InvalidTable`.
+    Raises `InvalidTable`. What a member means and may be stands in docs/reference/table-format.md. The others follow
+    from them, as read-only arrays; line 0 is `lower`, line 1 is `upper`:
+
+    Attributes
+    ----------
+    coefficients
+        float32 (K+1, 2, degree+1), ascending powers of s in m; NaN where there is no line.
+    has_line
+        bool (K+1, 2).
+    valid_range
+        float32 (4,), s_min, s_max in m, v_min, v_max in m/s.
+    slopes
+        float32 (K+1, 2), m/s per kPa; 0 where a line has none.
+    pressures
+        float32 (K+1,), kPa; the largest float32 number where one exceeds it.
+    held
+        What the programs take, `programs.line_table`.
+
+    Examples
+    --------
+    >>> from tuning_tables import (
+    ...     ControllerTable,
+    ...     CutId,
+    ...     Generator,
+    ...     Predicted,
+    ...     RetarderId,
+    ...     Stage,
+    ...     ValidRange,
+    ... )
+    >>> table = ControllerTable(
+    ...     id="by-hand",
+    ...     created="2026-11-27T12:00:00Z",
+    ...     generator=Generator("by hand", "1", "0" * 64),
+    ...     retarder=RetarderId(
+    ...         "my-retarder", zones_m=((0.0, 12.0),), exit_m=22.5, dead_band_kpa=15.0
+    ...     ),
+    ...     cut=CutId("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5)),
+    ...     target_speed_m_s=3.0,
+    ...     degree=1,
+    ...     stages=(
+    ...         Stage(0, 0.0, lower=None, upper=(4.5, -0.0625)),
+    ...         Stage(1, 300.0, lower=(4.0, -0.0625), upper=None),
+    ...     ),
+    ...     valid=ValidRange(s_m=(0.0, 22.5), v_m_s=(0.5, 8.0)),
+    ...     predicted=Predicted(rms_m_s=0.2, bias_m_s=0.0, p_overspeed=0.1, switchings=2.0),
+    ... )
+    >>> table
+    ControllerTable(by-hand: degree 1, 2 stages, predicted rms 0.2000 m/s)
+    >>> table.coefficients.shape
+    (2, 2, 2)
     """
 
     id: Annotated[str, TABLE_NAME]
@@ -97,12 +137,12 @@ class ControllerTable:
 
     @property
     def entrance_stage(self) -> int:
-        """The highest stage that may be commanded at s < 0, for `rule.decide`: stage K without approach."""
+        """The highest stage that may be commanded at s < 0; stage K without approach."""
         return entrance_stage(self.approach, len(self.stages))
 
     @property
     def farthest(self) -> int:
-        """By how many stages one command may go, for `rule.decide`."""
+        """By how many stages one command may go."""
         return farthest(self.decisions, len(self.stages))
 
     @property

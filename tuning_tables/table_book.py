@@ -62,6 +62,14 @@ class Choice:
     """The chosen lines, None where `status` is below 0, and the numbers of the tables in the book that they come from.
 
     `numbers` has one entry, two for lines between two tables (lower target first), none for no table.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import TableBook
+    >>> TableBook((table,)).choose("С", axles=4, commanded_m_s=3.0)
+    Choice(status=<Status.TUNED: 0>, table=ActiveTable(to 3 m/s, 2 stages), numbers=(0,))
     """
 
     status: Status
@@ -71,10 +79,21 @@ class Choice:
 
 @dataclass(frozen=True)
 class TableBook:
-    """The tables of one position, numbered in their order from 0; ids differ, the retarder position is the same in all.
+    """The `tables` of one position, numbered in their order from 0; ids differ, the position is the same in all.
 
     A category has one number and a number one category. Raises `InvalidTable`, also where float32 might let the lines
     between two neighbouring tables touch.
+
+    Examples
+    --------
+    With `table` from the example of `ControllerTable`:
+
+    >>> from tuning_tables import TableBook
+    >>> book = TableBook((table,))
+    >>> book
+    TableBook(1 tables of my-retarder)
+    >>> book.choose("С", axles=4, commanded_m_s=3.5).status
+    <Status.SLOWER: 2>
     """
 
     tables: tuple[ControllerTable, ...]
@@ -133,7 +152,7 @@ class TableBook:
 
     @cached_property
     def families(self) -> tuple[int, ...]:
-        """Of each table its family: the number of the first table that differs in nothing but target and lines."""
+        """Of each table its family, the number of the first table that differs in nothing but target and lines."""
         return families_of(self.tables)
 
     def are_family(self, one: int, other: int) -> bool:
@@ -156,7 +175,22 @@ class TableBook:
         return max(table.degree for table in self.tables)
 
     def choose(self, category: str, axles: int, commanded_m_s: float) -> Choice:
-        """The lines for a cut of `category` on `axles` axles that shall leave with `commanded_m_s`."""
+        """The lines for a cut.
+
+        Parameters
+        ----------
+        category
+            Name of its weight category.
+        axles
+            Number of its axles.
+        commanded_m_s
+            The exit speed that is wanted, m/s.
+
+        Returns
+        -------
+        Choice
+            The lines that aim at no more than that, or none where no table may be taken.
+        """
         numbers = self.candidates(category, axles)
         if not numbers:
             return Choice(Status.NO_CLASS, None, ())

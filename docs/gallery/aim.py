@@ -20,6 +20,7 @@ free_m = np.arange(20.0, 500.0, 10.0)
 figure, axes = plt.subplots(figsize=(7, 4))
 for cars in (1, 2, 10):
     speeds = [aim_exit_speed(table, cars=cars, free_distance_m=float(each)) for each in free_m]
-    axes.plot(free_m, [np.nan if each is None else each for each in speeds], label=f"{cars} cars" if cars > 1 else "1 car")
+    label = f"{cars} cars" if cars > 1 else "1 car"
+    axes.plot(free_m, [np.nan if each is None else each for each in speeds], label=label)
 axes.set(xlabel="free distance, m", ylabel="exit speed, m/s", title="The lightest category")
 axes.legend()

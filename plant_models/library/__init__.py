@@ -76,3 +76,7 @@ __all__ = [
     "sources",
     "sources_cited_in",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

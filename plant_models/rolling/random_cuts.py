@@ -48,6 +48,11 @@ class DrawnCuts:
     def __len__(self) -> int:
         return len(self.types)
 
+    def of_cuts(self, rows: NDArray[np.int64]) -> DrawnCuts:
+        """The cuts `rows` of these."""
+        arrays = {each.name: getattr(self, each.name)[rows] for each in fields(self) if each.name != "mix"}
+        return replace(self, **arrays)
+
     @property
     def cars(self) -> int:
         """Cars of the longest cut, or more."""

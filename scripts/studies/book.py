@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from scripts.studies.cases import of_masses
 from scripts.studies.markdown_table import MarkdownTable, around, table
@@ -16,10 +17,14 @@ from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.off_nominal.outcome import Outcome
 from synth.retarder.radar_epochs import RadarEpochs
+from synth.retarder.shown_case import ShownCase, shown_case
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
 from synth.retarder.watcher import Teller
 from synth.simulation.replicates import Interval
+
+SHOWN: Final = 52.0, 3.0
+"""Mass in t and exit speed in m/s of the case that is drawn."""
 
 
 @dataclass(frozen=True)
@@ -79,12 +84,13 @@ class Row:
 
 @dataclass(frozen=True)
 class Results(Findings):
-    """All cases."""
+    """All cases; `shown`: the one with `SHOWN`, for a picture, where the book has it."""
 
     config_sha256: str
     seed: int
     passes: int
     rows: tuple[Row, ...]
+    shown: ShownCase | None
 
     def tables(self) -> Mapping[str, MarkdownTable]:
         """`results` and `off-nominal`: a row a case; `summary`: a row a class."""
@@ -141,7 +147,8 @@ def run(options: Options, tell: Tell) -> Results:
     config = of_masses(load_config(options.config), options.masses_t)
     book = tune(config, RadarEpochs(), read_back, Teller(tell))
     rows = tuple(map(row_of, book.whole, judged(book.whole, config.acceptance)))
-    return Results(config.sha256, config.validation.seed, config.validation.passes, rows)
+    shown = (shown_case(case) for case in book.whole if (case.plant.cut.mass_t, case.target_speed_m_s) == SHOWN)
+    return Results(config.sha256, config.validation.seed, config.validation.passes, rows, next(shown, None))
 
 
 def row_of(case: CaseResult, verdict: CaseVerdict) -> Row:

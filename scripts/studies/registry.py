@@ -35,6 +35,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         8.0,
         "reference/results.md",
         "scripts.studies.book",
+        "scripts.studies.book_picture",
     ),
     Study(
         "command-times",
@@ -47,7 +48,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "controller-agreement",
         "Does the exported C decide, choose and estimate as Python does, however it is compiled?",
         50.0,
-        "how-to/controllers.md#how-it-was-shown",
+        "reference/code-checks.md",
         "scripts.studies.in_the_loop.agreement_study",
     ),
     Study(
@@ -198,7 +199,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "software-in-the-loop",
         "Does the compiled controller, as a process of its own, control a pass to the same bits as the simulator's?",
         41.0,
-        "how-to/controllers.md#how-it-was-shown",
+        "reference/code-checks.md",
         "scripts.studies.in_the_loop.loop_study",
     ),
     Study(

@@ -13,7 +13,7 @@ from synth.aim.aim_book import AimBook, MadeAim, order_of
 from synth.aim.aim_curves import aim_curves, runners
 from synth.aim.aimed_position import position_of
 from synth.aim.resolved_aim import ResolvedAim
-from synth.frame.exhibits import Chart, Column, Exhibit, File, Row, Sentence, Table
+from synth.frame.exhibits import Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, percent
 from synth.retarder.case_names import file_stem
@@ -74,6 +74,7 @@ CELLS = (
 def asked(book: AimBook, verdict: AimBookVerdict) -> Iterator[Exhibit]:
     """What is required of the tables, how exactly the position obeys, and what cannot be served."""
     config = book.config
+    yield tiles(verdict)
     yield Sentence(
         f"Asked: at most {100.0 * config.aim.p_overspeed:g} of 100 cuts couple faster than "
         f"{config.scene.coupling_speed_m_s:g} m/s. The position {config.position_name} lets a cut go "
@@ -85,6 +86,21 @@ def asked(book: AimBook, verdict: AimBookVerdict) -> Iterator[Exhibit]:
     if without:
         named = "; ".join(f"{each.table}: {each.without} of {each.cells} cells" for each in without)
         yield Sentence(f"{WITHOUT} {named}.")
+
+
+def tiles(verdict: AimBookVerdict) -> Tiles:
+    """How many tables keep the chance, the worst cell, and where there is no exit speed."""
+    judged = verdict.tables
+    kept, cells = sum(not each.missed for each in judged), sum(each.cells for each in judged)
+    worst = max((each.worst for each in judged if each.worst is not None), key=lambda each: each.low95, default=None)
+    without = sum(each.without for each in judged)
+    made = [Tile(f"{kept} of {len(judged)}", "tables keep the chance that is asked for", verdict.accepted)]
+    if worst is not None:
+        low, high = in_per_cent(worst.low95), in_per_cent(worst.high95)
+        made.append(Tile(in_per_cent(worst.value), f"of the cuts couple too fast in the worst cell [{low}, {high}]"))
+    if without:
+        made.append(Tile(f"{without} of {cells}", "cells have no exit speed: a controller gets no answer there"))
+    return Tiles(made)
 
 
 def exactness(book: AimBook) -> str:

@@ -45,10 +45,9 @@ def compare_with_baselines(
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> for law in synth.compare_with_baselines(table, problem, passes=1000):
     ...     print(law.name, law.table_ratio < 1.0)
     relay True

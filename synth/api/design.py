@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from synth.api.as_a_command import as_a_command
 from synth.api.problems import Config, load_problem, problem_sha256, resolved, usual_resolution
 from synth.frame.creation_time import creation_time
+from synth.frame.input_error import InputError
 from synth.problem.problem import Problem
 from synth.problem.requirement_found import Finding
 from synth.problem.resolution import Resolution, finer_for_check
@@ -23,6 +24,7 @@ from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED
 from synth.solver.tabulate import tabulate as tabulate_lines
 from tuning_tables import ControllerTable
+from tuning_tables.stage import HIGHEST_DEGREE
 
 DEGREE = FitSettings().degree
 
@@ -46,10 +48,8 @@ class FittedLines:
 
     Examples
     --------
-    >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> lines = synth.fit(synth.solve(problem, coarse), degree=2)
+    With `lines` from the example of `tabulate`:
+
     >>> lines.lines.degree, lines.finding
     (2, None)
     """
@@ -92,9 +92,9 @@ def solve(problem: Problem, resolution: Resolution | None = None) -> Solution:
 
     Examples
     --------
+    With `problem` and `coarse` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
     >>> synth.solve(problem, coarse)
     Solution(to 3 m/s, 42 nodes of the path, 3 stages)
     """
@@ -111,7 +111,7 @@ def fit(solution: Solution, degree: int = DEGREE) -> FittedLines:
     solution
         What `solve` found.
     degree
-        Degree of the polynomials, 1 to 9.
+        Degree of the polynomials, 0 to 9.
 
     Returns
     -------
@@ -121,6 +121,8 @@ def fit(solution: Solution, degree: int = DEGREE) -> FittedLines:
 
     Raises
     ------
+    InputError
+        A degree that no table has.
     PlantError
         The finer grid is too coarse as well.
     InvalidTable
@@ -128,13 +130,15 @@ def fit(solution: Solution, degree: int = DEGREE) -> FittedLines:
 
     Examples
     --------
+    With `problem` and `solution` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> lines = synth.fit(synth.solve(problem, coarse), degree=2)
+    >>> lines = synth.fit(solution, degree=2)
     >>> lines.problem == problem
     True
     """
+    if not 0 <= degree <= HIGHEST_DEGREE:
+        raise InputError(f"degree is {degree}; it must be a whole number from 0 to {HIGHEST_DEGREE}")
     problem = Problem(solution.chain.plant, solution.aim)
     check = check_chain(problem.plant, finer_for_check(solution.chain.resolution))
     kept = checked_design(
@@ -171,8 +175,12 @@ def tabulate(lines: FittedLines, name: str = "", config: Config = None) -> Contr
     --------
     >>> import synth
     >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
+    >>> coarse = synth.Resolution(
+    ...     path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1
+    ... )
+    >>> solution = synth.solve(problem, coarse)  # coarse: for an example that is quick
+    >>> lines = synth.fit(solution, degree=2)
+    >>> table = synth.tabulate(lines)
     >>> table.id, round(table.predicted.rms_m_s, 3)
     ('knp-5-bunch-22t-to-3-m-s', 0.035)
     """

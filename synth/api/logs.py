@@ -51,15 +51,16 @@ def load_passes(*logs: Path | str, config: Config = None, mapping: Path | str | 
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
     >>> from tuning_tables.pass_log import write_log
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> with TemporaryDirectory() as folder:
-    ...     write_log(synth.log_passes(table, problem, passes=3), Path(folder, "passes.csv"))
+    ...     write_log(
+    ...         synth.log_passes(table, problem, passes=3), Path(folder, "passes.csv")
+    ...     )
     ...     passes = synth.load_passes(folder)
     >>> len(passes)
     3
@@ -100,17 +101,20 @@ def identify(passes: FittingPasses, config: Config = None) -> Identified:
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
     >>> from tuning_tables.pass_log import write_log
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> with TemporaryDirectory() as folder:
-    ...     write_log(synth.log_passes(table, problem, passes=40), Path(folder, "passes.csv"))
+    ...     write_log(
+    ...         synth.log_passes(table, problem, passes=40), Path(folder, "passes.csv")
+    ...     )
     ...     found = synth.identify(synth.load_passes(folder))
-    >>> noise = next(finding for finding in found.findings if finding.key == "sensor.noise_m_s")
+    >>> noise = next(
+    ...     finding for finding in found.findings if finding.key == "sensor.noise_m_s"
+    ... )
     >>> noise.interval[0] < problem.plant.sensor.noise_m_s < noise.interval[1]
     True
     """
@@ -149,14 +153,13 @@ def log_passes(
     Raises
     ------
     ValueError
-        No pass is asked for.
+        No pass is asked for, a negative seed, or a table with stages that the position lacks.
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> log = synth.log_passes(table, problem, passes=3)
     >>> log
     PassLog(3 passes, 334 rows)

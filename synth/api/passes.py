@@ -24,6 +24,9 @@ from tuning_tables import ControllerTable, Predicted
 PASSES, FEWEST_PASSES = 20_000, 1_000
 """Passes of a simulation unless told otherwise, and the fewest that figures with intervals need."""
 
+MOST_FRICTION = 5.0
+"""No cut has more; the friction of one is drawn around 1."""
+
 
 @dataclass(frozen=True)
 class Simulated:
@@ -40,10 +43,9 @@ class Simulated:
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> synth.simulate(table, problem, passes=1000)
     Simulated(1000 passes, seed 1: rms 0.0329 [0.0309, 0.0350] m/s, bias +0.0079 m/s)
     """
@@ -58,10 +60,9 @@ class Simulated:
 
         Examples
         --------
+        With `problem` and `table` from the example of `tabulate`:
+
         >>> import synth
-        >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-        >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-        >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
         >>> found = synth.simulate(table, problem, passes=1000).statistics
         >>> found.passes, round(found.rms_m_s, 3), [round(end, 3) for end in found.rms_ci95_m_s]
         (1000, 0.033, [0.031, 0.035])
@@ -79,10 +80,9 @@ class Simulated:
 
         Examples
         --------
+        With `problem` and `table` from the example of `tabulate`:
+
         >>> import synth
-        >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-        >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-        >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
         >>> columns = synth.simulate(table, problem, passes=1000).columns()
         >>> {name: column.shape for name, column in columns.items() if name.endswith("_s")}
         {'exit_speed_m_s': (1000,), 'transit_time_s': (1000,)}
@@ -127,10 +127,9 @@ def predict(table: ControllerTable, problem: Problem, resolution: Resolution | N
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> synth.predict(table, problem, coarse) == table.predicted
     True
     """
@@ -167,15 +166,14 @@ def simulate(table: ControllerTable, problem: Problem, passes: int = PASSES, see
     ------
     InputError
         Fewer passes than intervals need.
-    PlantError
-        The table has stages that the position lacks.
+    ValueError
+        A negative seed, or a table with stages that the position lacks.
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> passes = synth.simulate(table, problem, passes=1000, seed=2)
     >>> passes.statistics.stalled
     0.0
@@ -198,7 +196,7 @@ def trace(
     problem
         The plant.
     friction
-        Friction factor of the cut (1: as usual), in place of the one that was drawn.
+        Friction factor of the cut, 0 to 5 (1: as usual), in place of the one that was drawn.
     seed, index
         Pass `index`, from 0 on, of those that `simulate` runs with this seed.
 
@@ -207,15 +205,23 @@ def trace(
     PassTrace
         The pass, event by event.
 
+    Raises
+    ------
+    InputError
+        A friction factor that no cut has.
+    ValueError
+        A negative seed or index, or a table with stages that the position lacks.
+
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> one = synth.trace(table, problem, friction=0.8)
     >>> one.stalled, bool(one.exit_speed_m_s == one.speed_m_s[-1])
     (False, True)
     """
+    if friction is not None and not 0.0 <= friction <= MOST_FRICTION:
+        raise InputError(f"friction is {friction!r}; it must be a factor from 0 to {MOST_FRICTION:g}")
     drawn = stratified_passes(seed, index, 1)
     return trace_of(problem.plant, TableController(table), drawn, 0, cut_factor=friction)

@@ -32,10 +32,9 @@ def plot_table(table: ControllerTable, problem: Problem | None = None, seed: int
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> type(synth.plot_table(table)).__name__
     'Figure'
     """
@@ -64,10 +63,9 @@ def plot_passes(table: ControllerTable, problem: Problem, seed: int = 1) -> Figu
 
     Examples
     --------
+    With `problem` and `table` from the example of `tabulate`:
+
     >>> import synth
-    >>> problem = synth.load_problem("gondola-4-22t", target_m_s=3.0)
-    >>> coarse = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    >>> table = synth.tabulate(synth.fit(synth.solve(problem, coarse), degree=2))
     >>> synth.plot_passes(table, problem).axes[0].get_xlabel()
     'path of the first axle, m'
     """

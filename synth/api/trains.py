@@ -33,7 +33,7 @@ def load_trial(source: Path | str | None = None, seed: int | None = None) -> Res
     Raises
     ------
     InputError
-        A sentence for each fault of the file.
+        A sentence for each fault of the file, or a negative seed.
 
     Examples
     --------
@@ -42,6 +42,8 @@ def load_trial(source: Path | str | None = None, seed: int | None = None) -> Res
     >>> len(trial.routes.tracks), len(trial.positions)
     (16, 3)
     """
+    if seed is not None and seed < 0:
+        raise InputError(f"seed is {seed}; it must not be negative")
     return resolve_trial(read_trial_file(None if source is None else Path(source)).with_trains(None, seed, None))
 
 

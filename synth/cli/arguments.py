@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from synth.frame.arguments import directory
+
 SourceOrDirectory = Annotated[
     Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or what a tune left.")
 ]
@@ -15,6 +17,10 @@ ExportSource = Annotated[
 ]
 Config = Annotated[
     Path | None, typer.Option("--config", metavar="C", help="Configuration with the plant; built-in unless given.")
+]
+PageFolder = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Also write a page there, report.html."),
 ]
 
 

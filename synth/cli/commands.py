@@ -12,6 +12,7 @@ from synth.cli import hump_commands, sensors_commands, sweep_commands
 from synth.cli.arguments import (
     Config,
     ExportSource,
+    PageFolder,
     SourceOrDirectory,
     with_names,
 )
@@ -83,6 +84,7 @@ def verify(
     seed: Annotated[
         int, typer.Option(parser=whole_number(0, 2**63 - 1), metavar="N", help="Of the random numbers.")
     ] = 1,
+    output: PageFolder = None,
     as_json: Json = False,
 ) -> int:
     """Check exported tables by a second, independent program.
@@ -92,7 +94,7 @@ def verify(
     """
     from synth.cli.verify import verify_command
 
-    return verify_command(source, passes, seed, as_json)
+    return verify_command(source, passes, seed, output, as_json)
 
 
 @app.command()
@@ -114,33 +116,14 @@ def plot(
 
 
 @app.command()
-def loop(
-    source: SourceOrDirectory,
-    output: Annotated[
-        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where pictures and figures go.")
-    ] = Path("loops"),
-    config: Config = None,
-    as_json: Json = False,
-) -> int:
-    """Show exported tables as control loops.
-
-    Nominal response by python-control beside the simulator's, phase portrait with the lines, predicted limit cycles.
-    Exit code 1 if the two responses do not agree.
-    """
-    from synth.cli.loop import loop_command
-
-    return loop_command(source, output, config, as_json)
-
-
-@app.command()
-def inspect(source: SourceOrDirectory, as_json: Json = False) -> int:
+def inspect(source: SourceOrDirectory, output: PageFolder = None, as_json: Json = False) -> int:
     """Tell what is in exported tables.
 
     What they are for, what they promise, where their lines run; checksums are checked.
     """
     from synth.cli.inspect import inspect_command
 
-    return inspect_command(source, as_json)
+    return inspect_command(source, output, as_json)
 
 
 @app.command()

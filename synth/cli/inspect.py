@@ -19,7 +19,7 @@ from synth.frame.printed_numbers import counted
 from synth.frame.terminal.printed_page import Exhibit, print_page
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
-from synth.retarder.forms.aim_file import read_aims
+from synth.retarder.forms.aim_file import AimFile, read_aims
 from synth.retarder.forms.passage_file import read_passages
 from synth.retarder.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
 from tuning_tables import DamagedTable
@@ -27,18 +27,32 @@ from tuning_tables.approach import Approach
 from tuning_tables.decisions import Decisions
 from tuning_tables.document import to_document
 from tuning_tables.estimator import Estimator
+from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.table import ControllerTable
 
 SHOWN_POINTS = 5
 
 
-def inspect_command(source: Path, as_json: bool) -> int:
-    """Print the contents of the tables in `source`, and what controller code is there; `TableError` for damage."""
+def inspect_command(source: Path, output: Path | None, as_json: bool) -> int:
+    """Print the contents of the tables in `source`, and what controller code is there, and on a page in `output`;
+    `TableError` for damage."""
+    if output is not None:
+        from synth.cli.printed_report import require_place
+
+        require_place("inspect", output)
     code = code_at(source)
     aims, passages = read_aims(source), read_passages(source)
     nothing_else = bool(code or aims or passages) and not holds_tables(source)
     files = () if nothing_else else read_tables(source, directory_allowed=True)
     summary = checked_summary(source) if source.is_dir() else None
+    page = whole_page(source, files, passages, aims)
+    page += map(code_sentence, code)
+    if summary is not None:
+        page.append(f"{source / 'summary.json'}: {summary['sentence']}")
+    if output is not None:
+        from synth.cli.printed_report import write_report
+
+        write_report("inspect", f"Contents of {source.name}", page, source, output)
     if as_json:
         found: dict[str, Any] = {"path": str(source), "files": [*map(file_document, files), *map(aim_document, aims)]}
         found |= {"passage_tables": [passage_document(table) for table in passages]} if passages else {}
@@ -47,6 +61,14 @@ def inspect_command(source: Path, as_json: bool) -> int:
             found["summary"] = summary
         print(json.dumps(found, indent=1, ensure_ascii=False))
         return 0
+    print_page(*page)
+    return 0
+
+
+def whole_page(
+    source: Path, files: Sequence[TableFile], passages: Sequence[PassageTable], aims: Sequence[AimFile]
+) -> list[Exhibit]:
+    """All tables in words."""
     mixed = is_mixed([table for file in files for table in file.tables])
     page: list[Exhibit] = []
     for file in files:
@@ -59,11 +81,7 @@ def inspect_command(source: Path, as_json: bool) -> int:
         page += passage_page(each)
     for aim in aims:
         page += aim_page(aim)
-    page += map(code_sentence, code)
-    if summary is not None:
-        page.append(f"{source / 'summary.json'}: {summary['sentence']}")
-    print_page(*page)
-    return 0
+    return page
 
 
 def contents(file: TableFile) -> str:

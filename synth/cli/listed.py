@@ -38,6 +38,15 @@ COMMANDS: Final = (
         "configuration.",
     ),
     Listed(
+        "loop",
+        "synth.retarder.loops.command:COMMAND",
+        "synth.retarder.loops.options:LoopOptions",
+        "init",
+        "Show exported tables as control loops.\n\n"
+        "Nominal response by python-control beside the simulator's, phase portrait with the lines, predicted limit "
+        "cycles. Exit code 1 if the two responses do not agree.",
+    ),
+    Listed(
         "sensitivity",
         "synth.retarder.sensitivity.command:COMMAND",
         "synth.retarder.sensitivity.options:SensitivityOptions",

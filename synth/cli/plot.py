@@ -24,10 +24,10 @@ Drawn = TypeVar("Drawn")
 
 def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
-    from synth.cli.loop import any_tables
     from synth.frame.results_directory import results_directory
     from synth.frame.terminal.interrupt import interruptible
     from synth.retarder.forms.aim_file import read_aims
+    from synth.retarder.forms.any_tables import any_tables
     from synth.retarder.forms.table_file import file_stem, files_at, holds_tables
     from synth.retarder.tables_configuration import configuration_for
     from tuning_tables.passages.passage_table import PassageTable

@@ -15,16 +15,28 @@ if TYPE_CHECKING:
     from synth.checker.verdict import AimVerdict, PassageVerdict, TableVerdict, Verdict
 
 
-def verify_command(source: Path, passes: int, seed: int, as_json: bool) -> int:
-    """Check what is at `source` and print it, a line a table; the exit code."""
+def verify_command(source: Path, passes: int, seed: int, output: Path | None, as_json: bool) -> int:
+    """Check what is at `source` and print it, a line a table, and on a page in `output`; the exit code."""
     from synth.checker.finding import NothingToVerifyError
     from synth.checker.verdict import verify
 
+    if output is not None:
+        from synth.cli.printed_report import require_place
+
+        require_place("verify", output)
     try:
         verdict = verify(source, passes, seed)
     except NothingToVerifyError as fault:
         say(str(fault))
         return INPUT_FAULT
+    if output is not None:
+        from synth.cli.printed_report import write_report
+        from synth.frame.terminal.printed_page import Exhibit
+        from synth.frame.terminal.printed_page import Verdict as Verdicted
+
+        *lines, last = words(verdict)
+        page: list[Exhibit] = [Verdicted(verdict.code == 0, last), *lines]
+        write_report("verify", f"Check of {source.name}", page, source, output, steps(verdict))
     if as_json:
         print(json.dumps(document(verdict), indent=1, ensure_ascii=False))
     else:
@@ -135,6 +147,13 @@ def state(findings: Sequence[Finding]) -> str:
 def finding_lines(findings: Sequence[Finding]) -> list[str]:
     """The findings about one table."""
     return [f"  {finding.kind.value}: {finding.sentence}" for finding in findings]
+
+
+def steps(verdict: Verdict) -> tuple[str, ...]:
+    """What to do first."""
+    if verdict.code == 0:
+        return ("Load the tables, and try them on the track: this check knows nothing of your retarder.",)
+    return ("Do not load these tables: make them again, or copy them again from where they were made.",)
 
 
 def words(verdict: Verdict) -> list[str]:

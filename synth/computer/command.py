@@ -71,10 +71,11 @@ def limits(found: ComputerResults) -> Iterator[Limit]:
 
 def show(found: ComputerResults) -> Iterator[Chapter]:
     """What is shown of it."""
+    from synth.computer.shown_first import first_screen
     from synth.computer.shown_money import money
     from synth.computer.shown_sizing import reliability, sizing
 
-    yield Chapter("What it pays", tuple(money(found)))
+    yield Chapter("What it pays", (*first_screen(found), *money(found)))
     yield Chapter("How reliable", tuple(reliability(found)))
     yield Chapter("How fast", tuple(sizing(found)))
 

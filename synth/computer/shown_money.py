@@ -89,7 +89,8 @@ def effect(found: ComputerResults) -> Sentence:
     economics, settings = found.economics, found.config.settings
     currency, loss = settings.prices.currency, settings.reliability.loss_per_year()
     return Sentence(
-        f"Effect of a year: {amount(economics.effect_per_year)} {currency}, losses by failures of {amount(loss)} "
+        f"At the configured values, which are uncertain where a range is given: effect of a year "
+        f"{amount(economics.effect_per_year)} {currency}, losses by failures of {amount(loss)} "
         f"{currency} taken off. {economics.pay_back.statement} Net present value over {settings.terms.years} years: "
         f"{amount(economics.net_present_value)} {currency}. {economics.internal_rate.statement}",
         {"failure_loss_per_year": loss},

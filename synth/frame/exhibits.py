@@ -90,6 +90,9 @@ def brief_value(value: Any, form: Form) -> str:
         return shown_value(value, form)
     if value.value == value.low95 == 0.0 and value.high95 > 0.0:
         return f"below {form(value.high95)}"
+    if not math.isfinite(value.half_width):
+        ends = {form(each) for each in (value.value, value.low95, value.high95)}
+        return ends.pop() if len(ends) == 1 else shown_value(value, form)
     half = form(value.half_width).lstrip("+")
     return (
         shown_value(value, form)
@@ -127,11 +130,15 @@ class Table:
 
 @dataclass(frozen=True)
 class Sentence:
-    """A sentence, or a few; `figures`: what JSON keeps of it by name. `brief`: the terminal shows it too."""
+    """A sentence, or a few; `figures`: what JSON keeps of it by name. `brief`: the terminal shows it too.
+
+    `to_do`: it says what to do first; a page has it beside the verdict.
+    """
 
     text: str
     figures: Mapping[str, Any] = field(default_factory=dict)
     brief: bool = False
+    to_do: bool = False
 
 
 @dataclass(frozen=True)
@@ -170,7 +177,7 @@ class Tile:
 
 @dataclass(frozen=True)
 class Tiles:
-    """A few tiles side by side; a page alone shows them."""
+    """A few tiles side by side; a page alone shows them, below its verdict."""
 
     tiles: Sequence[Tile]
 

@@ -59,6 +59,14 @@ def amount(value: float) -> str:
     return f"{rounded:g}"
 
 
+def as_known(value: float, low: float, high: float) -> float:
+    """`value` with no more figures than it is known to: the last counts a tenth of the first of `high` − `low`."""
+    spread = abs(high - low)
+    if spread == 0.0 or not math.isfinite(spread) or not math.isfinite(value):
+        return value
+    return round(value, 1 - math.floor(math.log10(spread)))
+
+
 def whole(value: float) -> str:
     """A number without decimals, its thousands apart."""
     return f"{value:,.0f}" if math.isfinite(value) else three_figures(value)

@@ -37,7 +37,30 @@ class ReadHump:
 
 
 def load_hump(source: Path | str) -> HumpEntry:
-    """The hump in the file `source`, or the one of that name in the library; `InputError` on any fault."""
+    """Read a hump.
+
+    Parameters
+    ----------
+    source
+        A file (.toml, .railml, .csv, .xlsx), or the name of a hump of the library.
+
+    Returns
+    -------
+    HumpEntry
+        `graph` has the elements, `graph.route(201, 7)` is the route from the crest at signal 201 to track 7.
+
+    Raises
+    ------
+    InputError
+        A sentence for each fault of the file.
+
+    Examples
+    --------
+    >>> import synth
+    >>> hump = synth.load_hump("medium")
+    >>> len(hump.graph.tracks), hump.graph.route(hump.graph.leads[0], 7).code
+    (16, '...')
+    """
     return read_hump(Path(source)).entry
 
 

@@ -55,8 +55,9 @@ TESTS: Final = (
 
 def numbers(found: Identified) -> Iterator[Exhibit]:
     """How much is told, the numbers, and what no such log tells."""
-    for sentence in (told_sentence(found), *bias_sentences(found.findings)):
-        yield Sentence(sentence, brief=True)
+    yield Sentence(told_sentence(found), brief=True)
+    yield from (Sentence(sentence, brief=True, to_do=True) for sentence in bias_sentences(found.findings))
+    yield Sentence(f"Make tables with these numbers: retarder-synth tune {CONFIG}.", to_do=True)
     for sentence in log_sentences(found.passes, found.estimate.values):
         yield Sentence(sentence, brief=True)
     yield Sentence(

@@ -10,7 +10,27 @@ from synth.problem.criterion import SQUARED_ERROR_CRITERION, Criterion
 
 @dataclass(frozen=True)
 class Aim:
-    """The commanded exit speed, and what a pass costs that misses it."""
+    """The commanded exit speed, and what a pass costs that misses it.
+
+    Parameters
+    ----------
+    target_speed_m_s
+        The commanded exit speed, m/s.
+    criterion
+        What a pass costs; by default the squared error.
+
+    Raises
+    ------
+    PlantError
+        A speed out of range.
+
+    Examples
+    --------
+    >>> import synth
+    >>> aim = synth.Aim(3.0, synth.Criterion(time_price_m2_s3=1e-4))
+    >>> aim.prices_time, aim.timeless == synth.Aim(3.0)
+    (True, True)
+    """
 
     target_speed_m_s: float
     criterion: Criterion = SQUARED_ERROR_CRITERION

@@ -16,12 +16,32 @@ SQUARED_ERROR = SquaredError()
 
 @dataclass(frozen=True)
 class Criterion:
-    """Cost of one pass: `terminal` of its exit speed, plus `stall_cost_m2_s2` for a stall in the position,
-    plus `time_price_m2_s3` for each second from where the regulator acts to the exit.
+    """What a pass costs, and what the exported lines must keep besides.
 
-    `switching_tolerance_m2_s2`: a change of stage must gain more than this, else hold wins: commands whose
-    costs differ by less count as equal, and of these the one with the fewest switchings is taken.
-    `requirement`: what the exported lines must keep besides; only with the squared error.
+    Parameters
+    ----------
+    stall_cost_m2_s2
+        Cost of a stall in the position, m²/s².
+    switching_tolerance_m2_s2
+        A change of stage must gain more than this, m²/s², else hold wins: commands whose costs differ by less count as
+        equal, and of these the one with the fewest switchings is taken.
+    time_price_m2_s3
+        Cost of each second from where the regulator acts to the exit, m²/s³.
+    terminal
+        Cost of the exit speed.
+    requirement
+        What the exported lines must keep besides; only with the squared error.
+
+    Raises
+    ------
+    PlantError
+        A number out of range, or a requirement with another terminal cost.
+
+    Examples
+    --------
+    >>> import synth
+    >>> synth.Criterion(stall_cost_m2_s2=4.0).sentence
+    'mean squared exit-speed error'
     """
 
     stall_cost_m2_s2: float = 1.0
@@ -40,7 +60,20 @@ class Criterion:
         )
 
     def exit_costs(self, speed_m_s: NDArray[np.float64], target_speed_m_s: float) -> tuple[NDArray[np.float64], float]:
-        """(cost of leaving with every grid speed (E,), cost of a stall: that of exit speed 0 and the stall cost)."""
+        """What exits cost.
+
+        Parameters
+        ----------
+        speed_m_s
+            Exit speeds, m/s, (E,), the first one 0.
+        target_speed_m_s
+            The commanded exit speed, m/s.
+
+        Returns
+        -------
+        tuple of ndarray and float
+            Cost of leaving with each speed, m²/s², (E,); cost of a stall, that of exit speed 0 and the stall cost.
+        """
         terminal = self.terminal.at_exit(speed_m_s, target_speed_m_s)
         return terminal, float(terminal[0]) + self.stall_cost_m2_s2
 

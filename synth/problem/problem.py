@@ -13,7 +13,31 @@ from synth.problem.requirement import FrictionRange
 
 @dataclass(frozen=True)
 class Problem:
-    """A plant, and what its lines are for: `PlantError` where the two do not fit."""
+    """What is to be solved: a plant, and what its lines are for.
+
+    Parameters
+    ----------
+    plant
+        One cut class at one retarder position.
+    aim
+        The exit speed, and the criterion.
+
+    Raises
+    ------
+    PlantError
+        The two do not fit.
+
+    Examples
+    --------
+    >>> import synth
+    >>> plant = dict(synth.load_config().plants())["gondola-4-52t"]
+    >>> synth.Problem(plant, synth.Aim(3.0))
+    Problem(knp-5-bunch, 52 t on 4 axles, entry 5 to 6.5 m/s, to 3 m/s)
+    >>> synth.Problem(plant, synth.Aim(9.0))
+    Traceback (most recent call last):
+    ...
+    plant_models.errors.PlantError: targets: 9 m/s is not below the highest entry speed 6.5 m/s: there is nothing to ...
+    """
 
     plant: Plant
     aim: Aim

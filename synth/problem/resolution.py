@@ -21,10 +21,33 @@ LONG_PASS_M = 60.0
 class Resolution:
     """How fine the state space is cut.
 
-    `path_step_m`: ΔS, rounded so that whole quanta fill S_exit; `speed_step_m_s`: ΔV at the speed
-    `reference_speed_m_s` (the grid is uniform in e = v²/2, so ΔV(v) = Δe/v); `transient_substeps`:
-    parts of a sampling period in which a transient is integrated; `friction_nodes`: scenarios of ξ_cut;
-    `path_levels`: levels of the Markov chain for η; `resistance_nodes`: scenarios of w.
+    Parameters
+    ----------
+    path_step_m
+        ΔS, m, rounded so that whole quanta fill S_exit.
+    speed_step_m_s
+        ΔV at the reference speed, m/s; the grid is uniform in e = v²/2, so ΔV(v) = Δe/v.
+    reference_speed_m_s
+        Where ΔV holds, m/s.
+    transient_substeps
+        Parts of a sampling period in which a transient is integrated.
+    friction_nodes
+        Scenarios of ξ_cut.
+    path_levels
+        Levels of the Markov chain for η.
+    resistance_nodes
+        Scenarios of w.
+
+    Raises
+    ------
+    PlantError
+        A number out of range.
+
+    Examples
+    --------
+    >>> import synth
+    >>> synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05).path_step_m
+    1.0
     """
 
     path_step_m: float = 0.5

@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
+import numpy as np
+from numpy.typing import NDArray
+
 from synth.retarder.tuned_case import TunedCase
+from synth.simulation.exit_statistics import OVERSPEED_M_S
+from synth.solver.exit_density import ExitDensity
 
 NARROW_M_S: Final = 0.01
 """Width of the bins of simulated passes near the target, within `OVERSPEED_M_S` of it."""
@@ -22,3 +27,18 @@ def prediction_origin(cases: Sequence[TunedCase]) -> str:
     if all(estimated):
         return "predicted from other simulated passes"
     return f"{EXACT}; with an estimator from other simulated passes" if any(estimated) else EXACT
+
+
+def predicted_density(exits: ExitDensity) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Speeds, and the density there in 1/(m/s); the grid's first energy stands for cuts next to a stall."""
+    speed, probability = exits.speed_m_s[1:], exits.probability[1:]
+    return speed, probability * speed / (0.5 * exits.speed_m_s[1] ** 2)
+
+
+def bin_edges_m_s(target_m_s: float, highest_m_s: float) -> NDArray[np.float64]:
+    """Edges of the bins from 0 to beyond `highest_m_s`; the target is one of them."""
+    half = round(OVERSPEED_M_S / NARROW_M_S)
+    narrow = NARROW_M_S * np.arange(-half, half + 1)
+    wide = np.arange(OVERSPEED_M_S + WIDE_M_S, max(target_m_s, highest_m_s - target_m_s) + 1.5 * WIDE_M_S, WIDE_M_S)
+    edges = target_m_s + np.concatenate((-wide[::-1], narrow, wide))
+    return np.append(0.0, edges[edges > 1e-9])

@@ -48,9 +48,9 @@ def head(asked: AskedTune[CaseResult, ControllerTable]) -> Head:
 
 def compute(asked: AskedTune[CaseResult, ControllerTable], work: Work) -> FoundBook[CaseResult]:
     """The book; the picture of a case is begun when that is computed."""
-    from synth.retarder.shown.pictures import lines_chart
+    from synth.retarder.shown.pictures import case_chart
 
-    return tuned(asked, work, lambda case: work.begin(lines_chart(case)), found_book)
+    return tuned(asked, work, lambda case: work.begin(case_chart(case)), found_book)
 
 
 def found_book(book: Book[CaseResult]) -> FoundBook[CaseResult]:
@@ -83,11 +83,12 @@ def show(found: FoundBook[CaseResult]) -> Iterator[Chapter]:
     from synth.retarder.shown.criterion import criterion
     from synth.retarder.shown.fronts import fronts
     from synth.retarder.shown.off_nominal import off_nominal
-    from synth.retarder.shown.pictures import chapters
+    from synth.retarder.shown.pictures import case_pictures
     from synth.retarder.shown.predictions import predictions
     from synth.retarder.shown.results import results
 
     yield Chapter("Results", tuple(results(found)))
+    yield Chapter("Case by case", tuple(case_pictures(found.book.cases)))
     yield Chapter("Controllers side by side", tuple(controllers(found)))
     yield Chapter("Off nominal", tuple(off_nominal(found)))
     if made := fronts_of(found.book.cases):
@@ -95,7 +96,6 @@ def show(found: FoundBook[CaseResult]) -> Iterator[Chapter]:
     yield Chapter("Criterion", tuple(criterion(found)))
     yield Chapter("Predicted against simulated", tuple(predictions(found)))
     yield Chapter("Limit cycles and doubts", tuple(checks(found.book.cases)))
-    yield from chapters(found.book.cases)
     where = "A controller loads tables/*.json, or is compiled with c/; book.h5 holds the same tables as arrays."
     yield Chapter("Tables", (Sentence(where), *found.files))
 

@@ -19,12 +19,57 @@ NORMAL_95 = 1.959963984540054
 
 @dataclass(frozen=True)
 class ExitStatistics:
-    """Exit-speed error e = V_exit − V_target over `passes` passes; a stalled pass counts with V_exit = 0.
+    """Exit-speed error e = V_exit − V_target; a stalled pass counts with V_exit = 0.
 
-    Shares and means are of cuts as they come, whatever the strata the passes were drawn from; every `…_ci95` is the
-    95 % interval (low, high) of the figure before it. `p95_m_s`, `p99_m_s`: 95 and 99 % quantiles of |e|; `overspeed`:
-    share with e > 0.3 m/s; `stalled`: share that stops in the position; `switchings`: mean commands of a pass;
-    `time_s`: mean time from where the regulator acts to the exit, or to a stop.
+    Shares and means are of cuts as they come, whatever the strata the passes were drawn from.
+
+    Attributes
+    ----------
+    passes
+        Simulated passes.
+    rms_m_s
+        Root of the mean square of e, m/s.
+    rms_ci95_m_s
+        95 % interval of it.
+    bias_m_s
+        Mean of e, m/s.
+    bias_ci95_m_s
+        95 % interval of it.
+    std_m_s
+        Standard deviation of e, m/s.
+    p95_m_s
+        95 % quantile of `|e|`, m/s.
+    p95_ci95_m_s
+        95 % interval of it.
+    p99_m_s
+        99 % quantile of `|e|`, m/s.
+    p99_ci95_m_s
+        95 % interval of it.
+    overspeed
+        Share with e > 0.3 m/s.
+    overspeed_ci95
+        95 % interval of it.
+    stalled
+        Share that stops in the position.
+    stalled_ci95
+        95 % interval of it.
+    switchings
+        Mean commands of a pass.
+    switchings_ci95
+        95 % interval of it.
+    time_s
+        Mean time from where the regulator acts to the exit, or to a stop, s.
+    time_ci95_s
+        95 % interval of it.
+
+    Examples
+    --------
+    With `problem` and `table` from the example of `tabulate`:
+
+    >>> import synth
+    >>> found = synth.simulate(table, problem, passes=1000).statistics
+    >>> found.passes, round(found.rms_m_s, 3)
+    (1000, 0.033)
     """
 
     passes: int

@@ -37,10 +37,33 @@ class ExitSample:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class PassTrace:
-    """One pass, event by event, arrays of shape (events,); the last event is the end of the pass.
+    """One pass, event by event; the last of n events is the end of the pass.
 
-    Overpressure max(0, P − P0) and commanded stage hold from an event to the next; `measured_m_s` is NaN
-    where the regulator did not look at the sensor.
+    Attributes
+    ----------
+    time_s
+        Time, s, (n,).
+    path_m
+        Path of the first axle, m, (n,).
+    speed_m_s
+        True speed, m/s, (n,).
+    overpressure_kpa
+        max(0, P − P0), kPa, (n,); it holds from an event to the next.
+    stage
+        Stage commanded, (n,); it holds from an event to the next.
+    measured_m_s
+        What the sensor told, m/s, (n,); NaN where the regulator did not look at it.
+    stalled
+        Whether the cut came to a stand.
+
+    Examples
+    --------
+    With `problem` and `table` from the example of `tabulate`:
+
+    >>> import synth
+    >>> one = synth.trace(table, problem)
+    >>> one.path_m.shape == one.speed_m_s.shape == one.stage.shape
+    True
     """
 
     time_s: NDArray[np.float64]

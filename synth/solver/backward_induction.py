@@ -30,11 +30,28 @@ is beyond help, at 26 nodes of the default book where switchings have no price."
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Result of a sweep.
+    """The best policy on a grid.
 
-    `lines_m_s` (C, R, K + 1): the common policy, by command, decision and stage; `gain` (C, R, K + 1, E): mean-square
-    cost saved by a command at a measured speed (what the lines bound, and what R5's indifferent region is read from);
-    `values` (I, N + 1, H, L, E), or of fewer nodes: estimated cost to go by scenario, in the type that was asked for.
+    Attributes
+    ----------
+    chain
+        The grid, and the motion on it.
+    aim
+        What the policy is for.
+    lines_m_s
+        The policy by command, decision and stage, m/s, (C, R, K + 1).
+    gain
+        Mean-square cost that is saved by a command at a measured speed, m²/s², (C, R, K + 1, E): what the lines bound,
+        and what the indifferent region is read from.
+    values
+        Estimated cost to go by scenario, m²/s², (I, N + 1, H, L, E), or of fewer nodes.
+
+    Examples
+    --------
+    With `solution` from the example of `tabulate`:
+
+    >>> solution.lines.lower_m_s.shape == solution.lines.upper_m_s.shape
+    True
     """
 
     chain: Chain
@@ -49,7 +66,7 @@ class Solution:
 
     @cached_property
     def lines(self) -> SwitchingLines:
-        """The policy as lines over the path: of decisions at every node, found for commands that go one stage far."""
+        """The policy as lines over the path, of decisions at every node, found for commands that go one stage far."""
         lower, upper = (with_exit_node(each) for each in self.lines_m_s)
         return SwitchingLines(self.chain.grid.path_m, lower, upper)
 
@@ -83,8 +100,8 @@ def solve_all(
     Up to eight cost little more than one, and none depends on which others there are. `nodes_kept`: at how many path
     nodes, from the entrance on, the solutions hold values, by default at all; they are most of the memory of a
     solution. `value_type`: of the numbers that values are computed and kept in. float32 takes less time than float64
-    and half the memory; what it costs: `docs/explanation/method-solver.md`. `heard` (R, T): the probability that a decision is
-    taken, by aim; by default that of the chain's epochs for all.
+    and half the memory; what it costs: `docs/explanation/method-solver.md`. `heard` (R, T): the probability that a
+    decision is taken, by aim; by default that of the chain's epochs for all.
     """
     c = chain
     priced = [each.criterion.exit_costs(c.grid.speed_m_s, each.target_speed_m_s) for each in aims]

@@ -27,7 +27,7 @@ DECLARED = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") 
 
 MOST_ROOMS = 13
 MOST_LINES, MOST_FUNCTION_LINES, MOST_ARGUMENTS = 300, 60, 8
-KERNEL_FUNCTION_LINES, KERNEL_ARGUMENTS = 88, 12
+KERNEL_FUNCTION_LINES, KERNEL_ARGUMENTS = 83, 12
 """What the longest kernel has; lower these when it becomes shorter."""
 
 KNOWN: set[str] = set()
@@ -68,8 +68,8 @@ def test_files_are_short() -> None:
 
 
 class Source(NamedTuple):
-    """What the rules ask of a source: (name, lines, arguments but `self` and `cls`) of its functions, every module or
-    name in a module that it imports, inside functions too, and its dataclasses."""
+    """What the rules ask of a source: (name, lines of code, arguments but `self` and `cls`) of its functions, every
+    module or name in a module that it imports, inside functions too, and its dataclasses."""
 
     functions: tuple[tuple[str, int, int], ...]
     imported: tuple[str, ...]
@@ -88,11 +88,14 @@ def read(text: str) -> Source:
 
 
 def measured(node: Function) -> tuple[str, int, int]:
-    """Name, lines, and number of arguments but `self` and `cls`."""
-    given = node.args
+    """Name, lines but those of its docstring, and number of arguments but `self` and `cls`."""
+    given, first = node.args, node.body[0]
     names = [each.arg for each in (*given.posonlyargs, *given.args, *given.kwonlyargs)]
     arguments = [name for name in names if name not in ("self", "cls")]
-    return node.name, (node.end_lineno or node.lineno) - node.lineno + 1, len(arguments)
+    lines = (node.end_lineno or node.lineno) - node.lineno + 1
+    if ast.get_docstring(node) is not None:
+        lines -= (first.end_lineno or first.lineno) - first.lineno + 1
+    return node.name, lines, len(arguments)
 
 
 def imported(node: ast.AST) -> Iterator[str]:

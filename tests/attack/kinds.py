@@ -36,7 +36,7 @@ from synth.retarder.sweep.command import COMMAND as SWEEP_RUN
 from tests.attack.attempt import Kind, Reading
 from tests.attack.railml_attributes import attribute_kind
 from tests.attack.trains import trains_kind
-from tests.plant_models.hump.test_hump_file import SMALL
+from tests.plant_models.hump.small_hump import SMALL
 from tests.synth.hump.making.test_hump_make import SHORT
 from tests.tuning_tables.pass_log.sample_logs import sample_log
 from tuning_tables.pass_log.log_files import write_log

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import html
 import json
 import random
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -24,6 +26,19 @@ def test_words_and_exit_code(tuned_once: Path, capfd: pytest.CaptureFixture[str]
     assert len(lines) == 3
     assert all(": ok; rms " in line for line in lines[:2])
     assert lines[2].endswith("files: nothing found")
+
+
+def test_a_page_tells_what_is_printed(tuned_once: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    for words in (("verify", str(tuned_once), "--passes", "100"), ("inspect", str(tuned_once))):
+        capfd.readouterr()
+        assert main([*words, "-o", str(tmp_path / words[0])]) == 0
+        page = html.unescape((tmp_path / words[0] / "report.html").read_text(encoding="utf-8"))
+        plain = " ".join(re.sub(r"<[^>]+>", " ", page).split())
+        lines = [line for line in capfd.readouterr().out.splitlines() if ": " in line]
+        assert len(lines) > 2
+        assert all(" ".join(line.split()) in plain for line in lines)
+        assert ("Load the tables" in page) == (words[0] == "verify")
+    assert main(["verify", str(tuned_once), "--passes", "100", "-o", str(tuned_once)]) == 2
 
 
 def test_json(tuned: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -29,7 +29,7 @@ from tuning_tables.passages.c_source import passage_c_files
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.table_book import TableBook
 
-PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "controllers.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "code-checks.md"
 DEFAULT = Path(__file__).parents[1] / "tuning_tables" / "st" / "default_book"
 
 

@@ -24,7 +24,7 @@ from synth.frame.exhibits import Chapter, Column, Table, brief_value
 from synth.frame.input_error import InputError
 from synth.frame.interval import Interval
 from synth.frame.page.told_page import shown
-from synth.frame.printed_numbers import ABSENT
+from synth.frame.printed_numbers import ABSENT, as_known
 from synth.frame.sheet import to_csv
 from synth.frame.summary import plain, rows_of
 from synth.frame.told import Told
@@ -171,6 +171,25 @@ def test_a_brief_interval_reaches_as_far_as_the_whole_one(value: float, below: f
     assume(max(below, above) > 0.001)
     told = brief_value(Interval(value, value - below, value + above, 9), "{:.3f}".format)
     assert float(told.partition(" ±")[2]) == pytest.approx(max(below, above), abs=0.00051)
+
+
+def test_what_never_comes_has_no_half_width() -> None:
+    never = "{:.0f}".format
+    assert brief_value(Interval(math.inf, math.inf, math.inf, 9), never) == "inf"
+    assert brief_value(Interval(2.0, 1.0, math.inf, 9), never) == "2 [1, inf]"
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "told"),
+    [
+        (2_970_355.0, -19.2e6, 19.9e6, 3e6),
+        (933_211.0, -461e3, 2.43e6, 9e5),
+        (1.2345, 1.2, 1.25, 1.234),
+        (7.0, 7.0, 7.0, 7.0),
+    ],
+)
+def test_an_amount_has_no_more_figures_than_it_is_known_to(value: float, low: float, high: float, told: float) -> None:
+    assert as_known(value, low, high) == pytest.approx(told, rel=1e-12)
 
 
 def test_a_long_table_is_named_on_the_page_and_not_shown() -> None:

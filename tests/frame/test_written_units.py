@@ -17,7 +17,7 @@ from synth.frame.settings.settings_file import settings_in
 from synth.hump.forms.hump_csv import from_csv, to_csv
 from synth.hump.hump_file import parse_hump
 from tests.frame.test_declared_settings import FILES, declared, nested
-from tests.plant_models.hump.test_hump_file import SMALL
+from tests.plant_models.hump.small_hump import SMALL
 
 
 class Measured(Section):

@@ -18,6 +18,7 @@ from plant_models import (
     RollingResistance,
     TrackProfile,
 )
+from synth.simulation.random_passes import RandomPasses, random_passes
 
 GONDOLA_OFFSETS_M = (0.0, 1.85, 8.65, 10.5)
 
@@ -69,3 +70,9 @@ def plant_22t() -> Plant:
 def plant_52t() -> Plant:
     """Medium gondola, stages 0 … 4."""
     return pilot_plant(52.0)
+
+
+@pytest.fixture(scope="session")
+def passes() -> RandomPasses:
+    """A thousand passes as cuts come."""
+    return random_passes(seed=1, first_pass=0, count=1000)

@@ -9,21 +9,20 @@ import pytest
 from synth.frame.exhibits import Chart
 from synth.frame.picture.studio import Studio, draw_chart
 from synth.retarder.forms.table_file import file_stem, is_infeasible
-from synth.retarder.shown.case_charts import exit_density, exits_chart
-from synth.retarder.shown.pictures import lines_chart
+from synth.retarder.shown.pictures import case_chart, feasibility
 from tests.synth.case_factory import make_case
 
 
 def test_drawings_do_not_depend_on_the_number_of_processes() -> None:
-    charts = [lines_chart(make_case()), exits_chart([make_case("heavy", 2.0)])]
+    charts = [case_chart(make_case()), case_chart(make_case("heavy", 2.0))]
     with Studio(2) as studio:
         studio.begin(charts[1])
         assert [each.result() for each in map(studio.drawing, charts)] == [draw_chart(each) for each in charts]
 
 
 def test_a_fault_in_a_drawing_process_is_raised_here() -> None:
-    with Studio(2) as studio, pytest.raises(IndexError):
-        studio.drawing(Chart("none", "", "", partial(exit_density, ()))).result()
+    with Studio(2) as studio, pytest.raises(ValueError, match="left cannot be"):
+        studio.drawing(Chart("none", "", "", partial(feasibility, ()))).result()
 
 
 def test_an_id_is_no_path() -> None:

@@ -7,12 +7,14 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.patches import StepPatch
 from matplotlib.text import Text
 
 from synth.frame.picture.figure_file import draw, figure_files
@@ -21,13 +23,16 @@ from synth.frame.picture.picture import picture_files
 from synth.retarder.case_names import by_class, file_stem
 from synth.retarder.case_result import CaseResult
 from synth.retarder.command_panels import command_image
-from synth.retarder.pictures.exit_density import bin_edges_m_s, exit_density, predicted_density
+from synth.retarder.exit_bins import bin_edges_m_s, predicted_density
+from synth.retarder.pictures.case_picture import case_picture
+from synth.retarder.pictures.exit_density import exit_density
 from synth.retarder.pictures.feasibility import feasibility
-from synth.retarder.pictures.policy_map import parts_in_stage, policy_map
 from synth.retarder.pictures.rms_by_controller import rms_by_controller
-from synth.retarder.pictures.sample_passes import outcome, sample_passes
-from synth.retarder.pictures.surfaces import surfaces
-from synth.retarder.shown.pictures import lines_chart
+from synth.retarder.pictures.stage_colours import colour_of, outcome, parts_in_stage
+from synth.retarder.pictures.table_picture import Passes, table_lines, table_passes, table_surfaces
+from synth.retarder.shown.pictures import case_chart
+from synth.retarder.shown_case import NEAR_M_S, shown_case
+from synth.simulation.passes import ExitSample
 from tests.synth.all_pictures import all_pictures
 from tests.synth.case_factory import make_case
 
@@ -45,14 +50,24 @@ def cases() -> list[CaseResult]:
     ]
 
 
+def passes_of(case: CaseResult) -> Passes:
+    """The passes of a case as `plot` has them."""
+    n = len(case.exit_speeds_m_s)
+    speeds = case.exit_speeds_m_s.astype(float)
+    sample = ExitSample(speeds, speeds == 0.0, np.zeros(n, np.int32), np.ones(n), case.exit_weight)
+    return Passes(sample, case.traces)
+
+
 FIGURES: dict[str, Callable[[list[CaseResult]], Figure]] = {
-    "policy_map of three stages": lambda cases: policy_map(cases[0]),
-    "policy_map of five stages": lambda cases: policy_map(cases[2]),
-    "sample_passes": lambda cases: sample_passes(cases[0]),
+    "case_picture of three stages": lambda cases: case_picture(shown_case(cases[0])),
+    "case_picture of an infeasible case": lambda cases: case_picture(shown_case(cases[2])),
+    "table_lines of three stages": lambda cases: table_lines(cases[0].table, passes_of(cases[0])),
+    "table_lines of five stages": lambda cases: table_lines(cases[2].table, None),
+    "table_passes": lambda cases: table_passes(cases[0].table, passes_of(cases[0])),
     "exit_density": lambda cases: exit_density(cases[:2]),
     "exit_density of an infeasible case": lambda cases: exit_density(cases[2:3]),
     "rms_by_controller": lambda cases: rms_by_controller(cases, 0.1),
-    "surfaces": lambda cases: surfaces(cases[2]),
+    "table_surfaces": lambda cases: table_surfaces(cases[2].table, None),
     "feasibility": feasibility,
 }
 
@@ -119,7 +134,7 @@ def test_hard_cases_are_drawn_too(cases: list[CaseResult]) -> None:
             predicted=replace(cases[0].predicted, probability=np.zeros(400), stalled=1.0),
         ),
     }
-    assert {name: len(list(all_pictures([case], 0.1))) for name, case in hard.items()} == dict.fromkeys(hard, 6)
+    assert {name: len(list(all_pictures([case], 0.1))) for name, case in hard.items()} == dict.fromkeys(hard, 3)
 
 
 def test_a_figure_is_one_file(cases: list[CaseResult]) -> None:
@@ -129,7 +144,7 @@ def test_a_figure_is_one_file(cases: list[CaseResult]) -> None:
 
 
 def test_outer_panels_say_what_is_drawn(cases: list[CaseResult]) -> None:
-    panels = policy_map(cases[1]).axes
+    panels = table_lines(cases[1].table, None).axes
     stages = cases[1].study.solver_lines.stages
     assert sum(axes.get_ylabel() == "speed, m/s" for axes in panels) == 2
     assert sum(axes.get_xlabel().startswith("path") for axes in panels[:stages]) == (stages + 2) // 2
@@ -138,7 +153,7 @@ def test_outer_panels_say_what_is_drawn(cases: list[CaseResult]) -> None:
 def test_the_picture_book_names_every_picture_once_and_every_case(cases: list[CaseResult]) -> None:
     pictures = list(all_pictures(cases, 0.1))
     names = [picture.name for picture in pictures]
-    assert len(set(names)) == len(names) == 2 + 2 * 3 + 4
+    assert len(set(names)) == len(names) == 2 + len(cases)
     assert all(any(case.label in picture.title for picture in pictures) for case in cases)
     assert picture_files(pictures, "plots")[f"plots/{names[0]}.svg"] == pictures[0].svg
 
@@ -158,6 +173,42 @@ def test_every_part_of_a_pass_is_drawn_in_exactly_one_stage(cases: list[CaseResu
     shown = [parts_in_stage((trace,), stage)[1][:-1] for stage in range(3)]
     segments = sum(int(np.count_nonzero(np.isfinite(v[1:]) & np.isfinite(v[:-1]))) for v in shown)
     assert segments == trace.speed_m_s.size - 1
+
+
+def test_the_picture_of_a_case_shows_the_run_in_the_stages_in_force(cases: list[CaseResult]) -> None:
+    """Every event of the run is drawn once, in the colour of its stage, beside the lines of that stage there."""
+    case = cases[2]
+    run, exits = case_picture(shown_case(case)).axes
+    trace = case.traces[1]
+    parts = shown_case(case).run
+    events = trace.stage[:-1]
+    assert [part.stage for part in parts] == [k for i, k in enumerate(events) if i == 0 or k != events[i - 1]]
+    assert all(one.path_m[-1] == next_one.path_m[0] for one, next_one in pairwise(parts))
+    assert [speed for part in parts for speed in part.speed_m_s[:-1]] == trace.speed_m_s[:-1].tolist()
+    lines = case.study.table_lines
+    for part in parts:
+        lower = np.interp(part.lower.path_m, lines.nodes_m, lines.lower_m_s[part.stage])
+        assert part.lower.speed_m_s == pytest.approx(lower)
+        assert all(part.path_m[0] <= s <= part.path_m[-1] for s in part.upper.path_m + part.lower.path_m)
+    drawn = [line for line in run.get_lines() if line.get_linewidth() == 2.2]
+    assert [line.get_color() for line in drawn] == [colour_of(part.stage) for part in parts]
+    assert exits.get_ylim() == pytest.approx((2.0 - NEAR_M_S, 2.0 + NEAR_M_S))
+
+
+def test_the_picture_of_a_case_has_the_density_on_the_speed_axis(cases: list[CaseResult]) -> None:
+    """The simulated histogram has the share of the cuts that leave where it is drawn; the line is the prediction."""
+    case = cases[1]
+    exits = case_picture(shown_case(case)).axes[1]
+    (bars,) = (each for each in exits.patches if isinstance(each, StepPatch))
+    values, edges, _ = bars.get_data()
+    error = np.abs(case.exit_speeds_m_s - case.target_speed_m_s)
+    share = case.exit_weight[error < edges[-1] - case.target_speed_m_s].sum() / case.exit_weight.sum()
+    assert float((values * np.diff(edges)).sum()) == pytest.approx(share, abs=2e-3)
+    speed, density = predicted_density(case.predicted)
+    (line,) = (each for each in exits.get_lines() if len(np.asarray(each.get_xdata())) > 2)
+    assert np.interp(3.0, np.asarray(line.get_ydata()), np.asarray(line.get_xdata())) == pytest.approx(
+        np.interp(3.0, speed, density)
+    )
 
 
 def test_a_predicted_density_is_one_line_over_the_peak(cases: list[CaseResult]) -> None:
@@ -215,7 +266,7 @@ def test_a_stalled_pass_is_called_so(cases: list[CaseResult]) -> None:
 def test_drawing_needs_neither_pyplot_nor_kernels(cases: list[CaseResult], tmp_path: Path) -> None:
     """Not even a chart that is handed to the process that draws it."""
     heavy = ("matplotlib.pyplot", "numba", "scipy", "pydantic", "control", "h5py")
-    (tmp_path / "chart").write_bytes(pickle.dumps(lines_chart(cases[0])))
+    (tmp_path / "chart").write_bytes(pickle.dumps(case_chart(cases[0])))
     loaded = f"any(each in sys.modules for each in {heavy})"
     drawn = f"draw_chart(pickle.loads(pathlib.Path({str(tmp_path / 'chart')!r}).read_bytes()))"
     command = (

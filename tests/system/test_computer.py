@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -69,7 +70,19 @@ def test_a_run_leaves_what_it_says(first: tuple[Path, str]) -> None:
     page = (folder / "out" / "report.html").read_text(encoding="utf-8")
     places = [page.index(f"<h2>{heading}") for heading in ("What it pays", "How reliable", "How fast", "Parameters")]
     assert places == sorted(places)
-    assert "nan" not in page.replace("maintenance", "").lower().split("data:image")[0]
+    assert not re.search(r"\bnan\b", page, re.IGNORECASE)
+
+
+def test_the_first_screen_tells_money_with_no_more_figures_than_its_spread_leaves(first: tuple[Path, str]) -> None:
+    folder, _ = first
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    (row,) = (each for each in told(folder / "out")["tables"]["draws"] if each["output"] == "net present value")
+    low, middle, high = (row[each]["value"] for each in ("q05", "q50", "q95"))
+    (number, letter) = re.findall(r"<strong>(-?[\d.]+)([kM]) EUR</strong><p>net present value", page)[0]
+    shown = float(number) * {"k": 1e3, "M": 1e6}[letter]
+    assert abs(shown - middle) <= 0.05 * (high - low)
+    assert len(number.strip("-").replace(".", "").strip("0")) <= len(f"{high - low:.0f}") - 4
+    assert page.index("Find out ") < page.index("<h2>")
 
 
 def test_the_published_computer_is_the_default(first: tuple[Path, str]) -> None:

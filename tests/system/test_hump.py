@@ -11,7 +11,7 @@ import synth
 from plant_models.library.hump_schema import hump_schema
 from synth.frame.input_error import InputError
 from tests.frame.results import results_in
-from tests.plant_models.hump.test_hump_file import SMALL
+from tests.plant_models.hump.small_hump import SMALL
 from tests.system.conftest import Command
 
 

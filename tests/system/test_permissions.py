@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import html
 import json
 from pathlib import Path
 from typing import Any
@@ -130,6 +131,18 @@ def test_commands_at_any_time_gain_and_no_approach_and_the_measured_speed_lose(r
     assert row["commands at any time"]["high95"] < 1.0
     assert row["without the approach"]["low95"] > 1.0
     assert row["without the estimator"]["low95"] > 1.0
+
+
+def test_the_page_says_which_permission_to_ask_for(ran: Path) -> None:
+    """The one of least rms, where it is smaller for sure; a tile tells the median of each."""
+    read, page = summary(ran / "one"), (ran / "one" / "report.html").read_text(encoding="utf-8")
+    ratios = read["figures"]["median_ratios"]
+    best = min(ratios, key=ratios.get)
+    head = html.unescape(page.partition("<h2>")[0])
+    assert f"Ask what '{best}' costs: it gives {ratios[best]:.2f} times the rms" in head
+    assert "smaller for sure in 1 of 1 case" in head
+    for name, ratio in ratios.items():
+        assert f"<strong>{ratio:.2f} times</strong><p>the rms as configured, in the median: {name}</p>" in head
 
 
 def test_all_files_are_named_with_their_hashes(ran: Path) -> None:

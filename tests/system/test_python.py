@@ -22,6 +22,7 @@ from tuning_tables import ControllerTable, read_json
 
 ROOT = Path(__file__).parents[2]
 LABEL, TARGET = "gondola-4-22t", 1.5
+COARSE = synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
 
 
 @pytest.fixture(scope="module")
@@ -121,9 +122,14 @@ def test_a_problem_of_ones_own_has_a_hash_of_its_own(problem: synth.Problem) -> 
         (lambda t, p: synth.compare_with_baselines(t, p, passes=10), "passes is 10; intervals need 1000"),
         (lambda t, p: synth.tune("gondola-4-22", 1.5, None), "did you mean gondola-4-22t?"),
         (lambda t, p: synth.load_trial("nowhere.toml"), "nowhere.toml"),
+        (lambda t, p: synth.load_trial(seed=-3), "seed is -3; it must not be negative"),
         (lambda t, p: synth.hump_trains(synth.load_trial(), trains=0), "trains is 0; one is needed at least"),
         (lambda t, p: synth.load_aim("nowhere.toml"), "nowhere.toml"),
         (lambda t, p: synth.load_passes("nowhere.csv"), "nowhere.csv"),
+        (lambda t, p: synth.fit(synth.solve(p, COARSE), 10), "degree is 10; it must be a whole number from 0 to 9"),
+        (lambda t, p: synth.load_passes(), "no log is named; name a file or a folder."),
+        (lambda t, p: synth.trace(t, p, friction=float("nan")), "friction is nan; it must be a factor from 0 to 5"),
+        (lambda t, p: synth.trace(t, p, index=-1), "must not be negative"),
         (lambda t, p: synth.log_passes(t, p, passes=0), "0 passes; at least one is needed"),
         (lambda t, p: synth.Aim(0.0), "target_speed_m_s is 0"),
     ],
@@ -159,9 +165,7 @@ def arrays_in(value: Any, path: str, seen: set[int]) -> Iterator[tuple[str, np.n
 
 def test_nothing_on_the_way_can_be_written_to(table: ControllerTable, problem: synth.Problem) -> None:
     """However deep: the values of a solve, a fit, a table, a simulation and a pass."""
-    solution = synth.solve(
-        problem, synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
-    )
+    solution = synth.solve(problem, COARSE)
     found = {
         "solution": solution,
         "lines": synth.fit(solution, 2),

@@ -98,6 +98,8 @@ DIRECTORIES = (
     Writing(("validate", "book.h5", "--config", "yard.toml", "--passes", "1000", "--log", "new.csv"), "new.csv"),
     Writing(("plot", "table.json", "--config", "yard.toml"), f"{TABLE}-lines.svg"),
     Writing(("loop", "table.json", "--config", "yard.toml"), "loops.json"),
+    Writing(("verify", "table.json", "--passes", "100"), "report.html"),
+    Writing(("inspect", "table.json"), "report.html"),
 )
 FILES = (Writing(("hump", "export", "hump.toml")),)
 

@@ -11,21 +11,21 @@ from pathlib import Path
 
 import pytest
 
-from tuning_tables import ControllerTable, hdf5_file, read_book, write_book
+from tuning_tables import ControllerTable, book_image, hdf5_file, read_book, write_book
 from tuning_tables.atomic_file import replacing
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="the limit of a file's size is that of POSIX")
 
 LOST_FOR_A_MOMENT = """
 import resource, sys
-from tuning_tables import hdf5_file, read_book, write_book
-writes_axis, (_, hard) = hdf5_file._write_axis, resource.getrlimit(resource.RLIMIT_FSIZE)
+from tuning_tables import book_image, read_book, write_book
+writes_axis, (_, hard) = book_image.write_axis, resource.getrlimit(resource.RLIMIT_FSIZE)
 def lost(*arguments):
     resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))
     writes_axis(*arguments)  # what it writes is flushed by a destructor, which can raise nothing
     resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
 tables = read_book(sys.argv[1])
-hdf5_file._write_axis = lost
+book_image.write_axis = lost
 try:
     write_book(tables, sys.argv[2])
 except OSError as fault:
@@ -94,10 +94,10 @@ def test_what_was_written_is_read_back_before_it_takes_the_name(
 ) -> None:
     path = tmp_path / "book.h5"
     path.write_bytes(b"old")
-    body, write = hdf5_file._body, Path.write_bytes
+    body, write = book_image.image_of, Path.write_bytes
     with monkeypatch.context() as patched:
         if lost_before_the_seal:
-            patched.setattr(hdf5_file, "_body", lambda *parts: with_a_gap(body(*parts)))
+            patched.setattr(hdf5_file, "image_of", lambda *parts: with_a_gap(body(*parts)))
         else:
             patched.setattr(Path, "write_bytes", lambda part, content: write(part, with_a_gap(content)))
         with pytest.raises(OSError, match="does not read back") as caught:

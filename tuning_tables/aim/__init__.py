@@ -21,3 +21,7 @@ __all__ = [
     "Required",
     "aim_exit_speed",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -34,6 +34,40 @@ class AimTable:
     Derived from these: `held`, what a controller holds, with one resistance of 0 in a table by category.
 
     Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables import Generator
+    >>> from tuning_tables.aim import (
+    ...     AimAxes,
+    ...     AimCategory,
+    ...     AimTable,
+    ...     ParkPosition,
+    ...     Reported,
+    ...     Required,
+    ... )
+    >>> table = AimTable(
+    ...     id="by-hand",
+    ...     created="2026-11-27T12:00:00Z",
+    ...     generator=Generator("by hand", "1", "0" * 64),
+    ...     position=ParkPosition("my-park", exit_at_m=330.0),
+    ...     category=AimCategory(3, "С"),
+    ...     required=Required(p_overspeed=0.1, coupling_speed_m_s=1.4),
+    ...     measured=None,
+    ...     axes=AimAxes(cars=[1], free_distance_m=[100.0, 300.0]),
+    ...     exit_speed_m_s=[[1.5, 2.5]],
+    ...     bounds_m_s=(0.5, 7.0),
+    ...     interpolation_error_m_s=0.05,
+    ...     reported=Reported(
+    ...         2000,
+    ...         [[0.08, 0.09]],
+    ...         [[0.07, 0.08]],
+    ...         [[0.09, 0.1]],
+    ...         mean_gap_m=[[12.5, 40.0]],
+    ...     ),
+    ... )
+    >>> table
+    AimTable(by-hand: 1 x 2 exit speeds)
     """
 
     id: Annotated[str, TABLE_NAME]

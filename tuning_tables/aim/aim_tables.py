@@ -13,10 +13,18 @@ from tuning_tables.requirement import require_kind, require_tuple
 
 @dataclass(frozen=True)
 class AimTables:
-    """The tables of one position, numbered in their order from 0; ids differ.
+    """The `tables` of one position, numbered in their order from 0; ids differ.
 
     There is one table at most for a category and a kind of knowledge; a category has one name, and a name one number.
     Raises `InvalidTable`.
+
+    Examples
+    --------
+    With `table` from the example of `AimTable`:
+
+    >>> from tuning_tables.aim import AimTables
+    >>> AimTables((table,)).select(3, measured=False).id
+    'by-hand'
     """
 
     tables: tuple[AimTable, ...]
@@ -52,7 +60,20 @@ class AimTables:
         return f"AimTables({len(self.tables)} tables of {self.tables[0].position.name})"
 
     def select(self, category: int, measured: bool) -> AimTable | None:
-        """The table for cuts of the category with this number, by measured resistance or not; None for none."""
+        """The table for cuts of a category.
+
+        Parameters
+        ----------
+        category
+            Number of the weight category.
+        measured
+            Whether the resistance of the cut was measured.
+
+        Returns
+        -------
+        AimTable or None
+            None where there is no such table.
+        """
         found = (each for each in self.tables if (each.category.number, each.is_measured) == (category, measured))
         return next(found, None)
 

@@ -34,6 +34,12 @@ class AimAxes:
     20 000.
 
     Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables.aim import AimAxes
+    >>> AimAxes(cars=[1, 3], free_distance_m=[20.0, 100.0, 400.0]).shape
+    (2, 3)
     """
 
     cars: Annotated[npt.NDArray[np.int64], Row(Count("numbers of cars", 1, MOST_CARS), "cars", 1, MOST_NUMBERS_OF_CARS)]
@@ -88,7 +94,7 @@ class AimAxes:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """(C, D), or (C, D, R) of a table by measured resistance: that of everything at its nodes."""
+        """Shape of everything at the nodes, (C, D), or (C, D, R) of a table by measured resistance."""
         both = (len(self.cars), len(self.free_distance_m))
         return both if self.resistance_n_per_kn is None else (*both, len(self.resistance_n_per_kn))
 

@@ -11,10 +11,41 @@ from tuning_tables.programs.aim_speed import exit_speed
 def aim_exit_speed(
     table: AimTable, cars: int, free_distance_m: float, resistance_n_per_kn: float | None = None
 ) -> float | None:
-    """The exit speed in m/s, a float32 number, for a cut of so many cars; None where the table has no answer.
+    """Ask an aim table for a cut.
 
-    `resistance_n_per_kn`: as measured; a table by category alone does not look at it, one by measured resistance has no
-    answer without. Raises `TypeError` where `cars` is no whole number.
+    Parameters
+    ----------
+    table
+        The table of the category of the cut, and of what is known of it.
+    cars
+        Number of its cars.
+    free_distance_m
+        From the head of the cut to the standing cars, when its last axle leaves the position, m.
+    resistance_n_per_kn
+        Its rolling resistance as measured, N/kN. A table by category alone does not look at it; one by measured
+        resistance has no answer without.
+
+    Returns
+    -------
+    float or None
+        The exit speed to command, m/s, a float32 number; None where the table has no answer.
+
+    Raises
+    ------
+    TypeError
+        `cars` is no whole number.
+
+    Examples
+    --------
+    With `table` from the example of `AimTable`:
+
+    >>> from tuning_tables.aim import aim_exit_speed
+    >>> aim_exit_speed(table, cars=1, free_distance_m=200.0)
+    2.0
+    >>> aim_exit_speed(
+    ...     table, cars=1, free_distance_m=50.0
+    ... ) is None  # nearer than the table knows
+    True
     """
     if not isinstance(cars, int | np.integer) or isinstance(cars, bool):
         raise TypeError(f"cars is {cars!r:.60}, but a cut has a whole number of cars.")

@@ -18,7 +18,14 @@ FARTHEST_M: Final = 1e5
 
 @dataclass(frozen=True)
 class ParkPosition:
-    """The position that is told an exit speed."""
+    """The position that is told an exit speed.
+
+    Examples
+    --------
+    >>> from tuning_tables.aim import ParkPosition
+    >>> ParkPosition("rnz-2m-park", exit_at_m=330.0).exit_at_m
+    330.0
+    """
 
     name: Annotated[str, Text("its name")]
     exit_at_m: Annotated[float, Number("a cut leaves it when its last axle is so far from the crest", 0.0, FARTHEST_M)]
@@ -29,7 +36,14 @@ class ParkPosition:
 
 @dataclass(frozen=True)
 class AimCategory:
-    """The weight category of the cuts."""
+    """The weight category of the cuts.
+
+    Examples
+    --------
+    >>> from tuning_tables.aim import AimCategory
+    >>> AimCategory(number=3, name="С").name
+    'С'
+    """
 
     number: Annotated[int, Count("what stands for it in controllers", 1, LARGEST_OWN)]
     name: Annotated[str, Text("its name")]
@@ -50,7 +64,14 @@ class AimCategory:
 
 @dataclass(frozen=True)
 class Required:
-    """What is required of the speed at which cuts couple."""
+    """What is required of the speed at which cuts couple.
+
+    Examples
+    --------
+    >>> from tuning_tables.aim import Required
+    >>> Required(p_overspeed=0.1, coupling_speed_m_s=1.4).p_overspeed
+    0.1
+    """
 
     p_overspeed: Annotated[
         float, Number("a cut may couple faster than that with this probability, within (0, 1)", 0.0, 1.0)
@@ -66,7 +87,14 @@ class Required:
 
 @dataclass(frozen=True)
 class MeasuredResistance:
-    """By which speeds the rolling resistance of a cut was measured; null: its category alone is known."""
+    """By which speeds the rolling resistance of a cut was measured; null: its category alone is known.
+
+    Examples
+    --------
+    >>> from tuning_tables.aim import MeasuredResistance
+    >>> MeasuredResistance(from_m=210.0, to_m=290.0, speed_std_m_s=0.1).to_m
+    290.0
+    """
 
     from_m: Annotated[float, Number("first place, from the crest", 0.0, FARTHEST_M)]
     to_m: Annotated[float, Number("second place, from the crest", 0.0, FARTHEST_M)]

@@ -21,6 +21,19 @@ class Reported:
 
     The share lies within its interval. All figures have the shape of the axes, and NaN at the same nodes: where there
     is no exit speed, and where too few of the passes came to a node to tell. Read-only copies. Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables.aim import Reported
+    >>> figures = Reported(
+    ...     2000,
+    ...     p_overspeed=[[0.08]],
+    ...     p_overspeed_low95=[[0.07]],
+    ...     p_overspeed_high95=[[0.09]],
+    ...     mean_gap_m=[[12.5]],
+    ... )
+    >>> figures.p_overspeed.shape
+    (1, 1)
     """
 
     passes: Annotated[int, Count("simulated cuts at each node", 1)]

@@ -64,23 +64,20 @@ def read_logs(
     Raises
     ------
     InvalidLog
-        No pass is left.
+        No file is named, or no pass is left.
 
     Examples
     --------
+    With `log` from the example of `PassLog`:
+
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> from tuning_tables.pass_log import PassLog, read_logs, write_log
-    >>> log = PassLog(
-    ...     time_s=[0.0, 0.1], path_m=[0.0, 0.5], speed_m_s=[5.0, 4.9], pressure_kpa=[0.0, 80.0], stage=[0, 2],
-    ...     first_row=[0, 2], cut_id=("17",), mass_t=[52.0], axles=[4], category=("С",), target_m_s=[3.0],
-    ...     stopped_by_hand=[False],
-    ... )
+    >>> from tuning_tables.pass_log import read_logs, write_log
     >>> with TemporaryDirectory() as folder:
     ...     write_log(log, Path(folder, "evening.csv"))
     ...     loaded = read_logs([folder])
     >>> loaded.log, [file.name for file in loaded.files], loaded.faults
-    (PassLog(1 passes, 2 rows), ['evening.csv'], ())
+    (PassLog(1 passes, 6 rows), ['evening.csv'], ())
     """
     found: list[tuple[Path, PassLog]] = []
     faults: list[PassFault] = []
@@ -99,6 +96,8 @@ def read_logs(
             refused.append(FileFault(os.fspath(path), f"{path}: no pass of it is sound; {told[0].sentence}"))
         else:
             found.append((path, log))
+    if not found and not refused:
+        raise InvalidLog("no log is named; name a file or a folder.")
     if not found:
         more = f" (and {len(refused) - 1} more files)" if len(refused) > 1 else ""
         raise InvalidLog(f"no measured pass can be used: {refused[0].sentence}{more}")
@@ -126,14 +125,11 @@ def write_log(log: PassLog, path: str | os.PathLike[str]) -> None:
 
     Examples
     --------
+    With `log` from the example of `PassLog`:
+
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> from tuning_tables.pass_log import PassLog, write_log
-    >>> log = PassLog(
-    ...     time_s=[0.0, 0.1], path_m=[0.0, 0.5], speed_m_s=[5.0, 4.9], pressure_kpa=[0.0, 80.0], stage=[0, 2],
-    ...     first_row=[0, 2], cut_id=("17",), mass_t=[52.0], axles=[4], category=("С",), target_m_s=[3.0],
-    ...     stopped_by_hand=[False],
-    ... )
+    >>> from tuning_tables.pass_log import write_log
     >>> with TemporaryDirectory() as folder:
     ...     file = Path(folder, "evening.csv")
     ...     write_log(log, file)

@@ -51,11 +51,14 @@ class LogMapping:
 
     `columns`: foreign name by own name; `factors`: by own name, what the file's numbers are multiplied with;
     `constant`: values, in own units, of columns that the file lacks; `path_is_independent`: None leaves it to the file.
+    `delimiter`: between cells, `decimal`: in numbers.
 
     Examples
     --------
     >>> from tuning_tables.pass_log import LogMapping
-    >>> LogMapping(columns={"speed_m_s": "v"}, factors={"speed_m_s": 1.0 / 3.6}, delimiter=";").decimal
+    >>> LogMapping(
+    ...     columns={"speed_m_s": "v"}, factors={"speed_m_s": 1.0 / 3.6}, delimiter=";"
+    ... ).decimal
     '.'
     """
 

@@ -13,9 +13,6 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 ROWS = ("time_s", "path_m", "speed_m_s", "pressure_kpa", "stage")
-PLAIN = ("cut_id", "category", "path_is_independent")
-"""The members that are no arrays."""
-
 PASSES = ("cut_id", "mass_t", "axles", "category", "target_m_s", "stopped_by_hand")
 
 
@@ -35,17 +32,24 @@ class PassLog:
 
     Examples
     --------
+    >>> import numpy as np
     >>> from tuning_tables.pass_log import PassLog
     >>> log = PassLog(
-    ...     time_s=[0.0, 0.1, 60.0, 60.1], path_m=[0.0, 0.5, 0.0, 0.6], speed_m_s=[5.0, 4.9, 6.0, 5.9],
-    ...     pressure_kpa=[0.0, 80.0, 0.0, 80.0], stage=[0, 2, 0, 3], first_row=[0, 2, 4], cut_id=("17", "18"),
-    ...     mass_t=[52.0, 60.0], axles=[4, 4], category=("С", "СТ"), target_m_s=[3.0, 3.0],
-    ...     stopped_by_hand=[False, False],
+    ...     time_s=0.1 * np.arange(6),
+    ...     path_m=0.5 * np.arange(6),
+    ...     speed_m_s=np.full(6, 5.0),
+    ...     pressure_kpa=np.zeros(6),
+    ...     stage=np.array([0, 0, 1, 1, 1, 0]),
+    ...     first_row=np.array([0, 6]),
+    ...     cut_id=("17",),
+    ...     mass_t=np.array([52.0]),
+    ...     axles=np.array([4]),
+    ...     category=("С",),
+    ...     target_m_s=np.array([3.0]),
+    ...     stopped_by_hand=np.array([False]),
     ... )
-    >>> log, log.has_gauge, log.speed_m_s[log.rows(1)]
-    (PassLog(2 passes, 4 rows), True, array([6. , 5.9]))
-    >>> log.taken([1]).cut_id
-    ('18',)
+    >>> log, log.has_gauge, log.stage[log.rows(0)]
+    (PassLog(1 passes, 6 rows), True, array([0, 0, 1, 1, 1, 0]))
     """
 
     time_s: Floats
@@ -64,8 +68,9 @@ class PassLog:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            if field.name not in PLAIN:
-                value = np.asarray(getattr(self, field.name)).view()
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                value = value.view()
                 value.setflags(write=False)
                 object.__setattr__(self, field.name, value)
         if any(len(getattr(self, name)) != len(self.time_s) for name in ROWS):

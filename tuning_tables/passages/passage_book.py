@@ -25,7 +25,17 @@ from tuning_tables.table_book import LARGEST_FLOAT32, LEAST_FLOAT32, Status
 
 @dataclass(frozen=True)
 class PassageChoice:
-    """The chosen table and its number in the book, both None where `status` is below 0."""
+    """The chosen `table` and its `number` in the book, both None where `status` is below 0.
+
+    Examples
+    --------
+    With `table` from the example of `PassageTable`:
+
+    >>> from tuning_tables import PassageBook
+    >>> choice = PassageBook((table,)).choose("Т", axles=2, commanded_m_s=3.0)
+    >>> choice
+    PassageChoice(status=<Status.NO_CLASS: -1>, table=None, number=None)
+    """
 
     status: Status
     table: PassageTable | None
@@ -34,10 +44,18 @@ class PassageChoice:
 
 @dataclass(frozen=True)
 class PassageBook:
-    """The tables of one position, numbered in their order from 0.
+    """The `tables` of one position, numbered in their order from 0.
 
     Ids differ. Retarder position and sensors are the same in all: a controller is wired to one set of sensors, whatever
     the cut. A category has one number and a number one category. Raises `InvalidTable`.
+
+    Examples
+    --------
+    With `table` from the example of `PassageTable`:
+
+    >>> from tuning_tables import PassageBook
+    >>> PassageBook((table,)).choose("С", axles=2, commanded_m_s=3.0).number
+    0
     """
 
     tables: tuple[PassageTable, ...]
@@ -76,7 +94,22 @@ class PassageBook:
         return tuple(table for number, table in enumerate(self.tables) if number not in used)
 
     def choose(self, category: str, axles: int, commanded_m_s: float) -> PassageChoice:
-        """The table for a cut of `category` on `axles` axles that shall leave with `commanded_m_s`."""
+        """The table for a cut.
+
+        Parameters
+        ----------
+        category
+            Name of its weight category.
+        axles
+            Number of its axles.
+        commanded_m_s
+            The exit speed that is wanted, m/s.
+
+        Returns
+        -------
+        PassageChoice
+            The table that aims at no more than that, or none where no table may be taken.
+        """
         numbers = self.by_class.get((category, axles), ())
         if not numbers:
             return PassageChoice(Status.NO_CLASS, None, None)

@@ -98,6 +98,14 @@ class PassageRow:
     `rule.wanted_stage`): row[k − 1] < row[k] in the row of stage k.
 
     Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables import PassageRow
+    >>> never = float("inf")
+    >>> row = PassageRow(sensor=0, axle=0, path_m=-1.0, switching_m_s=((4.5,), (-never,)))
+    >>> row.switching_m_s[0]  # at stage 0 in force: raise above 4.5 m/s
+    (4.5,)
     """
 
     sensor: Annotated[int, Count("number of the sensor, from 0")]

@@ -38,21 +38,67 @@ class PassageTable:
     of the sensors, each with K + 1 rows, at most 131 072 switching speeds in all; the path is within 1e-6 m of the
     sensor's plus the axle's offset. The prediction is exact, without passes.
 
-    Derived from these (arrays are read-only). For `rule.wanted_stage`, M passages:
+    Raises `InvalidTable`. What a member means and may be stands in docs/reference/table-format.md. The others follow
+    from them, as read-only arrays, for M passages at which is decided, and all T passages that are heard:
 
-    switching_m_s     float32 (M, K + 1, K), −∞ and +∞ as in `PassageRow`
-    path_m            float32 (M,), not falling
-    sensor_of         int64 (M,)
-    before_entrance   number of passages whose path is below 0: the first ones
+    Attributes
+    ----------
+    switching_m_s
+        float32 (M, K + 1, K), −∞ and +∞ as in `PassageRow`.
+    path_m
+        float32 (M,), not falling.
+    sensor_of
+        int64 (M,).
+    before_entrance
+        Number of passages whose path is below 0, the first ones.
+    heard_path_m
+        float32 (T,), not falling; every axle over every sensor, also behind the exit; T <= 4096.
+    heard_sensor
+        int64 (T,).
+    heard_passage
+        int64 (T,), the passage at which is decided, 0 … M − 1, or −1 where nothing is decided.
+    limits
+        float32 (6,).
 
-    For `tracker.believed_passage`, which must know every axle that gives pulses, all T passages heard:
-
-    heard_path_m      float32 (T,), not falling: every axle over every sensor, also behind the exit; T <= 4096
-    heard_sensor      int64 (T,)
-    heard_passage     int64 (T,): the passage at which is decided, 0 … M − 1, or −1: nothing is decided there
-    limits            float32 (6,)
-
-    Raises `InvalidTable`.
+    Examples
+    --------
+    >>> from tuning_tables import (
+    ...     Approach,
+    ...     CutId,
+    ...     DecidesOn,
+    ...     Generator,
+    ...     PassageRow,
+    ...     PassageTable,
+    ...     PlausibleMotion,
+    ...     Predicted,
+    ...     RetarderId,
+    ...     SensorLayout,
+    ... )
+    >>> table = PassageTable(
+    ...     id="by-hand",
+    ...     created="2026-11-27T12:00:00Z",
+    ...     generator=Generator("by hand", "1", "0" * 64),
+    ...     retarder=RetarderId(
+    ...         "my-retarder", zones_m=((0.0, 12.0),), exit_m=22.5, dead_band_kpa=15.0
+    ...     ),
+    ...     cut=CutId("С", mass_t=52.0, axle_offsets_m=(0.0, 10.5)),
+    ...     target_speed_m_s=3.0,
+    ...     pressure_kpa=(0.0, 300.0),
+    ...     sensors=SensorLayout(
+    ...         (-1.0, 6.0), 0.25, 0.002, 1e-4, 1e-4, 0.02, 0.02, DecidesOn.FIRST_AXLE
+    ...     ),
+    ...     approach=Approach(1.0, entrance_stage=1),
+    ...     initial_stage=0,
+    ...     passages=(
+    ...         PassageRow(0, 0, -1.0, switching_m_s=((4.5,), (4.0,))),
+    ...         PassageRow(1, 0, 6.0, switching_m_s=((4.0,), (3.5,))),
+    ...     ),
+    ...     plausible=PlausibleMotion((0.5, 10.0), 0.5, 4.0, 0.05, 0.5),
+    ...     valid_v_m_s=(0.5, 8.0),
+    ...     predicted=Predicted(rms_m_s=0.2, bias_m_s=0.0, p_overspeed=0.1, switchings=2.0),
+    ... )
+    >>> table
+    PassageTable(by-hand: 2 passages, 2 stages, predicted rms 0.2000 m/s)
     """
 
     id: Annotated[str, TABLE_NAME]
@@ -113,7 +159,7 @@ class PassageTable:
 
     @property
     def entrance_stage(self) -> int:
-        """The highest stage that may be commanded before the entrance, for `rule.wanted_stage`."""
+        """The highest stage that may be commanded before the entrance."""
         return self.approach.entrance_stage
 
     def with_validated(self, validated: Validated) -> PassageTable:

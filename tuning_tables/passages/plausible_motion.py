@@ -21,6 +21,18 @@ class PlausibleMotion:
     """Limits for `tracker.believed_passage`, all inclusive.
 
     Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables import PlausibleMotion
+    >>> PlausibleMotion(
+    ...     speed_m_s=(0.5, 10.0),
+    ...     acceleration_m_s2=0.5,
+    ...     deceleration_m_s2=4.0,
+    ...     speed_tolerance=0.05,
+    ...     path_tolerance_m=0.5,
+    ... ).numbers
+    (0.5, 10.0, 0.5, 4.0, 0.05, 0.5)
     """
 
     speed_m_s: Annotated[

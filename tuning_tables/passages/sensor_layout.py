@@ -48,6 +48,24 @@ class SensorLayout:
     before the entrance. Speed is the base over the time between the pulses of the two coils.
 
     Raises `InvalidTable`.
+
+    Examples
+    --------
+    >>> from tuning_tables import DecidesOn, SensorLayout
+    >>> sensors = SensorLayout(
+    ...     path_m=(-1.0, 6.0),
+    ...     base_m=0.2,
+    ...     base_tolerance=0.002,
+    ...     timer_noise_s=1e-4,
+    ...     timer_resolution_s=1e-4,
+    ...     computing_delay_s=0.02,
+    ...     scan_period_s=0.02,
+    ...     decides_on=DecidesOn.FIRST_AXLE,
+    ... )
+    >>> sensors.heard(axle_offsets_m=(0.0, 10.5))
+    ((0, 0, -1.0), (1, 0, 6.0), (0, 1, 9.5), (1, 1, 16.5))
+    >>> sensors.passages(axle_offsets_m=(0.0, 10.5), exit_m=22.5)
+    ((0, 0, -1.0), (1, 0, 6.0))
     """
 
     path_m: Annotated[

@@ -19,7 +19,7 @@ from tuning_tables.language.st_layout import is_array, section, with_values
 from tuning_tables.language.st_unit import ArrayOf, Block, Export, Part, Structure, Unit, Variable, VariableType
 
 HEAD: Final = (
-    "SCL for the TIA Portal, made from the Structured Text of the export: docs/how-to/plc-tia.md tells what differs.",
+    "SCL for the TIA Portal, made from the Structured Text of the export: docs/how-to/plc.md states what differs.",
     "",
 )
 STATIC: Final = "Constants. VAR CONSTANT takes no arrays, so they are variables that nothing writes."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -17,13 +17,21 @@ if TYPE_CHECKING:
 
 MOST_COLUMNS = 5
 
+NO_BOUND: Final = (
+    "The solver's lines are no lower bound: they are not polished and go one stage a command; tables are polished and\n"
+    "may pass over stages. The polish ends early: a few per cent between two degrees tell as much of it as of them."
+)
+"""Why a fit may be better than what it was fitted to, and a low degree better than a high one."""
+
 
 def figures(found: Degrees) -> Mapping[str, Figure]:
     """One panel a case: rms in m/s over degree, predicted as for an exported table; logarithmic, one scale for all."""
     columns = min(len(found.cases), MOST_COLUMNS)
     rows = math.ceil(len(found.cases) / columns)
-    figure = new_figure(max(8.0, 2.7 * columns + 0.7), 2.7 * rows + 1.6, "Exit-speed error by degree of the lines")
-    place(figure, left=0.75, right=0.2, bottom=0.95, top=0.75, w=0.1, h=0.3)
+    figure = new_figure(
+        max(8.0, 2.7 * columns + 0.7), 2.7 * rows + 1.95, "Exit-speed error by degree of the lines", NO_BOUND
+    )
+    place(figure, left=0.75, right=0.2, bottom=0.95, top=1.1, w=0.1, h=0.3)
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, case in zip(panels.flat, found.cases, strict=False):
         draw_case(axes, case)
@@ -37,7 +45,7 @@ def figures(found: Degrees) -> Mapping[str, Figure]:
     handles = [
         Line2D([], [], color=ORANGE, marker="s", linestyle="--", label="fitted by weighted least squares"),
         Line2D([], [], color=BLUE, marker="o", label="polished on the evaluated policy"),
-        Line2D([], [], color=INK, linestyle=":", label="solver's lines, not smoothed"),
+        Line2D([], [], color=INK, linestyle=":", label="solver's lines, neither polished nor smoothed"),
     ]
     legend_below(figure, handles, columns=len(handles))
     return {"": figure}

@@ -14,7 +14,8 @@ from synth.hump.trains.normal_hump_position import LibraryBrake, NormalHumpPosit
 from synth.hump.trains.resolved_trial import resolve_trial
 from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.trial import Control, Floats, HumpTrial, Sensing, TrainSource
+from synth.hump.trains.train_source import TrainSource
+from synth.hump.trains.trial import Control, Floats, HumpTrial, Sensing
 
 NAME = "hump-day"
 

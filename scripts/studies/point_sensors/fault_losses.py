@@ -10,12 +10,12 @@ import numpy as np
 
 from scripts.studies.point_sensors.rows import FaultRow
 from scripts.studies.point_sensors.sensor_fault_figures import FaultCase, FaultFigures, fault_figures, single_faults
+from scripts.studies.point_sensors.sensor_faults import together
 from scripts.studies.point_sensors.sensor_table import SensorTable
 from scripts.studies.point_sensors.sites import Site
 from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.passage_controller import of_table
 from synth.simulation.random_passes import RandomPasses
-from synth.simulation.sensor_faults import together
 
 WIDE: dict[str, Any] = {
     "least_m_s": np.float32(0.01),

@@ -7,6 +7,7 @@ from dataclasses import replace
 from plant_models import PointSensors
 from scripts.studies.point_sensors.layouts import planned
 from scripts.studies.point_sensors.rows import MissedRow
+from scripts.studies.point_sensors.sensor_faults import DeadSensor, SensorFault, together
 from scripts.studies.point_sensors.sensor_table import AXLES, tabulated
 from scripts.studies.point_sensors.sites import Site
 from scripts.studies.point_sensors.worth import tuned_at
@@ -16,7 +17,6 @@ from synth.retarder.sensors.layout_plan import LayoutProblem
 from synth.simulation.exit_statistics import ExitStatistics, exit_statistics
 from synth.simulation.passage_controller import of_table
 from synth.simulation.random_passes import RandomPasses
-from synth.simulation.sensor_faults import DeadSensor, SensorFault, together
 
 
 def missed_row(

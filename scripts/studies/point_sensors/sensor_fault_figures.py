@@ -6,12 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from plant_models import PointSensors
-from synth.kernels.loop.passes import Draws
-from synth.simulation.exit_statistics import ExitStatistics, exit_statistics, rms_ratio
-from synth.simulation.passage_controller import PassageController
-from synth.simulation.passage_loop import PassageLoop
-from synth.simulation.replicates import Interval
-from synth.simulation.sensor_faults import (
+from scripts.studies.point_sensors.sensor_faults import (
     DeadSensor,
     LateSensor,
     LoneAxle,
@@ -24,6 +19,11 @@ from synth.simulation.sensor_faults import (
     SwappedSensors,
     together,
 )
+from synth.kernels.loop.passes import Draws
+from synth.simulation.exit_statistics import ExitStatistics, exit_statistics, rms_ratio
+from synth.simulation.passage_controller import PassageController
+from synth.simulation.passage_loop import PassageLoop
+from synth.simulation.replicates import Interval
 
 
 @dataclass(frozen=True)

@@ -13,26 +13,24 @@ from matplotlib.patches import Patch
 
 from synth.aim.aim_curves import RUNNERS, Runners
 from synth.aim.scene import AimScene
+from synth.frame.picture.category_colour import category_colour
 from synth.frame.picture.house_style import (
-    BLUE,
-    GREEN,
     GREY,
     INK,
     LINE_STYLES,
     PALE_GREY,
-    VERMILLION,
     dress,
     legend_below,
     new_figure,
     place,
 )
 
-LOOKS = (VERMILLION, BLUE, GREEN)
-"""Of a bad, a middling and a good runner."""
+LOOKS = LINE_STYLES[1], LINE_STYLES[0], LINE_STYLES[3]
+"""Strokes of a bad, a middling and a good runner; the colour is that of the category."""
 
 
 def track(scene: AimScene, rolled: Sequence[Runners]) -> Figure:
-    """Height over distance from the crest, energy heads above it; a line style for each category."""
+    """Height over distance from the crest, energy heads above it, in the colour of each category."""
     figure = new_figure(
         10.5,
         5.2,
@@ -47,17 +45,24 @@ def track(scene: AimScene, rolled: Sequence[Runners]) -> Figure:
     height = end - scene.track.fall_m(x)
     axes.fill_between(x, height, min(0.0, float(height.min())), color=PALE_GREY, linewidth=0.0)
     axes.plot(x, height, color=INK, linewidth=1.4)
-    for style, each in zip(LINE_STYLES, rolled, strict=False):
+    for each in rolled:
+        colour = category_colour(each.category.number)
         ground = end - scene.track.fall_m(each.head_m)
-        for colour, head in zip(LOOKS, each.energy_head_m, strict=True):
+        for style, head in zip(LOOKS, each.energy_head_m, strict=True):
             rolls = head > 0.0
             axes.plot(each.head_m[rolls], (ground + head)[rolls], color=colour, linewidth=1.4, linestyle=style)
     mark(axes, scene)
     names = ("bad", "middling", "good")
     handles: list[Artist] = [
-        Line2D([], [], color=colour, linestyle=style, label=f"{each.category.name}, {name} ({100.0 * q:g} of 100)")
-        for style, each in zip(LINE_STYLES, rolled, strict=False)
-        for colour, name, q in zip(LOOKS, names, RUNNERS, strict=True)
+        Line2D(
+            [],
+            [],
+            color=category_colour(each.category.number),
+            linestyle=style,
+            label=f"{each.category.name}, {name} ({100.0 * q:g} of 100)",
+        )
+        for each in rolled
+        for style, name, q in zip(LOOKS, names, RUNNERS, strict=True)
     ]
     handles += [
         Line2D([], [], color=GREY, linewidth=5, label="measured stretch"),

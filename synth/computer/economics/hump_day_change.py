@@ -15,9 +15,11 @@ from synth.computer.economics.hump_rates import RATES, HumpChange, HumpRates
 from synth.computer.economics.uncertainty.ranges import Range, range_of
 from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.shift_sums import longer_shifts, shift_sums
 from synth.hump.trains.train_figures import FEWEST_TRAINS, train_figures
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 SECONDS_PER_H = 3600.0
 
@@ -45,7 +47,8 @@ class HumpDayChange:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class TrainSums:
-    """Of n trains, what each figure of `HumpRates` counts and what it is a share of: `hits`, `base` (8, n)."""
+    """Of n trains, or shifts of them, what each figure of `HumpRates` counts and what it is a share of: `hits`, `base`
+    (8, n)."""
 
     hits: Floats
     base: Floats
@@ -57,8 +60,8 @@ class TrainSums:
         return HumpRates(**{name: float(ratio) for name, ratio in zip(RATES, ratios, strict=True)})
 
 
-def train_sums(found: TrainOutcomes) -> TrainSums:
-    """What the trains of a hump trial count, in the order of `HumpRates`."""
+def train_sums(found: TrainOutcomes, shift: Ints | None = None) -> TrainSums:
+    """What the trains of a hump trial count, in the order of `HumpRates`, by shift: its own, or others (n,)."""
     cuts, judged = found.cuts.astype(float), found.judged.astype(float)
     hits = (
         SECONDS_PER_H * found.span_cars,
@@ -69,7 +72,8 @@ def train_sums(found: TrainOutcomes) -> TrainSums:
         found.gap_m,
     )
     base = (found.span_s, cuts, cuts, cuts, judged, judged, judged, judged)
-    return TrainSums(np.array(hits, dtype=float), np.array(base, dtype=float))
+    summed = (np.array([shift_sums(found, np.asarray(each), shift) for each in rows]) for rows in (hits, base))
+    return TrainSums(*summed)
 
 
 def figures_of_trains(name: str, found: TrainOutcomes) -> HumpDayFigures:
@@ -109,7 +113,8 @@ def same_trains(today: TrainOutcomes, new: TrainOutcomes) -> tuple[TrainSums, Tr
         f"the variants humped {len(today)} and {len(new)} trains that are not the same; pairs must be",
     )
     require(len(today) >= FEWEST_TRAINS, f"the variants have {len(today)} trains; intervals take two or more")
-    return train_sums(today), train_sums(new)
+    shift = longer_shifts(today, new)
+    return train_sums(today, shift), train_sums(new, shift)
 
 
 def change_of_figures(today: HumpDayFigures, new: HumpDayFigures) -> HumpDayChange:

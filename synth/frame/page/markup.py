@@ -62,6 +62,11 @@ def table_cell(cell: str | Cell, names_row: bool) -> Markup:
     return element("td", cell.text, class_=cell.kind, title=cell.note)
 
 
+def fold(summary: str, *content: str) -> Markup:
+    """What is seen only when it is opened; `summary` says what it is."""
+    return element("details", element("summary", summary), *content)
+
+
 def head_row(*cells: str | tuple[str, int]) -> Markup:
     """A head row; (text, n): a cell over n columns."""
     parts = []

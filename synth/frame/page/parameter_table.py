@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from plant_models.library import SourcedValue, Value, sources_cited_in
-from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.page.markup import Cell, Markup, element, fold, head_row, joined, table
 from synth.frame.printed_numbers import ABSENT, counted
 
 COLUMNS = ("key", "value", "unit", "sensible range", "origin", "confidence", "")
@@ -20,7 +20,7 @@ def parameter_section(parameters: Sequence[SourcedValue]) -> Markup:
     )
     rows = [(parameter_row(parameter), "assumed" if parameter.assumed else "") for parameter in parameters]
     shown = table("Parameters", (head_row(*COLUMNS),), rows, kind="parameters")
-    return joined((element("p", lead), shown, source_list(parameters)))
+    return joined((element("p", lead), fold("All parameters, and their sources", shown, source_list(parameters))))
 
 
 def source_list(parameters: Sequence[SourcedValue]) -> Markup:

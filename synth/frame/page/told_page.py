@@ -1,16 +1,20 @@
-"""The page of a run: the verdict first, then the chapters, the origin of every number, and the limits."""
+"""The page of a run: verdict, what to do first and tiles, then the chapters, the origin of every number, the limits."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import version
+from itertools import groupby
+from typing import Final
 
-from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
+from synth.frame.exhibits import Chapter, Chart, Exhibit, File, Sentence, Table, Tile, Tiles, exhibits_of
 from synth.frame.page.document import Stamp, document, figure, file_table
-from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.page.markup import Markup, element, fold, joined
+from synth.frame.page.page_table import table_or_words
 from synth.frame.page.parameter_table import parameter_section
 from synth.frame.picture.picture import Picture
+from synth.frame.printed_numbers import counted
 from synth.frame.told import Told
 
 VERDICTS = {True: ("Accepted", "accepted"), False: ("Not accepted", "refused"), None: ("Not decidable", "undecided")}
@@ -18,22 +22,51 @@ VERDICTS = {True: ("Accepted", "accepted"), False: ("Not accepted", "refused"), 
 
 WORDS = {True: "kept", False: "missed", None: "not decidable"}
 
+MOST_LIMITS: Final = 4
+"""Limits that stand in the verdict; what is more is behind a fold."""
+
 
 def page_of(told: Told, pictures: Mapping[str, Picture], hashes: Mapping[str, str]) -> str:
     """One HTML document that loads nothing; `pictures` by name, `hashes`: SHA-256 of the other files by name."""
     head = told.head
     stamp = Stamp(head.title, told.created, version("retarder-synth"), head.sha256)
-    return document(stamp, verdict_box(told), tuple(sections(told, pictures, hashes)))
+    return document(stamp, first_screen(told), tuple(sections(told, pictures, hashes)))
+
+
+def first_screen(told: Told) -> Markup:
+    """What a reader must know who reads no further: the verdict, what to do first, and the main figures."""
+    exhibits = tuple(exhibits_of(told.chapters))
+    to_do = [each.text for each in exhibits if isinstance(each, Sentence) and each.to_do]
+    tiles = [each for of in exhibits if isinstance(of, Tiles) for each in of.tiles]
+    return joined((verdict_box(told), to_do_box(to_do), tile_row(tiles)))
 
 
 def verdict_box(told: Told) -> Markup:
     """Accepted, not, or not decidable, limit by limit; nothing where nothing is judged."""
-    if not told.verdict.limits:
+    limits = told.verdict.limits
+    if not limits:
         return Markup()
-    items = (element("li", f"{WORDS[limit.kept]}: {limit.sentence}") for limit in told.verdict.limits)
+    items = [element("li", f"{WORDS[limit.kept]}: {limit.sentence}") for limit in limits]
     word, style = VERDICTS[told.verdict.kept]
-    head = element("p", element("strong", word))
-    return element("section", head, element("ul", *items), class_=f"verdict {style}", id="verdict")
+    head, more = element("p", element("strong", word)), items[MOST_LIMITS:]
+    rest = fold(f"{counted(len(more), 'more limit')}", element("ul", *more)) if more else ""
+    first = element("ul", *items[:MOST_LIMITS])
+    return element("section", head, first, rest, class_=f"verdict {style}", id="verdict")
+
+
+def to_do_box(sentences: Sequence[str]) -> Markup:
+    """What to do first, a step each."""
+    if not sentences:
+        return Markup()
+    steps = (element("li", each) for each in sentences)
+    return element(
+        "section", element("p", element("strong", "What to do first")), element("ol", *steps), class_="to-do"
+    )
+
+
+def tile_row(tiles: list[Tile]) -> Markup:
+    """Figures at a glance side by side."""
+    return element("div", *(tile(each) for each in tiles), class_="tiles") if tiles else Markup()
 
 
 def sections(
@@ -41,7 +74,9 @@ def sections(
 ) -> Iterator[tuple[str, str, Markup]]:
     """(anchor, heading, content) in the order of the page."""
     for chapter in told.chapters:
-        yield anchor_of(chapter), chapter.heading, joined(shown(each, pictures) for each in chapter.exhibits)
+        content = chapter_content(chapter, pictures)
+        if content:  # all of it may stand on the first screen
+            yield anchor_of(chapter), chapter.heading, content
     yield "parameters", "Parameters", parameter_section(told.head.parameters)
     if told.limits_of_use:
         yield "limits", "Limits of use", element("ul", *(element("li", each) for each in told.limits_of_use))
@@ -53,15 +88,20 @@ def anchor_of(chapter: Chapter) -> str:
     return re.sub(r"[^a-z0-9]+", "-", chapter.heading.lower()).strip("-")
 
 
+def chapter_content(chapter: Chapter, pictures: Mapping[str, Picture]) -> Markup:
+    """The exhibits one after another; pictures that follow one another stand side by side where there is room."""
+    groups = groupby(chapter.exhibits, lambda each: isinstance(each, Chart))
+    parts = ((of_charts, joined(shown(each, pictures) for each in group)) for of_charts, group in groups)
+    return joined(element("div", part, class_="figures") if of_charts and part else part for of_charts, part in parts)
+
+
 def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
-    """One exhibit; a chart that was not drawn and a file without a title leave nothing here."""
+    """One exhibit; what stands on the first screen, was not drawn, or has no title leaves nothing here."""
     match exhibit:
-        case Sentence():
+        case Sentence() if not exhibit.to_do:
             return element("p", exhibit.text)
-        case Tiles():
-            return element("div", *(tile(each) for each in exhibit.tiles), class_="tiles")
         case Table():
-            return joined((element("h3", exhibit.title), table_or_words(exhibit)))
+            return table_or_words(exhibit)
         case Chart() if exhibit.name in pictures:
             return figure(pictures[exhibit.name])
         case File() if exhibit.title:
@@ -73,22 +113,3 @@ def tile(of: Tile) -> Markup:
     """A figure at a glance."""
     style = "tile" if of.kept is None else f"tile {VERDICTS[of.kept][1]}"
     return element("div", element("strong", of.figure), element("p", of.of), class_=style)
-
-
-def table_or_words(of: Table) -> Markup:
-    """The table, or a sentence about one that is empty or too long for a page."""
-    if not of.rows:
-        return element("p", "None.")
-    return element("p", f"{len(of.rows)} rows in {of.file}.") if of.long else shown_table(of)
-
-
-def shown_table(of: Table) -> Markup:
-    """The table with all columns that hold figures."""
-    rows = (([cell(column, row) for column in of.seen], "bad" if of.bad(row) else "") for row in of.rows)
-    return table(of.title, (head_row(*(column.title for column in of.seen)),), rows, kind="cases")
-
-
-def cell(column: Column, row: Row) -> Cell:
-    """One figure, or words."""
-    kind = "words" if column.words else "meta" if column.grey(row.get(column.key)) else ""
-    return Cell(column.text(row), kind=kind)

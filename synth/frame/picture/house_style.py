@@ -20,6 +20,9 @@ GREY, PALE_GREY, INK = "#767676", "#e6e6e6", "#222222"
 
 DOTS_PER_INCH = 110
 
+FONTS: Final = ("DejaVu Sans", "Verdana", "sans-serif")
+"""matplotlib measures with the first, which it brings along; the second is as wide, and most computers have it."""
+
 MATHEMATICS: Final = "mathematics"
 """Label of a text whose `$…$` is set as mathematics; in all others a `$` is one, as users write it in titles."""
 

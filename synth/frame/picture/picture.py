@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Final
+
+DARKENED: Final = "invert(.92) hue-rotate(180deg)"
+"""What makes a drawing on white one on dark ground: blue stays blue, black becomes nearly white."""
 
 
 @dataclass(frozen=True)

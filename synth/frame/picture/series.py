@@ -12,8 +12,9 @@ from synth.frame.picture.house_style import LINE_MARKERS
 
 
 def graded(count: int) -> tuple[str, ...]:
-    """`count` colours in an order that is one in grey, too: dark blue to yellow, its palest end left out."""
-    scale = colormaps["viridis"]
+    """`count` colours in an order that is one in grey, too: dark blue over red to yellow, its palest end left out; they
+    are none of those of the weight categories."""
+    scale = colormaps["plasma"]
     return tuple(to_hex(scale(0.9 * place / max(count - 1, 1))) for place in range(count))
 
 

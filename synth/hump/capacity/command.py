@@ -51,9 +51,10 @@ def head(asked: AskedCapacity) -> Head:
 
 def steps(asked: AskedCapacity) -> Steps:
     """A step for each batch of each point."""
-    from synth.hump.trains.trial import BATCH
+    from synth.hump.trains.batch import batches
 
-    return Steps(-(-asked.number // BATCH) * len(asked.every_point), "humping", "batches")
+    of_points = (batches(asked.number, each.config.settings.tracks.shift_trains) for each in asked.every_point)
+    return Steps(sum(of_points), "humping", "batches")
 
 
 def compute(asked: AskedCapacity, work: Work) -> FoundCapacity:

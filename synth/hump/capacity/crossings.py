@@ -9,6 +9,7 @@ import numpy as np
 from plant_models.frozen_arrays import frozen_arrays
 from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.shift_sums import Ints, shift_sums
 from synth.hump.trains.trial import Floats
 
 REPLICATES = 2000
@@ -54,21 +55,22 @@ class Sums:
         return np.where(faster.any(axis=1) & (behind > 0), share, np.nan)
 
 
-def sums_of(outcomes: list[TrainOutcomes], weights: Floats) -> Sums:
-    """Those of the programs of a curve; `weights` (rows, trains): how often each train is drawn."""
+def sums_of(outcomes: list[TrainOutcomes], weights: Floats, shift: Ints | None = None) -> Sums:
+    """Those of the programs of a curve; `weights` (rows, shifts): how often each shift is drawn; `shift` (trains,):
+    other shifts that the trains are counted in."""
 
     def total(name: str) -> Floats:
-        return np.stack([weights @ getattr(each, name).astype(float) for each in outcomes], axis=1)
+        return np.stack([weights @ shift_sums(each, getattr(each, name), shift) for each in outcomes], axis=1)
 
     seconds = total("span_s")
     return Sums(total("caught") / total("cuts"), total("span_m") / seconds, 3600.0 * total("span_cars") / seconds)
 
 
-def drawn_weights(trains: int, seed: int) -> Floats:
-    """Bootstrap weights (1 + REPLICATES, trains); the first row is one each."""
+def drawn_weights(shifts: int, seed: int) -> Floats:
+    """Bootstrap weights (1 + REPLICATES, shifts); the first row is one each."""
     rng = np.random.default_rng(np.random.SeedSequence(seed))
-    drawn = rng.multinomial(trains, np.full(trains, 1.0 / trains), REPLICATES)
-    return np.concatenate((np.ones((1, trains)), drawn.astype(float)))
+    drawn = rng.multinomial(shifts, np.full(shifts, 1.0 / shifts), REPLICATES)
+    return np.concatenate((np.ones((1, shifts)), drawn.astype(float)))
 
 
 def enough_for(limit: float, cuts: int) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +12,7 @@ from synth.frame.input_error import InputError
 from synth.frame.results_directory import SUMMARY
 from synth.hump.configuration.trial_file import INPUTS
 from synth.hump.trains.outcome_file import TRAINS, from_npz, trains_of
-from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.outcomes import TrainOutcomes, some_of
 from synth.hump.trains.resolved_trial import ResolvedTrial, load_trial
 from synth.hump.trains.trial_inputs import CONFIG
 
@@ -25,18 +25,13 @@ class HumpedRun:
     config: ResolvedTrial
     found: TrainOutcomes
 
-    @property
-    def category_names(self) -> tuple[str, ...]:
-        """Names of the weight categories in their places."""
-        return tuple(member.label for member in self.config.categories.members)
-
 
 def runs_in(folders: Sequence[Path]) -> tuple[HumpedRun, ...]:
     """The runs in these directories, all with the same trains. `InputError`, `TableError` for a damaged file."""
     names = names_of(folders)
     runs = [run_in(folder, name) for folder, name in zip(folders, names, strict=True)]
     count = min(len(run.found) for run in runs)
-    common = [replace(run, found=first_trains(run.found, count)) for run in runs]
+    common = [replace(run, found=some_of(run.found, np.arange(count))) for run in runs]
     for run in common[1:]:
         require_same_trains(common[0], run)
     return tuple(common)
@@ -71,11 +66,6 @@ def run_in(folder: Path, name: str) -> HumpedRun:
     path = folder / TRAINS
     found = from_npz(path.read_bytes(), str(path), trial, config.settings.trains.number)
     return HumpedRun(name, config, found)
-
-
-def first_trains(found: TrainOutcomes, count: int) -> TrainOutcomes:
-    """The first `count` of some trains."""
-    return TrainOutcomes(*(getattr(found, each.name)[:count] for each in fields(TrainOutcomes)))
 
 
 def require_same_trains(one: HumpedRun, other: HumpedRun) -> None:

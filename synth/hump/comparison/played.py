@@ -34,7 +34,8 @@ def played(runs: Sequence[HumpedRun]) -> Iterator[Exhibit]:
     titles = [each.title for each in chosen]
     shown = [
         PlayedRun(
-            run.name, run.config.hump, tuple(train.traced() for train in trains), run.category_names,
+            run.name, run.config.hump, tuple(train.traced() for train in trains),
+            run.config.categories.members,
             run.config.settings.couplings,
         )
         for run, trains in zip(runs, again, strict=True)

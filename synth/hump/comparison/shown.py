@@ -8,6 +8,7 @@ from typing import Any, Final
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
 from synth.hump.comparison.compared_runs import HumpedRun
+from synth.hump.trains.shift_sums import in_shifts, shifts_in
 from synth.hump.trains.shown.figures import in_hundred, titles_of
 from synth.hump.trains.train_figures import FigureOf, figures_told, interval_of
 
@@ -15,8 +16,9 @@ FEWEST_EVENTS: Final = 10
 """Cuts in both runs together that a difference of shares needs: with fewer its interval holds the truth too seldom."""
 
 HOW_TO_READ: Final = (
-    "All runs humped the same trains. 'More than' tells a figure less that of the first run, paired by train, with its "
-    "95 % interval; grey where the interval holds 0, so that these trains do not decide whether there is a difference. "
+    "All runs humped the same trains. 'More than' tells a figure less that of the first run, paired by train, or by "
+    "shift, with its 95 % interval; grey where the interval holds 0, so that these trains do not decide whether there "
+    "is a difference. "
     f"A share has no difference where fewer than {FEWEST_EVENTS} cuts of both runs count."
 )
 
@@ -36,8 +38,9 @@ def figures(runs: Sequence[HumpedRun]) -> Iterator[Exhibit]:
     )
     told = figures_told(first.found)
     more = f"more than {first.name}"
+    counted = "trains, or shifts" if any(in_shifts(run.found) for run in runs) else "trains"
     for columns, name, title, is_share in (
-        (mean_columns(more), "means", "Means over trains", False),
+        (mean_columns(more, counted), "means", "Means over trains", False),
         (share_columns(more), "shares", "Shares of cuts", True),
     ):
         rows = [row_of(each, run, first) for each in told if each.is_share == is_share for run in runs]
@@ -52,14 +55,14 @@ NAMES: Final = (
 )
 
 
-def mean_columns(more: str) -> tuple[Column, ...]:
-    """Those of means; `more`: what a difference is called."""
+def mean_columns(more: str, counted: str) -> tuple[Column, ...]:
+    """Those of means; `more`: what a difference is called; `counted`: what n counts."""
     return (
         *NAMES,
         Column("value", "mean"),
         Column("unit", "unit", words=True),
         Column("difference", more, grey=undecided),
-        Column("n", "trains", spare=1),
+        Column("n", counted, spare=1),
     )
 
 
@@ -92,4 +95,4 @@ def difference(figure: FigureOf, run: HumpedRun, first: HumpedRun) -> Interval |
     events = figure.hits(run.found).sum() + figure.hits(first.found).sum()
     if figure.is_share and events < FEWEST_EVENTS:
         return None
-    return interval_of(*figure.difference(run.found, first.found), len(run.found))
+    return interval_of(*figure.difference(run.found, first.found), min(shifts_in(run.found), shifts_in(first.found)))

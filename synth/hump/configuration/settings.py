@@ -70,7 +70,11 @@ class TrainSettings(CountedTrains):
 
 
 class TracksSettings(Section):
-    """Where cars stand before each train, and what holds cuts ahead of them."""
+    """Where cars stand before each train, and what holds cuts ahead of them.
+
+    In a shift, a track without room for the next train is pushed up, so that its gaps close, and pulled if that is not
+    enough.
+    """
 
     standing: Literal["drawn", "file"] = choice(
         "drawn", "drawn anew for each train, or as the hump file tells (standing_m)"
@@ -82,6 +86,14 @@ class TracksSettings(Section):
     free_high: float = setting(
         0.9, "1", 0.0, 1.0, "largest free share; all between are equally frequent",
         f"{JUDGEMENT}: nothing was found on how full tracks are",
+    )  # fmt: skip
+    shift_trains: int = setting(
+        1, "1", 1, 500, "trains of a shift, which come to the same tracks one after the other; 1: no track fills up",
+        f"{JUDGEMENT}: each train finds tracks of its own",
+    )  # fmt: skip
+    pulled_from_share: float = setting(
+        0.8, "1", 0.05, 1.0, "in a shift, a track whose cars take this share of its length is pulled before a train",
+        f"{JUDGEMENT}: as full as the fullest tracks before a train; nothing was found on when tracks are pulled",
     )  # fmt: skip
     skates_share: float = setting(
         0.0, "1", 0.0, 0.99,

@@ -29,13 +29,24 @@ class BatchOrder:
         return f"trains {self.first + 1} to {self.first + self.count}"
 
 
+def trains_of_batch(shift_trains: int) -> int:
+    """How many trains are humped in one batch; `shift_trains`: of each shift."""
+    return BATCH * shift_trains
+
+
+def batches(number: int, shift_trains: int) -> int:
+    """In how many batches so many trains are humped."""
+    return -(-number // trains_of_batch(shift_trains))
+
+
 def orders_of(trial: HumpTrial, trains_sha256: str, number: int) -> Iterator[BatchOrder]:
     """The batches of `number` trains; `trains_sha256`: of all that each of them depends on."""
     software = software_sha256()
     trains = hashlib.sha256(f"{trains_sha256}\0{software}".encode()).hexdigest()
     one_thread = replace(trial, threads=1)
-    for first in range(0, number, BATCH):
-        count = min(BATCH, number - first)
+    most = trains_of_batch(trial.shift.trains)
+    for first in range(0, number, most):
+        count = min(most, number - first)
         yield BatchOrder(f"{trains[:32]}-{first}-{count}", first, count, software, one_thread)
 
 

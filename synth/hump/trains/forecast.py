@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
+from synth.hump.trains.known_rolls import KnownRolls, Leg, Legs
 from synth.hump.trains.motion import Cars, Moving, Push, rolled_free
 from synth.kernels.roll import exit_choices as kernel
 
@@ -28,12 +29,14 @@ SLOWEST_M_S = 0.1
 @dataclass(frozen=True, eq=False)
 class Expected:
     """Cuts as a control knows them, (n,): `cars` roll as it expects; first and last axles behind the head;
-    `braked_m2_s2` (n, positions): most loss of v² to the brake of each position."""
+    `braked_m2_s2` (n, positions): most loss of v² to the brake of each position; `rolled`: what was worked out of them
+    before."""
 
     cars: Cars
     first_axle_m: Floats
     last_axle_m: Floats
     braked_m2_s2: Floats
+    rolled: KnownRolls
 
 
 class Choices(Protocol):
@@ -147,10 +150,24 @@ def from_crest(routes: HumpRoutes, expected: Expected, start: Moving, push: Push
     """From the crest on, where the heads are at `start` after the `push`; `choices` of all positions."""
     heads = heads_m(routes, expected)
     to = np.maximum(entrance_m(routes, expected, 0), start.head_m)
-    end, times = rolled_free(expected.cars, start, to, heads)
+    leg = rolled(expected, ("from the crest", 0, 1), start.head_m, start.speed_m_s[:, None], to, heads)
     known = push.times_s(start, heads)
-    before = np.where(np.isnan(known), times, known)
+    before = np.where(np.isnan(known), start.time_s[:, None] + leg.marks_s[:, 0], known)
+    end = Moving(to, leg.ends_m_s[:, 0], start.time_s + leg.ends_s[:, 0])
     return through(routes, expected, end, before, 0, choices)
+
+
+def rolled(expected: Expected, name: Leg, from_m: Floats, speeds_m_s: Floats, to_m: Floats, marks_m: Floats) -> Legs:
+    """Free rolls of the cuts over a leg from the heads at `from_m` to `to_m` (n,), with each of `speeds_m_s` (n, c)."""
+
+    def roll(some: Ints) -> Legs:
+        shape = len(some), speeds_m_s.shape[1]
+        each = np.repeat(some, shape[1])
+        begins = Moving(from_m[each], speeds_m_s[some].reshape(-1), np.zeros(len(each)))
+        ends, times = rolled_free(expected.cars.chosen(each), begins, to_m[each], marks_m[each])
+        return Legs(times.reshape(*shape, -1), ends.time_s.reshape(shape), ends.speed_m_s.reshape(shape))
+
+    return expected.rolled.found(name, expected.cars, np.column_stack((speeds_m_s, from_m)), roll)
 
 
 def from_entrance(
@@ -170,14 +187,14 @@ def through(
     begins = np.maximum(entrance_m(routes, expected, position), start.head_m)
     for place, of_one in enumerate(choices, position):
         stretches.append(stretch(routes, expected, place, heads, Moving(begins, fastest, np.zeros(count)), of_one))
-        fastest, begins = stretches[-1].ends_m_s.max(axis=1), entrance_m(routes, expected, place + 1)
+        fastest, begins = stretches[-1].behind.ends_m_s.max(axis=1), entrance_m(routes, expected, place + 1)
     counts = np.array([each.speeds_m_s.shape[1] for each in stretches])
     wide = most, count, int(counts.max())
     speeds, ends, ends_speed = (np.zeros(wide) for _ in range(3))
     roll = np.full((*wide, marks), np.nan)
     for place, (chosen, each) in enumerate(zip(counts, stretches, strict=True)):
-        speeds[place, :, :chosen], roll[place, :, :chosen] = each.speeds_m_s, each.roll_s
-        ends[place, :, :chosen], ends_speed[place, :, :chosen] = each.ends_s, each.ends_m_s
+        speeds[place, :, :chosen], roll[place, :, :chosen] = each.speeds_m_s, each.behind.marks_s
+        ends[place, :, :chosen], ends_speed[place, :, :chosen] = each.behind.ends_s, each.behind.ends_m_s
     legs = kernel.Legs(
         time_s=start.time_s.copy(),
         speed_m_s=start.speed_m_s.copy(),
@@ -206,9 +223,7 @@ class Stretch:
     won_m2_s2: Floats
     path_m: Floats
     share: Floats
-    roll_s: Floats
-    ends_s: Floats
-    ends_m_s: Floats
+    behind: Legs
     most_entry_m_s: Floats
     least_entry_m_s: Floats
 
@@ -218,28 +233,24 @@ def stretch(
 ) -> Stretch:
     """`position` with each of the `choices` for cuts that come as at `start`, at the fastest. On a route that has no
     such position it has no length, at the end of the way that is forecast, and cuts keep their speed."""
-    count = len(heads_m)
     exit_m = routes.exit_m[expected.cars.routes, position]
     there = np.isfinite(exit_m)
     leaves = np.where(there, exit_m + expected.last_axle_m, start.head_m)
-    unbraked, _ = rolled_free(expected.cars, start, leaves, np.empty((count, 0)))
-    most = np.maximum(unbraked.speed_m_s, SLOWEST_M_S)
+    no_marks = np.empty((len(leaves), 0))
+    unbraked = rolled(expected, ("unbraked", position, 1), start.head_m, start.speed_m_s[:, None], leaves, no_marks)
+    unbraked_m_s = unbraked.ends_m_s[:, 0]
+    most = np.maximum(unbraked_m_s, SLOWEST_M_S)
     speeds = np.where(there[:, None], choices.speeds(most), most[:, None])
-    chosen = speeds.shape[1]
-    each = np.repeat(np.arange(count), chosen)
-    begins = Moving(leaves[each], speeds.reshape(-1), np.zeros(len(each)))
     ahead = entrance_m(routes, expected, position + 1)
-    ends, roll = rolled_free(expected.cars.chosen(each), begins, ahead[each], heads_m[each])
+    behind = rolled(expected, ("behind", position, speeds.shape[1]), leaves, speeds, ahead, heads_m)
     path = leaves - start.head_m
     share = (heads_m - start.head_m[:, None]) / np.where(there, path, np.nan)[:, None]
     return Stretch(
         speeds_m_s=speeds,
-        won_m2_s2=unbraked.speed_m_s**2 - start.speed_m_s**2,
+        won_m2_s2=unbraked_m_s**2 - start.speed_m_s**2,
         path_m=path,
         share=np.where((share > 0.0) & (share <= 1.0), share, np.nan),
-        roll_s=roll.reshape(count, chosen, -1),
-        ends_s=ends.time_s.reshape(count, chosen),
-        ends_m_s=ends.speed_m_s.reshape(count, chosen),
+        behind=behind,
         most_entry_m_s=np.where(there, choices.most_entry_m_s, np.inf),
         least_entry_m_s=np.where(there, choices.least_entry_m_s, 0.0),
     )

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
+from synth.kernels import crest_speeds as kernel
 
 Floats = NDArray[np.float64]
 
@@ -65,25 +66,11 @@ class WholeTrain:
     def speeds(self, apart_m: Floats, headway_s: Floats, limits: HumpSpeedLimits) -> Floats:
         """See `SpeedMethod`."""
         steps = np.array(limits.steps_m_s)
-        mean = 0.5 * (steps[:, None] + steps[None, :])
         trains, cuts, leaders = headway_s.shape
-        cost, came = np.zeros((trains, len(steps))), np.zeros((trains, cuts, len(steps)), dtype=np.int64)
-        since = np.zeros((trains, len(steps), leaders))  # from the cut 0, 1, … ahead of the last one to the last one
-        for cut in range(1, cuts):
-            time = apart_m[:, cut, None, None] / mean
-            short = np.zeros((trains, len(steps), len(steps)))
-            for leader in range(min(leaders, cut)):
-                short = np.maximum(short, headway_s[:, cut, leader, None, None] - time - since[:, :, leader, None])
-            total = cost[:, :, None] + np.where(limits.reachable(apart_m[:, cut]), time + SHORT_COSTS * short, np.inf)
-            came[:, cut] = best = total.argmin(axis=1)
-            cost = np.take_along_axis(total, best[:, None, :], axis=1)[:, 0]
-            took = np.take_along_axis(time, best[:, None, :], axis=1)[:, 0]
-            since = np.take_along_axis(since, best[:, :, None], axis=1) + took[:, :, None]
-            since = np.concatenate((np.zeros((trains, len(steps), 1)), since[:, :, :-1]), axis=2)
-        at, speeds = cost.argmin(axis=1), np.empty((trains, cuts))
-        for cut in range(cuts - 1, -1, -1):
-            speeds[:, cut] = steps[at]
-            at = np.take_along_axis(came[:, cut], at[:, None], axis=1)[:, 0]
+        speeds, work = np.empty((trains, cuts)), np.zeros((2, len(steps), leaders + 1))
+        came = np.zeros((cuts, len(steps)), dtype=np.int64)
+        most = 2.0 * limits.acceleration_m_s2
+        kernel.soonest_over_the_crest(apart_m, headway_s, steps, most, SHORT_COSTS, work, came, speeds)
         return speeds
 
 

@@ -41,9 +41,11 @@ class Hump:
 def humped(hump: Hump, trains: TrainCuts, free_m: Floats, speeds: HumpSpeeds, control: ExitSpeeds) -> TrainMemory:
     """Hump all `trains`; `free_m` (trains, routes): where the standing cars of each track begin before the train."""
     memory = TrainMemory(trains.trains, trains.cuts, hump.routes)
+    memory.found_free_m = free_m
     users, standing = LastUsers(trains.trains, hump.routes), StandingCars(free_m)
     for cut in range(trains.cuts):
         OneCut(hump, trains, cut, memory, users, standing).run(speeds, control)
+    memory.left_free_m = standing.free_m
     return memory
 
 
@@ -199,7 +201,7 @@ class OneCut:
         passed = self.hump.positions[position].passed(
             Arrivals(
                 rows=rows,
-                train=self.trains.first + lanes,
+                train=self.trains.numbers[lanes],
                 cut=np.full(len(lanes), self.cut),
                 position=position,
                 entry_m_s=start.speed_m_s,

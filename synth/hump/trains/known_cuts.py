@@ -11,6 +11,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY
 from plant_models.rolling.random_cuts import DrawnCuts
 from synth.hump.trains.forecast import Choices, Expected, Given
+from synth.hump.trains.known_rolls import KnownRolls
 from synth.hump.trains.motion import Cars, Rolls
 from synth.hump.trains.position_roles import Roles
 from synth.hump.trains.route_rolling import rolling_on
@@ -27,7 +28,7 @@ class KnownCuts:
     """All cuts of some trains, a row each: `rolls` with mean bends and wind; resistance: `mean_n_per_kn`, and that of
     good and of bad runners, `good_n_per_kn` and `bad_n_per_kn` (rows,). `aim` (rows,): exit speeds of
     positions that aim as they are expected before the train, and how fast cuts may come to them; `braked_m2_s2` (rows,
-    positions): most loss of v² to the brake of each position."""
+    positions): most loss of v² to the brake of each position. `rolled`: what was worked out of them before."""
 
     rolls: Rolls
     trains: int
@@ -42,6 +43,7 @@ class KnownCuts:
     bad_n_per_kn: Floats
     aim: Given
     braked_m2_s2: Floats
+    rolled: KnownRolls
 
     def of_cut(self, cut: int) -> Ints:
         """Rows of cut number `cut` of every train."""
@@ -51,7 +53,7 @@ class KnownCuts:
         """The cuts `rows` on `routes`, with the resistance (n,) that is expected of them."""
         cars = Cars(self.rolls, rows, routes, resistance_n_per_kn)
         axles = self.first_axle_m[rows], self.last_axle_m[rows]
-        return Expected(cars, *axles, self.braked_m2_s2[rows])
+        return Expected(cars, *axles, self.braked_m2_s2[rows], self.rolled)
 
     def aim_of(self, rows: Ints) -> Given:
         """What a position that aims is expected to make of the cuts `rows`."""
@@ -105,6 +107,7 @@ def known_as(trains: TrainCuts, rolls: Rolls, runners: Runners, aim: Given, brak
         bad_n_per_kn=runners.bad_n_per_kn,
         aim=aim,
         braked_m2_s2=braked_m2_s2,
+        rolled=KnownRolls(len(trains)),
     )
 
 

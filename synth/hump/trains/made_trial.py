@@ -22,9 +22,10 @@ from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.route_ways import route_ways
 from synth.hump.trains.skates import Skates
 from synth.hump.trains.table_hump_position import TableHumpPosition
+from synth.hump.trains.tracks_between import Shift
 from synth.hump.trains.train_plan import Planner
-from synth.hump.trains.train_source import DrawnSource, ListSource
-from synth.hump.trains.trial import ConstantSpeed, Control, HumpTrial, Program, Sensing, SimulatedPairs, TrainSource
+from synth.hump.trains.train_source import DrawnSource, ListSource, TrainSource
+from synth.hump.trains.trial import ConstantSpeed, Control, HumpTrial, Program, Sensing, SimulatedPairs
 from synth.hump.trains.trial_aim import trial_aim
 from synth.retarder.book_classes import book_classes
 from synth.retarder.table_class import TableClass
@@ -55,6 +56,7 @@ def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
         threads=threads,
         couplings=config.settings.couplings,
         skates=skates_of(config),
+        shift=shift_of(config),
     )
 
 
@@ -150,6 +152,12 @@ def skates_of(config: ResolvedTrial) -> Skates:
     """Skates on the tracks on which no position aims."""
     rows = np.flatnonzero(~config.roles.aims.any(axis=0))
     return Skates(config.settings.tracks.skates_share, tuple(rows.tolist()))
+
+
+def shift_of(config: ResolvedTrial) -> Shift:
+    """Which trains come to the same tracks."""
+    tracks = config.settings.tracks
+    return Shift(tracks.shift_trains, tracks.pulled_from_share)
 
 
 def free_of(config: ResolvedTrial) -> FreeTracks:

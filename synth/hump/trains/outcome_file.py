@@ -31,7 +31,7 @@ NUMBERS, TRIAL = "element_number", "trains_sha256"
 EDGES = {"speed_bin_edges_m_s": SPEED_BINS_M_S, "gap_bin_edges_m": GAP_BINS_M}
 """What stands besides: the numbers of the elements by column, of which trial the trains are, edges of histograms."""
 
-FLOATS = ("span_s", "span_m", "span_cars", "gap_m", "error2_m2_s2", "commands_m_s", "tightest_s")
+FLOATS = ("occupied", "span_s", "span_m", "span_cars", "gap_m", "error2_m2_s2", "commands_m_s", "tightest_s")
 """Fields of numbers that are not whole."""
 
 NO_ARCHIVE = (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError)

@@ -37,8 +37,11 @@ GAP_BINS_M = np.linspace(0.0, 600.0, 61)
 class TrainOutcomes:
     """n trains. Counts of cuts unless told otherwise, (n,).
 
-    `train`: its number; `span_s`: from the first cut at the crest to the last, in which `span_m` and `span_cars` went
-    over it, counted from middle to middle. (n, elements), by the numbers of the routes: `misrouted`, `contact`,
+    `train`: its number; `shift`: that of its shift, whose trains come to the same tracks one after the other.
+    `occupied`: share of the length of all tracks that cars, and gaps between them, took before it; `pushed_up`,
+    `pulled`: tracks that were so for it; `no_room`: cuts whose track had less free than their length. `span_s`: from
+    the first cut at the crest to the last, in which `span_m` and `span_cars` went over it, counted from middle to
+    middle. (n, elements), by the numbers of the routes: `misrouted`, `contact`,
     `unseparated`, `foul`. `caught`: cuts misrouted or in contact, but not in the last position (`caught_in_last`).
     `caught_on_track`: cuts that coupled to the one ahead while that rolled. `stopped`: on the way. `judged`: all
     others, which reached a track; of these `overspeed` (n, 3) coupled in each class of speed, `gap_m` is what they left
@@ -51,6 +54,11 @@ class TrainOutcomes:
     """
 
     train: Ints
+    shift: Ints
+    occupied: Floats
+    pushed_up: Ints
+    pulled: Ints
+    no_room: Ints
     cuts: Ints
     cars: Ints
     span_s: Floats
@@ -98,6 +106,18 @@ def joined(parts: Sequence[TrainOutcomes]) -> TrainOutcomes:
     return TrainOutcomes(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(TrainOutcomes)))
 
 
+def in_order(turns: Sequence[TrainOutcomes]) -> TrainOutcomes:
+    """The same by the number of the train; where shifts were humped side by side, each of `turns` has one train of
+    each."""
+    found = joined(turns)
+    return some_of(found, np.argsort(found.train))
+
+
+def some_of(found: TrainOutcomes, rows: Ints) -> TrainOutcomes:
+    """Some rows of trains."""
+    return TrainOutcomes(*(getattr(found, each.name)[rows] for each in fields(TrainOutcomes)))
+
+
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class PassLimits:
@@ -110,22 +130,15 @@ class PassLimits:
 
 def outcomes(
     routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory, able: PassLimits | None = None,
-    couplings: CouplingLimits = USUAL_COUPLINGS,
+    couplings: CouplingLimits = USUAL_COUPLINGS, of_shift: int = 1,
 ) -> TrainOutcomes:  # fmt: skip
-    """What is to be told of `trains` that were humped; without `able` no pass is counted as limited."""
+    """What is to be told of `trains` that were humped, `of_shift` a shift; without `able` no pass is counted as
+    limited."""
     shape = trains.trains, trains.cuts
-    none = routes.elements
-    last_retarder = routes.retarder[memory.route].max(axis=2)
-    in_last = (memory.misrouted_at == none) & (memory.contact_at == last_retarder)
-    caught = ((memory.misrouted_at < none) | (memory.contact_at < none)) & ~in_last
-    ends = memory.end_m
-    last = routes.release_m[memory.route]
-    stopped = ~caught & ~in_last & (ends < last)
-    judged = ~caught & ~in_last & ~stopped
-    speed = np.where(judged, memory.end_speed_m_s, 0.0)
-    gap = np.where(
-        judged & (memory.end_speed_m_s <= 0.0) & ~memory.caught_on_track, np.maximum(memory.free_m - ends, 0.0), 0.0
-    )
+    ends = ends_of(routes, memory)
+    speed = np.where(ends.judged, memory.end_speed_m_s, 0.0)
+    stands = ends.judged & (memory.end_speed_m_s <= 0.0) & ~memory.caught_on_track
+    gap = np.where(stands, np.maximum(memory.free_m - memory.end_m, 0.0), 0.0)
     bounds = (*couplings.classes_m_s, np.inf)
     over = [((speed > low) & (speed <= high)).sum(axis=1) for low, high in pairwise(bounds)]
     length, cars = trains.length_m.reshape(shape), trains.cars.reshape(shape)
@@ -134,7 +147,12 @@ def outcomes(
     short, at_lowest = limited(memory, able)
     tightest = tightest_pairs(routes, trains, memory)
     return TrainOutcomes(
-        train=trains.first + np.arange(trains.trains),
+        train=trains.numbers,
+        shift=trains.numbers // of_shift,
+        occupied=occupied(routes, memory.found_free_m),
+        pushed_up=memory.pushed_up,
+        pulled=memory.pulled,
+        no_room=(ends.alone & (memory.free_m < routes.standing_from_m[memory.route] + length)).sum(axis=1),
         cuts=np.full(trains.trains, trains.cuts),
         cars=cars.sum(axis=1),
         span_s=memory.crest_s[:, -1] - memory.crest_s[:, 0],
@@ -144,14 +162,14 @@ def outcomes(
         contact=at_elements(routes, memory.route, memory.contact_at),
         unseparated=over_elements(routes, memory.route, memory.unseparated),
         foul=over_elements(routes, memory.route, memory.foul),
-        caught=caught.sum(axis=1),
-        caught_in_last=in_last.sum(axis=1),
-        caught_on_track=(memory.caught_on_track & ~caught & ~in_last).sum(axis=1),
-        stopped=stopped.sum(axis=1),
-        judged=judged.sum(axis=1),
+        caught=ends.caught.sum(axis=1),
+        caught_in_last=ends.in_last.sum(axis=1),
+        caught_on_track=(memory.caught_on_track & ends.alone).sum(axis=1),
+        stopped=ends.stopped.sum(axis=1),
+        judged=ends.judged.sum(axis=1),
         overspeed=np.stack(over, axis=1),
         gap_m=gap.sum(axis=1),
-        speed_bins=histograms(np.where(judged & (speed > 0.0), speed, np.nan), SPEED_BINS_M_S),
+        speed_bins=histograms(np.where(speed > 0.0, speed, np.nan), SPEED_BINS_M_S),
         gap_bins=histograms(np.where(gap > 0.0, gap, np.nan), GAP_BINS_M),
         passes=passed.sum(axis=1),
         strokes=memory.strokes.sum(axis=1),
@@ -165,6 +183,40 @@ def outcomes(
         tightest_ahead=tightest.ahead,
         tightest_behind=tightest.behind,
     )
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """How cuts ended, (trains, cuts): `caught` ahead of the last position, or `in_last`; `stopped` on the way."""
+
+    caught: Bools
+    in_last: Bools
+    stopped: Bools
+
+    @property
+    def alone(self) -> Bools:
+        """Neither misrouted nor in contact."""
+        return ~self.caught & ~self.in_last
+
+    @property
+    def judged(self) -> Bools:
+        """They reached a track."""
+        return self.alone & ~self.stopped
+
+
+def ends_of(routes: HumpRoutes, memory: TrainMemory) -> Ends:
+    """Those of all cuts."""
+    none, last = routes.elements, routes.retarder[memory.route].max(axis=2)
+    in_last = (memory.misrouted_at == none) & (memory.contact_at == last)
+    caught = ((memory.misrouted_at < none) | (memory.contact_at < none)) & ~in_last
+    return Ends(caught, in_last, ~caught & ~in_last & (memory.end_m < routes.release_m[memory.route]))
+
+
+def occupied(routes: HumpRoutes, free_m: Floats) -> Floats:
+    """Share of the length of all tracks that is not free where `free_m` (trains, routes) begins what stands."""
+    begins, most = routes.standing_from_m, routes.length_m
+    return np.asarray((most - np.clip(free_m, begins, most)).sum(axis=1) / (most - begins).sum())
 
 
 def limited(memory: TrainMemory, able: PassLimits | None) -> tuple[Bools, Bools]:

@@ -8,6 +8,7 @@ from typing import Final
 
 from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.shift_sums import shift_sums
 from synth.hump.trains.train_figures import interval_of, share
 
 MOST_SHORT: Final = 0.01
@@ -39,6 +40,6 @@ class PositionStrength:
 def strengths(found: TrainOutcomes) -> Iterator[PositionStrength]:
     """Of all positions, in order from the crest."""
     for place in range(found.passes.shape[1]):
-        passes = found.passes[:, place].astype(float)
-        value, low, high, _ = share(found.short[:, place].astype(float), passes)
+        short, passes = (shift_sums(found, each[:, place]) for each in (found.short, found.passes))
+        value, low, high, _ = share(short, passes)
         yield PositionStrength(place + 1, value, low, high, int(passes.sum()))

@@ -155,6 +155,7 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         categories = load_weight_categories(settings.weight_categories, library)
         positions = position_choices(routes.routes, settings.position, file.hump_source.parent, file.folder)
         settings, usual = (filled(each, mix, categories, routes) for each in (settings, HumpTrialSettings()))
+        require_whole_shifts(settings)
         asked = settings_of(len(positions), settings.position, settings.exit_speeds.choices)
         roles = asked_roles(asked, positions, routes, categories)
         people = population_of(mix, categories, settings)
@@ -213,6 +214,18 @@ def filled(
         acceptance = acceptance.model_copy(update={"overspeed": most})
     trains = filled_trains(settings.trains, mix, categories, routes)
     return settings.model_copy(update={"trains": trains, "acceptance": acceptance})
+
+
+def require_whole_shifts(settings: HumpTrialSettings) -> None:
+    """`PlantError` unless the trains are whole shifts."""
+    number, of_shift = settings.trains.number, settings.tracks.shift_trains
+    whole = number // of_shift * of_shift
+    fewer = f"{whole} or " if whole > 0 else ""
+    require(
+        whole == number,
+        f"trains.number is {number}, but a shift has {of_shift} trains (tracks.shift_trains), and only whole ones are "
+        f"humped: take {fewer}{whole + of_shift} trains",
+    )
 
 
 def rows_without(aims: tuple[AimChoice, ...], roles: Roles) -> tuple[int, ...]:

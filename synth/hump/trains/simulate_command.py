@@ -26,8 +26,8 @@ LIMITS_OF_USE = (
     "A figure of 0 does not mean never: the upper end of its interval is what these trains show.",
     "Cuts that were misrouted, in contact, or stopped count as such; their couplings and gaps are not counted.",
     "A cut in contact does not push the one ahead, which comes as far and as fast as it would alone.",
-    "Each train finds standing cars of its own, so tracks do not fill from train to train. A train with the cuts of "
-    "several trains (trains.cuts) tells what these do on the same tracks, none of which is cleared meanwhile.",
+    "Each train, or each shift of trains (tracks.shift_trains), finds standing cars of its own. In a shift tracks are "
+    "pushed up and pulled between two trains, by a rule, as soon as that is needed: no train waits for it.",
     NO_SAFETY,
 )
 
@@ -62,9 +62,9 @@ def head(asked: AskedTrains) -> Head:
 
 def steps(asked: AskedTrains) -> Steps:
     """A step for each batch."""
-    from synth.hump.trains.trial import BATCH
+    from synth.hump.trains.batch import batches
 
-    return Steps(-(-asked.number // BATCH), "humping", "batches")
+    return Steps(batches(asked.number, asked.trial.config.settings.tracks.shift_trains), "humping", "batches")
 
 
 def compute(asked: AskedTrains, work: Work) -> HumpedTrial:
@@ -102,12 +102,14 @@ def limits(result: HumpedTrial) -> Iterable[Limit]:
 def show(result: HumpedTrial) -> Iterator[Chapter]:
     """All trains first: whatever becomes of the one that is shown, their figures are written before it is humped."""
     from synth.hump.trains.chosen_trains import chosen_trains
+    from synth.hump.trains.shift_sums import in_shifts
     from synth.hump.trains.shown.figures import figures
     from synth.hump.trains.shown.first_screen import first_screen
     from synth.hump.trains.shown.one_train import one_train_exhibits, traced_once
     from synth.hump.trains.shown.places import catch_ups, couplings
     from synth.hump.trains.shown.positions import positions
     from synth.hump.trains.shown.program import program_exhibits, pushed_chart
+    from synth.hump.trains.shown.shift import shift
     from synth.hump.trains.speed_program import speed_program
     from synth.hump.trains.traced_train import one_train
     from synth.kernels.cache import guarded
@@ -117,6 +119,8 @@ def show(result: HumpedTrial) -> Iterator[Chapter]:
     yield Chapter("Catch-ups", tuple(catch_ups(result)))
     yield Chapter("Couplings and gaps", tuple(couplings(result.found, result.trial.couplings)))
     yield Chapter("Positions", tuple(positions(result)))
+    if in_shifts(result.found):
+        yield Chapter("Shift", tuple(shift(result)))
     number = chosen_trains(result.found)[0].number
     shown = guarded(one_train, result.trial, number)
     traced = traced_once(shown)

@@ -17,6 +17,7 @@ from synth.hump.trains.free_stretch import StretchSpeeds
 from synth.hump.trains.hump_routes import HumpRoutes
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 SLOWEST_M_S = 0.05
 """No reading is less."""
@@ -24,15 +25,15 @@ SLOWEST_M_S = 0.05
 
 class SensedTrains(Protocol):
     """What the sensors need of the cuts of some trains: their lengths and axles, rows = train·n + i, and the seed and
-    first train by which their errors are drawn. `TrainCuts` has it."""
+    the numbers of the trains by which their errors are drawn. `TrainCuts` has it."""
 
     @property
     def cuts(self) -> int:
         """Cuts of a train."""
 
     @property
-    def first(self) -> int:
-        """Number of the first train."""
+    def numbers(self) -> Ints:
+        """Of the trains."""
 
     @property
     def seed(self) -> int:
@@ -84,7 +85,7 @@ class SpeedSensors:
 
     def read(self, asked: Asked, place: int, speed_m_s: Floats) -> Floats:
         """Readings of `speed_m_s` (n,) at the entrance (2p) or exit (2p + 1) of position p; 0 where there is none."""
-        keys = self.trains.first + asked.lanes, np.full(len(asked.lanes), asked.cut), np.full(len(asked.lanes), place)
+        keys = self.trains.numbers[asked.lanes], np.full(len(asked.lanes), asked.cut), np.full(len(asked.lanes), place)
         z = ndtri(keyed_uniform(self.trains.seed, Purpose.SPEED_READING, keys, 1)[0])
         with np.errstate(invalid="ignore"):
             return np.where(speed_m_s > 0.0, np.maximum(speed_m_s + self.std_m_s * z, SLOWEST_M_S), 0.0)

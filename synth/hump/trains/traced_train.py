@@ -29,7 +29,7 @@ class OneTrain:
     @property
     def number(self) -> int:
         """From 0, as figures count trains."""
-        return self.trains.first + self.lane
+        return int(self.trains.numbers[self.lane])
 
     def traced(self) -> TrainTrace:
         """Its cuts on their ways."""
@@ -51,15 +51,17 @@ class OneTrain:
 
 def one_train(trial: HumpTrial, number: int) -> OneTrain:
     """The train `number`, from 0, of `trial`: the same as in every batch."""
-    trains, plan, memory = trial.humped(number, 1)
-    return OneTrain(trial, trains, plan, memory)
+    turn = trial.turn(*trial.train(number))
+    return OneTrain(trial, turn.trains, turn.plan, turn.memory)
 
 
 def some_trains(trial: HumpTrial, numbers: Sequence[int]) -> tuple[OneTrain, ...]:
-    """The trains `numbers`, from 0; those among the first few are humped together, which takes no longer than one."""
-    early = [number for number in numbers if number < TYPICAL_AMONG]
+    """The trains `numbers`, from 0; where each has tracks of its own, those among the first few are humped together,
+    which takes no longer than one."""
+    most = TYPICAL_AMONG if trial.shift.trains == 1 else 0
+    early = [number for number in numbers if number < most]
     together = trial.humped(0, max(early) + 1) if early else None
     return tuple(
-        OneTrain(trial, *together, lane=number) if together and number < TYPICAL_AMONG else one_train(trial, number)
+        OneTrain(trial, *together, lane=number) if together and number < most else one_train(trial, number)
         for number in numbers
     )

@@ -24,8 +24,8 @@ Ints = NDArray[np.int64]
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class TrainCuts:
-    """Trains `first` … `first + trains − 1` of the row `seed`, of `cuts` cuts each: cut i of train first + k is the row
-    k·cuts + i. From `trains` or `list_trains`.
+    """Trains of the row `seed`, of `cuts` cuts each, with the `numbers` first, first + apart, …: cut i of train k of
+    them is the row k·cuts + i. From `trains` or `list_trains`.
 
     `population`: mix, weight categories, law and weather of the cuts; `drawn`: their bends are draws
     (`DrawnCuts.on_bends`). Arrays of shape (rows,): `route`, place among the routes; `track`; `category`, place among
@@ -42,9 +42,33 @@ class TrainCuts:
     track: Ints
     category: Ints
     mass_t: Floats
+    apart: int = 1
 
     def __len__(self) -> int:
         return len(self.drawn)
+
+    @cached_property
+    def numbers(self) -> Ints:
+        """Of the trains, (trains,)."""
+        return read_only(self.first + self.apart * np.arange(self.trains))
+
+    def every(self, apart: int, place: int = 0) -> TrainCuts:
+        """The trains `place`, `place + apart`, … of these."""
+        if apart == 1:
+            return self
+        lanes = np.arange(place, self.trains, apart)
+        rows = (lanes[:, None] * self.cuts + np.arange(self.cuts)).reshape(-1)
+        return replace(
+            self,
+            first=self.first + self.apart * place,
+            apart=self.apart * apart,
+            trains=len(lanes),
+            drawn=self.drawn.of_cuts(rows),
+            route=self.route[rows],
+            track=self.track[rows],
+            category=self.category[rows],
+            mass_t=self.mass_t[rows],
+        )
 
     @cached_property
     def cars(self) -> Ints:

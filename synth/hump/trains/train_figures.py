@@ -1,4 +1,5 @@
-"""Figures of many trains with their 95 % intervals: a train is the unit that is drawn, its cuts are not independent."""
+"""Figures of many trains with their 95 % intervals: a shift of trains, which may be a single one, is drawn, and
+what is in it is not independent."""
 
 from __future__ import annotations
 
@@ -12,6 +13,7 @@ from scipy.special import betaincinv, stdtrit
 
 from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.shift_sums import in_shifts, longer_shifts, shift_sums
 
 Floats = NDArray[np.float64]
 
@@ -119,7 +121,7 @@ class FigureOf:
 
     def figure(self, found: TrainOutcomes, wanted_share: float) -> TrainFigure:
         """The figure of some trains with its interval; `wanted_share`: for `enough_n`."""
-        hits, base = self.hits(found), self.base(found)
+        hits, base = (shift_sums(found, of(found)) for of in (self.hits, self.base))
         if not self.is_share:
             return TrainFigure(self.name, self.unit, *ratio(hits, base), len(base))
         p, low, high, effect = share(hits, base)
@@ -128,18 +130,18 @@ class FigureOf:
 
     def difference(self, found: TrainOutcomes, other: TrainOutcomes) -> tuple[float, float, float]:
         """By how much the figure of `found` is more than that of `other`, which are the same trains, with the interval
-        of Student's, linearised, paired by train; NaN where there is none."""
-        residual, value = np.zeros(len(found)), 0.0
+        of Student's, linearised, paired by train, or by shift; NaN where there is none."""
+        shift = longer_shifts(found, other)
+        shifts = len(np.unique(shift))
+        residual, value = np.zeros(shifts), 0.0
         for sign, trains in ((1.0, found), (-1.0, other)):
-            hits, base = self.hits(trains), self.base(trains)
+            hits, base = (shift_sums(trains, of(trains), shift) for of in (self.hits, self.base))
             if len(base) < FEWEST_TRAINS or base.sum() == 0.0:
                 return float("nan"), float("nan"), float("nan")
             p = float(hits.sum() / base.sum())
             value += sign * p
             residual += sign * (hits - p * base) / base.mean()
-        half = (
-            float(stdtrit(len(found) - 1, 0.5 + 0.5 * CONFIDENCE)) * float(residual.std(ddof=1)) / np.sqrt(len(found))
-        )
+        half = float(stdtrit(shifts - 1, 0.5 + 0.5 * CONFIDENCE)) * float(residual.std(ddof=1)) / np.sqrt(shifts)
         return value, value - half, value + half
 
 
@@ -158,6 +160,11 @@ def mean(name: str, unit: str, hits: Of, base: Of) -> FigureOf:
     return FigureOf(name, unit, hits, base, False)
 
 
+def trains_in(found: TrainOutcomes) -> Floats:
+    """One for each train."""
+    return np.ones(len(found))
+
+
 FIGURES: Final = (
     mean("hump_speed", "m/s", lambda found: found.span_m, lambda found: found.span_s),
     mean("cars_per_hour", "1/h", lambda found: 3600.0 * found.span_cars, lambda found: found.span_s),
@@ -167,6 +174,7 @@ FIGURES: Final = (
     of_cuts("contacts_in_last_position", lambda found: found.caught_in_last),
     of_cuts("caught_on_track", lambda found: found.caught_on_track),
     of_cuts("stopped_on_the_way", lambda found: found.stopped),
+    of_cuts("no_room", lambda found: found.no_room),
     mean(
         "unseparated_elements_per_cut",
         "1",
@@ -178,19 +186,29 @@ FIGURES: Final = (
     of_judged("overspeed_rough", lambda found: found.overspeed[:, 1]),
     of_judged("overspeed_harmful", lambda found: found.overspeed[:, 2]),
     mean("gap_per_cut", "m", lambda found: found.gap_m, lambda found: found.judged.astype(float)),
-    mean(
-        "strokes_per_pass",
-        "1",
-        lambda found: found.strokes.sum(axis=1).astype(float),
-        lambda found: found.passes.sum(axis=1).astype(float),
-    ),
+    mean("occupied_share", "1", lambda found: found.occupied, trains_in),
 )
-"""The figures that are told of trains; the last one only where a position models its valves."""
+"""The figures that are told of all trains."""
+
+OF_SHIFTS: Final = (
+    mean("pushed_up_per_train", "1", lambda found: found.pushed_up.astype(float), trains_in),
+    mean("pulled_per_train", "1", lambda found: found.pulled.astype(float), trains_in),
+)
+"""Those of trains in shifts."""
+
+OF_VALVES: Final = mean(
+    "strokes_per_pass",
+    "1",
+    lambda found: found.strokes.sum(axis=1).astype(float),
+    lambda found: found.passes.sum(axis=1).astype(float),
+)
+"""That of positions which model their valves."""
 
 
 def figures_told(found: TrainOutcomes) -> tuple[FigureOf, ...]:
-    """Those of `FIGURES` that these trains have."""
-    return FIGURES if found.strokes.any() else FIGURES[:-1]
+    """The figures that these trains have."""
+    shifts = OF_SHIFTS if in_shifts(found) else ()
+    return (*FIGURES, *shifts, *((OF_VALVES,) if found.strokes.any() else ()))
 
 
 def train_figures(found: TrainOutcomes, wanted_share: float = 0.005) -> tuple[TrainFigure, ...]:

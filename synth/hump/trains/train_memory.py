@@ -19,6 +19,8 @@ class TrainMemory:
     the cut found, head at its end `end_m` with `end_speed_m_s` at `end_time_s`; where it is `caught_on_track`, because
     it touched the cut ahead while that still rolled, the speed is the difference of both. `tail_m`: where the last axle
     stands at last, from `still_s` on, also of cuts in contact.
+    (trains, routes): `found_free_m` and `left_free_m`, where the standing cars of each track began before the train,
+    and behind it. (trains,): tracks that were `pushed_up`, and `pulled`, for it.
     """
 
     def __init__(self, trains: int, cuts: int, routes: HumpRoutes) -> None:
@@ -36,4 +38,6 @@ class TrainMemory:
         self.behind, self.since_s = np.full(shape, -1), np.full(shape, np.nan)
         self.caught_on_track = np.zeros(shape, bool)
         self.tail_m, self.still_s = np.full(shape, np.nan), np.full(shape, np.nan)
+        self.found_free_m, self.left_free_m = (np.full((trains, len(routes.routes)), np.nan) for _ in range(2))
+        self.pushed_up, self.pulled = (np.zeros(trains, dtype=np.int64) for _ in range(2))
         self.free_m, self.end_m, self.end_speed_m_s, self.end_time_s = (np.full(shape, np.nan) for _ in range(4))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 from plant_models.hump import Route
 from plant_models.rolling.random_cuts import CutPopulation
@@ -10,6 +11,13 @@ from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.trains.list_trains import list_trains
 from synth.hump.trains.train_cuts import TrainCuts, trains
+
+
+class TrainSource(Protocol):
+    """Where trains come from: a population, or one list again and again."""
+
+    def trains(self, first: int, count: int) -> TrainCuts:
+        """Trains `first` … `first + count − 1`; each is the same whatever the others."""
 
 
 @dataclass(frozen=True)

@@ -142,7 +142,7 @@ def train_trace(
     occupied = tuple(occupations(hump.routes, memory, lane))
     told = alarms(hump.routes, memory, lane, cuts, touch_s, allowed_m_s)
     found = sorted(told, key=lambda alarm: (alarm.time_s, alarm.cut))
-    return TrainTrace(trains.first + lane, hump.routes, cuts, occupied, tuple(found), allowed_m_s)
+    return TrainTrace(int(trains.numbers[lane]), hump.routes, cuts, occupied, tuple(found), allowed_m_s)
 
 
 def leader_of(memory: TrainMemory, lane: int, cut: int) -> int | None:

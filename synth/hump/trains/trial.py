@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -23,16 +24,18 @@ from synth.hump.trains.humping import Hump, humped
 from synth.hump.trains.interval import CentredRule, IntervalRule
 from synth.hump.trains.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
 from synth.hump.trains.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
-from synth.hump.trains.outcomes import USUAL_COUPLINGS, PassLimits, TrainOutcomes, outcomes
+from synth.hump.trains.outcomes import USUAL_COUPLINGS, PassLimits, TrainOutcomes, in_order, outcomes
 from synth.hump.trains.rollability import CategoryMean, Rollability, measured_rollability
 from synth.hump.trains.route_rolling import RouteRolling, rolling_on
 from synth.hump.trains.route_ways import RouteWays
 from synth.hump.trains.skates import NO_SKATES, Skates
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.stretch_reading import AimReading, ReadByRoute, ReadOnStretch
+from synth.hump.trains.tracks_between import ONE_TRAIN, Shift, Tracks, tracks_as_drawn, tracks_left
 from synth.hump.trains.train_cuts import TrainCuts, expected
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import Planner, TrainPlan
+from synth.hump.trains.train_source import TrainSource
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -45,18 +48,8 @@ WORST_ENTRY_M_S = 1.0
 USUAL_M_S = 4.0
 """Speed at which the wind is counted in that."""
 
-SPARE_M = 30.0
-"""Room that a cut gets besides its length (assumed)."""
-
 BATCH = 250
-"""Trains that are humped side by side; no figure depends on it."""
-
-
-class TrainSource(Protocol):
-    """Where trains come from: a population, or one list again and again."""
-
-    def trains(self, first: int, count: int) -> TrainCuts:
-        """Trains `first` … `first + count − 1`; each is the same whatever the others."""
+"""Shifts that are humped side by side; no figure depends on it."""
 
 
 class BrakeHead(Protocol):
@@ -123,13 +116,24 @@ class Control:
 
 
 @dataclass(frozen=True)
+class Turn:
+    """Some trains side by side, each on its own tracks, with their plan and all that happened to them."""
+
+    trains: TrainCuts
+    tracks: Tracks
+    plan: TrainPlan
+    memory: TrainMemory
+
+
+@dataclass(frozen=True)
 class HumpTrial:
     """Trains from `source` over `routes`, whose `ways` are the routes as their cars feel them.
 
     `positions`: models in order from the crest, of every route that has so many; `planner` has their roles; `free`:
-    tracks before each train. `aim`: exit speeds of the positions that aim, by route; `usable_heads_m`: energy head
-    (rows,) that each position can be trusted to take from cuts, by mass, axles and category; `full_heads_m`: what it
-    takes at mean friction. `skates`: on the tracks. `couplings`: which couplings are too fast.
+    tracks before each train, or before the first one of each `shift`. `aim`: exit speeds of the positions that aim, by
+    route; `usable_heads_m`: energy head (rows,) that each position can be trusted to take from cuts, by mass, axles and
+    category; `full_heads_m`: what it takes at mean friction. `skates`: on the tracks. `couplings`: which couplings are
+    too fast.
     """
 
     source: TrainSource
@@ -146,6 +150,7 @@ class HumpTrial:
     threads: int = 0
     couplings: CouplingLimits = USUAL_COUPLINGS
     skates: Skates = NO_SKATES
+    shift: Shift = ONE_TRAIN
 
     def __post_init__(self) -> None:
         require(
@@ -155,13 +160,14 @@ class HumpTrial:
         )
 
     def batch(self, first: int, count: int) -> TrainOutcomes:
-        """What the trains `first` … `first + count − 1` come to."""
-        trains, _, memory = self.humped(first, count)
-        return self.outcomes(trains, memory)
+        """What the trains `first` … `first + count − 1`, which are whole shifts, come to."""
+        turns = [self.outcomes(each.trains, each.memory) for each in self.turns(first, count)]
+        return in_order(turns)
 
     def outcomes(self, trains: TrainCuts, memory: TrainMemory) -> TrainOutcomes:
         """What trains came to that were humped here."""
-        return outcomes(self.routes, trains, memory, self.able(trains, memory.route.ravel()), self.couplings)
+        able = self.able(trains, memory.route.ravel())
+        return outcomes(self.routes, trains, memory, able, self.couplings, self.shift.trains)
 
     def able(self, trains: TrainCuts, route: Ints) -> PassLimits:
         """What the positions can do with the cuts of `trains`, which went on `route` (rows,)."""
@@ -175,15 +181,55 @@ class HumpTrial:
         return PassLimits(np.stack(lowest, axis=1), braked)
 
     def humped(self, first: int, count: int) -> tuple[TrainCuts, TrainPlan, TrainMemory]:
-        """The same trains with their plan and all that happened to them."""
-        trains, free_m, known, plan = self.planned(first, count)
-        rolls = self.rolls_of(trains)
+        """Trains with their plan and all that happened to them; each begins a shift of its own."""
+        trains = self.source.trains(first, count)
+        turn = self.turn(trains, self.first_tracks(trains))
+        return turn.trains, turn.plan, turn.memory
+
+    def turns(self, first: int, count: int) -> Iterator[Turn]:
+        """The trains `first` … `first + count − 1`: those that begin a shift side by side, then those behind them, …
+
+        They are whole shifts, or the beginning of one.
+        """
+        drawn, of_shift = self.source.trains(first, count), self.shift.trains
+        trains = drawn.every(of_shift)
+        turn = self.turn(trains, self.first_tracks(trains))
+        yield turn
+        for place in range(1, min(of_shift, count)):
+            trains = drawn.every(of_shift, place)
+            turn = self.turn(trains, self.tracks_behind(turn, trains))
+            yield turn
+
+    def train(self, number: int) -> tuple[TrainCuts, Tracks]:
+        """The train `number` and the tracks that it finds; for these, the trains of its shift before it are humped."""
+        trains, place = self.source.trains(number, 1), number % self.shift.trains
+        if place == 0:
+            return trains, self.first_tracks(trains)
+        *_, before = self.turns(number - place, place)
+        return trains, self.tracks_behind(before, trains)
+
+    def tracks_behind(self, turn: Turn, coming: TrainCuts) -> Tracks:
+        """The tracks that the trains find which are `coming` behind those of `turn`."""
+        return tracks_left(self.routes, turn.tracks, turn.memory, turn.trains, coming, self.shift.pulled_from_share)
+
+    def first_tracks(self, trains: TrainCuts) -> Tracks:
+        """The tracks that `trains` find which begin a shift."""
+        numbers = trains.numbers
+        free_m = self.free.free_m(self.routes, trains.seed, trains.first, int(numbers[-1]) + 1 - trains.first)
+        return tracks_as_drawn(self.routes, trains, free_m[:: trains.apart])
+
+    def turn(self, trains: TrainCuts, tracks: Tracks) -> Turn:
+        """What becomes of `trains` that find these `tracks`."""
+        known, rolls = self.known(trains, tracks.free_m), self.rolls_of(trains)
+        plan = self.program.plan(self.planner, known)
         hump = self.hump_for(rolls)
         control = self.control_of(trains, known, plan, self.aim_of(trains, known, rolls))
         speeds: HumpSpeeds = ProgramSpeeds(plan.hump_speed_m_s)
         if self.control.slow_down_s is not None and isinstance(control, Feedback):
             speeds = FeedbackSpeeds(control, self.control.slow_down_s)
-        return trains, plan, humped(hump, trains, free_m, speeds, control)
+        memory = humped(hump, trains, tracks.free_m, speeds, control)
+        memory.pushed_up, memory.pulled = tracks.pushed_up.sum(axis=1), tracks.pulled.sum(axis=1)
+        return Turn(trains, tracks, plan, memory)
 
     def rolls_of(self, trains: TrainCuts) -> RouteRolling:
         """How the cuts of `trains` roll."""
@@ -192,17 +238,6 @@ class HumpTrial:
     def hump_for(self, rolls: RouteRolling) -> Hump:
         """The hump for the trains whose `rolls` these are."""
         return Hump(self.routes, self.positions, rolls, self.skates)
-
-    def planned(self, first: int, count: int) -> tuple[TrainCuts, Floats, KnownCuts, TrainPlan]:
-        """The same trains before they are humped: with their free tracks, what is known of them, and their plan."""
-        trains, free_m, known = self.prepared(first, count)
-        return trains, free_m, known, self.program.plan(self.planner, known)
-
-    def prepared(self, first: int, count: int) -> tuple[TrainCuts, Floats, KnownCuts]:
-        """The same before they are planned."""
-        trains = self.source.trains(first, count)
-        free_m = with_room(self.routes, trains, self.free.free_m(self.routes, trains.seed, first, count))
-        return trains, free_m, self.known(trains, free_m)
 
     def known(self, trains: TrainCuts, free_m: Floats) -> KnownCuts:
         """What is known of trains before they are humped, and how they will be aimed if tracks stay as they are."""
@@ -263,13 +298,3 @@ def expected_way(trains: TrainCuts, known: KnownCuts) -> ExpectedWay:
 def reduced_gravity_m_s2(trains: TrainCuts) -> Floats:
     """g' of each cut by its list, (rows,)."""
     return np.asarray(GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * trains.axles / trains.mass_t))
-
-
-def with_room(routes: HumpRoutes, trains: TrainCuts, free_m: Floats) -> Floats:
-    """`free_m` (trains, routes), but where a train brings more cars than there is room for, all room that they need:
-    nobody sends cuts to a full track. As much as the track has, where that is less."""
-    train = np.repeat(np.arange(trains.trains), trains.cuts)
-    needs = np.zeros(free_m.shape)
-    np.add.at(needs, (train, trains.route), trains.length_m + SPARE_M)
-    begins = routes.standing_from_m
-    return np.asarray(np.clip(begins + needs, free_m, routes.length_m))

@@ -20,6 +20,9 @@ OF_POPULATION: Final = ("cuts", "cars_mean", "most_cars", "category_shares", "tr
 OF_DRAWN_TRACKS: Final = {"tracks.free_low", "tracks.free_high"}
 """What the hump file tells in their place where cars stand as it tells."""
 
+OF_SHIFTS: Final = {"tracks.pulled_from_share"}
+"""What counts only where trains come to the same tracks."""
+
 BESIDE_ONE_SPEED: Final = {"constant_m_s", "early_s", "slow_down_s"}
 """Of [hump_speed], what counts where there is one speed for all cuts; it stands in place of the rest."""
 
@@ -39,6 +42,8 @@ def trial_numbers(
     left_out = {f"trains.{key}" for key in OF_POPULATION if settings.trains.list is not None}
     if settings.hump_speed.constant_m_s is not None:
         left_out |= {f"hump_speed.{key}" for key in HumpSpeedSettings.model_fields.keys() - BESIDE_ONE_SPEED}
+    if settings.tracks.shift_trains == 1:
+        left_out |= OF_SHIFTS
     if settings.tracks.standing == "file":
         left_out |= OF_DRAWN_TRACKS
     yield from (replace(value, key=f"cars.{value.key.removeprefix('cars.')}") for value in mix.provenance)

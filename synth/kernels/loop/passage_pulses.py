@@ -2,7 +2,7 @@
 
 A *source* is an axle that rolls over a sensor. What the regulator hears are *rows*: pulse pairs, each with the number
 of the sensor that it is told, after so long, and with the measured time over the base or another. Without faults there
-is one row a source; `synth.simulation.sensor_faults` adds and takes away.
+is one row a source; faults of sensors add and take away.
 """
 
 from __future__ import annotations

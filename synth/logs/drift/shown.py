@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Final
 
-from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table
+from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, per_cent
 from synth.logs.drift.charts import RUN_LENGTH
@@ -65,6 +65,7 @@ def alarm(found: Watch) -> str:
 def drifted(found: Watch) -> Iterator[Exhibit]:
     """What drifted, since when, how much, what it costs, and what to do; then every cause."""
     drift = found.drift
+    yield tiles(found)
     yield Sentence(
         f"{len(found.passes)} passes, {len(found.charts.kinds)} supposed drifts; at most one false alarm in "
         f"{RUN_LENGTH:g} passes.",
@@ -80,11 +81,26 @@ def drifted(found: Watch) -> Iterator[Exhibit]:
         return
     for sentence in sentences(found, drift):
         yield Sentence(sentence, brief=True)
+    yield Sentence(advice(drift), brief=True, to_do=True)
     yield Table("exits", "Exits before and since", EXITS, list(exit_rows(drift)))
     yield Sentence(
         "Each cause at its own most likely size and beginning; the logarithm of its likelihood over that of no drift."
     )
     yield Table("causes", "Causes", CAUSES, list(cause_rows(found, drift)))
+
+
+def tiles(found: Watch) -> Tiles:
+    """How much was watched, how near an alarm is, and what a drift costs."""
+    highest, limit, drift = float(found.charts.sums.max()), found.charts.limit, found.drift
+    made = [
+        Tile(f"{len(found.passes)} passes", "were watched"),
+        Tile(f"{highest:.1f}", f"is the highest sum; an alarm begins at {limit:.1f}", drift is None),
+    ]
+    if drift is not None:
+        before, since = drift.before, drift.after
+        words = f"is the rms error of {since.passes} passes since then; of those before it was {before.rms_m_s:.3f} m/s"
+        made.append(Tile(f"{since.rms_m_s:.3f} m/s", words))
+    return Tiles(made)
 
 
 def figures_of(found: Watch, drift: Drift) -> Row:
@@ -126,14 +142,18 @@ def sentences(found: Watch, drift: Drift) -> Iterator[str]:
         yield f"Drift: {cause.title} {size} {since}."
         yield f"Next best: {next_best}, 1 to {odds(diagnosis.odds)}."
         yield cost_sentence(drift)
-        yield f"{cause.remedy.value.upper()}: {cause.advice}."
         return
     yield f"Something drifted {since}; which cannot be decided yet."
-    yield (
-        f"Most likely: {cause.title} ({size}), only {diagnosis.odds:.3g} times as likely as {next_best}. Log more "
-        "passes, or look at both."
-    )
+    yield (f"Most likely: {cause.title} ({size}), only {diagnosis.odds:.3g} times as likely as {next_best}.")
     yield cost_sentence(drift)
+
+
+def advice(drift: Drift) -> str:
+    """What to do about it."""
+    diagnosis, cause = drift.diagnosis, drift.diagnosis.first.cause
+    if diagnosis.decided:
+        return f"{cause.remedy.value.upper()}: {cause.advice}."
+    return f"Log more passes, or look at both: {cause.title}, and {diagnosis.gains[1].cause.title}."
 
 
 def odds(value: float) -> str:

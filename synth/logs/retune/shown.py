@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator
 from typing import Any, Final
 
-from synth.frame.exhibits import Chart, Column, Exhibit, File, Row, Sentence, Table
+from synth.frame.exhibits import Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, four_figures
 from synth.logs.retune.predicted_gain import CaseGain
@@ -60,11 +60,23 @@ def failed_sentence(found: Retuned, case: FailedCase) -> str:
 
 def gained(found: Retuned) -> Iterator[Exhibit]:
     """The rms of every case under both tables."""
+    yield tiles(found)
     yield Table("cases", "rms by case", CASES, [case_row(found, each) for each in found.gains], brief=True)
     if found.failed:
         yield Table("failed", "Cases without a new table", FAILED, [vars(case) for case in found.failed])
     if found.gains:
         yield from pictures(found)
+
+
+def tiles(found: Retuned) -> Tiles:
+    """How many tables are new, and the largest gain."""
+    best = min(found.gains, key=lambda gain: gain.ratio, default=None)
+    made = [Tile(f"{len(found.changed)} of {len(found.gains)}", "cases get new tables; the others keep their lines")]
+    if best is not None:
+        low, high = best.ratio_ci95
+        words = f"the rms of the old table has the new one at best [{low:.2f}, {high:.2f}]: {best.label} to"
+        made.append(Tile(f"{best.ratio:.2f} times", f"{words} {best.target_m_s:g} m/s"))
+    return Tiles(made)
 
 
 def case_row(found: Retuned, gain: CaseGain) -> Row:

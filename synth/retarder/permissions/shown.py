@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
-from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table
+from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.interval import Interval
-from synth.frame.printed_numbers import decimals
+from synth.frame.printed_numbers import counted, decimals
 from synth.retarder.exit_figures import CASE, LOOP, PREDICTED, loop_row
 from synth.retarder.permissions.overview import asked_of, median_ratios, medians
 from synth.retarder.permissions.permission import AllPermissions, CasePermissions
@@ -26,6 +26,7 @@ AS_CONFIGURED = "as configured"
 def permissions(title: str, told: AllPermissions) -> Iterator[Exhibit]:
     """A row for each case and a column for each permission; then every figure."""
     asked = asked_of(told.cases)
+    yield from first_screen(told.cases)
     columns = (
         *CASE,
         Column("configured_m_s", "rms as configured", "m/s", decimals(4), spare=2),
@@ -49,6 +50,26 @@ def permissions(title: str, told: AllPermissions) -> Iterator[Exhibit]:
         lambda: _picture().ratio_rows(title, told.cases),
     )
     yield Table("figures", "Every figure", FIGURES, [row for case in told.cases for row in figures(case)])
+
+
+def first_screen(cases: Sequence[CasePermissions]) -> Iterator[Exhibit]:
+    """A tile for each permission, and which one to ask for."""
+    found = median_ratios(cases)
+    yield Tiles(
+        [Tile(f"{ratio:.2f} times", f"the rms as configured, in the median: {name}") for name, ratio in found.items()]
+    )
+    if not found:
+        return
+    best = min(found, key=lambda name: found[name])
+    given = [result for case in cases for result in case.results if result.permission.value == best]
+    smaller = sum(result.ratio_ci95[1] < 1.0 for result in given)
+    step = "Leave the hardware as it is: no permission makes the rms smaller for sure in more than half of the cases."
+    if found[best] < 1.0 and 2 * smaller > len(given):
+        step = (
+            f"Ask what '{best}' costs: it gives {found[best]:.2f} times the rms in the median case, and makes it "
+            f"smaller for sure in {smaller} of {counted(len(given), 'case')}."
+        )
+    yield Sentence(step, to_do=True)
 
 
 def missing(told: AllPermissions) -> Iterator[Exhibit]:

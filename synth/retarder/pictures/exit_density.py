@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
 from synth.frame.picture.house_style import (
     GREY,
@@ -23,10 +22,9 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.retarder.exit_bins import NARROW_M_S, WIDE_M_S, prediction_origin
+from synth.retarder.exit_bins import bin_edges_m_s, predicted_density, prediction_origin
 from synth.retarder.tuned_case import TunedCase
 from synth.simulation.exit_statistics import OVERSPEED_M_S
-from synth.solver.exit_density import ExitDensity
 
 LEAST = 1e-4
 """Bottom of the logarithmic panel, 1/(m/s): one cut in 100 000 in a wide bin."""
@@ -78,21 +76,6 @@ def draw_case(near: Axes, tails: Axes, case: TunedCase) -> None:
     near.set(xlim=(target - far, target + far), ylim=(0.0, 1.08 * highest))
     tails.set_xlim(min(target - far, float(shown.min())), max(target + far, float(shown.max())))
     logarithmic_y(tails, (1.25 * LEAST, 2.0 * highest))
-
-
-def predicted_density(exits: ExitDensity) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Speeds, and the density there in 1/(m/s); the grid's first energy stands for cuts next to a stall."""
-    speed, probability = exits.speed_m_s[1:], exits.probability[1:]
-    return speed, probability * speed / (0.5 * exits.speed_m_s[1] ** 2)
-
-
-def bin_edges_m_s(target_m_s: float, highest_m_s: float) -> NDArray[np.float64]:
-    """Edges of the bins from 0 to beyond `highest_m_s`; the target is one of them."""
-    half = round(OVERSPEED_M_S / NARROW_M_S)
-    narrow = NARROW_M_S * np.arange(-half, half + 1)
-    wide = np.arange(OVERSPEED_M_S + WIDE_M_S, max(target_m_s, highest_m_s - target_m_s) + 1.5 * WIDE_M_S, WIDE_M_S)
-    edges = target_m_s + np.concatenate((-wide[::-1], narrow, wide))
-    return np.append(0.0, edges[edges > 1e-9])
 
 
 def panel_title(case: TunedCase) -> str:

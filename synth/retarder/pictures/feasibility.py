@@ -10,9 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from synth.frame.picture.category_colour import category_colour
 from synth.frame.picture.house_style import (
+    GREY,
     INK,
-    LINE_COLOURS,
     LINE_MARKERS,
     LINE_STYLES,
     PALE_GREY,
@@ -55,8 +56,8 @@ def feasibility(cases: Sequence[CaseResult]) -> Figure:
         if column == 0:
             above.set_ylabel("unavoidable rms, m/s", fontsize=9)
     handles = [
-        Line2D([], [], color=colour, marker=marker, linestyle=style, markersize=4.5, label=label)
-        for label, colour, marker, style in zip(labels, LINE_COLOURS, LINE_MARKERS, LINE_STYLES, strict=False)
+        Line2D([], [], color=class_colour(group[0]), marker=marker, linestyle=style, markersize=4.5, label=label)
+        for label, group, marker, style in zip(labels, by_class(cases), LINE_MARKERS, LINE_STYLES, strict=False)
     ]
     limit = Line2D([], [], color=INK, linestyle="--", linewidth=1.2, label="acceptance limit")
     asked = Patch(facecolor=PALE_GREY, label="configured entry speeds")
@@ -64,13 +65,19 @@ def feasibility(cases: Sequence[CaseResult]) -> Figure:
     return figure
 
 
+def class_colour(case: CaseResult) -> str:
+    """That of the weight category of the class; classes of one category differ in stroke and marker."""
+    number = case.table.cut.number
+    return GREY if number is None else category_colour(number)
+
+
 def draw_rms(axes: Axes, cases: Sequence[CaseResult], labels: Sequence[str]) -> None:
     """The upper panel of one target."""
     for case in cases:
-        place_no = labels.index(case.label) % len(LINE_COLOURS)
+        place_no = labels.index(case.label) % len(LINE_STYLES)
         found = case.feasibility
         axes.plot(
-            found.entry_m_s, found.entry_rms_m_s, color=LINE_COLOURS[place_no], linestyle=LINE_STYLES[place_no],
+            found.entry_m_s, found.entry_rms_m_s, color=class_colour(case), linestyle=LINE_STYLES[place_no],
             marker=LINE_MARKERS[place_no], markevery=max(1, found.entry_m_s.size // 8), markersize=4, linewidth=1.4,
         )  # fmt: skip
         axes.axhline(found.limit_m_s, color=INK, linestyle="--", linewidth=1.2, zorder=1)
@@ -86,8 +93,7 @@ def draw_served(axes: Axes, cases: Sequence[CaseResult], labels: Sequence[str]) 
             middle = float(np.mean(case.feasibility.entry_m_s))
             axes.text(middle, row, "none", ha="center", va="center", fontsize=7.5)
         else:
-            colour = LINE_COLOURS[row % len(LINE_COLOURS)]
-            axes.barh(row, served[1] - served[0], left=served[0], height=0.55, color=colour)
+            axes.barh(row, served[1] - served[0], left=served[0], height=0.55, color=class_colour(case))
     dress(axes, "can be served: rms within the limit", "entry speed, m/s")
     axes.set_ylim(len(labels) - 0.4, -0.6)
     axes.set_yticks(range(len(labels)), labels)

@@ -10,27 +10,18 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from synth.frame.picture.house_style import (
-    BLUE,
-    GREEN,
     GREY,
     INK,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILLION,
     dress,
     legend_below,
     new_figure,
     place,
 )
 from synth.retarder.line_control_loop import LINE_NODES, LineControlLoop
-from synth.retarder.pictures.policy_map import finite
+from synth.retarder.pictures.stage_colours import colour_of, finite
 from synth.retarder.pictures.table_picture import stages_in_use, subject
 from synth.simulation.nominal_response import NominalResponse
 from synth.solver.tabulate import lines_of
-
-STAGE_COLOURS = (GREY, BLUE, GREEN, ORANGE, VERMILLION, PURPLE, SKY, INK)
-"""Of the stages from 0 on; they come again where there are more."""
 
 SHADE = "#f3f1e7"
 
@@ -73,11 +64,6 @@ def draw(axes: Axes, loop: LineControlLoop) -> None:
     axes.axhline(loop.table.target_speed_m_s, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), zorder=2)
     bars = [(start, end - start) for start, end in loop.table.retarder.zones_m]
     axes.broken_barh(bars, (0.0, 0.02), transform=axes.get_xaxis_transform(), facecolor=INK, zorder=5)
-
-
-def colour_of(stage: int) -> str:
-    """The colour of passes and lines of a stage."""
-    return STAGE_COLOURS[stage % len(STAGE_COLOURS)]
 
 
 def while_in(response: NominalResponse, stage: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

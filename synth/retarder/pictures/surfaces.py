@@ -10,27 +10,12 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection  # typ
 from numpy.typing import NDArray
 
 from synth.frame.picture.house_style import BLUE, INK, VERMILLION, legend_below, new_figure
-from synth.retarder.case_result import CaseResult
-from synth.retarder.pictures.speed_window import speed_window_m_s
-from synth.retarder.pictures.stage_surfaces import sheet, stage_surfaces
+from synth.retarder.pictures.stage_surfaces import sheet
 from synth.solver.switching_lines import SwitchingLines
-from synth.solver.tabulate import lines_of
 
 PATH_POINTS = 25
 POINTS_PER_STAGE = 3
 """Quadrilaterals between two neighbouring stages."""
-
-
-def surfaces(case: CaseResult) -> Figure:
-    """The exported lines of a case over path and pressure; see `surface_figure`."""
-    subject = f"{case.cut_name}, {case.target_name}"
-    if case.table.has_gauge:
-        return stage_surfaces(case.table, subject, speed_window_m_s(case))
-    stages = case.study.table_lines.stages
-    path = np.linspace(case.plant.start_m, case.plant.exit_m, PATH_POINTS)
-    lines = lines_of(case.table, path)
-    pressure = np.asarray(case.plant.position.stage_pressures_kpa[:stages])
-    return surface_figure("Switching surfaces", subject, lines, pressure, speed_window_m_s(case))
 
 
 def surface_figure(

@@ -27,8 +27,7 @@ from synth.frame.picture.house_style import (
     place,
 )
 from synth.retarder.command_panels import DOWN, HOLD, UP, label_panels, stage_panels
-from synth.retarder.pictures.policy_map import finite, parts_in_stage
-from synth.retarder.pictures.sample_passes import outcome
+from synth.retarder.pictures.stage_colours import finite, outcome, parts_in_stage
 from synth.retarder.pictures.stage_surfaces import stage_surfaces
 from synth.retarder.pictures.surfaces import PATH_POINTS, surface_figure
 from synth.simulation.exit_statistics import exit_statistics

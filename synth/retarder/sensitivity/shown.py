@@ -60,7 +60,8 @@ def first(found: Sensitivity) -> Iterator[Exhibit]:
         brief=True,
     )
     for each in found.overall:
-        yield Sentence(measure_first(found.names, each), {f"first_{each.output.name}": leader(found, each)}, brief=True)
+        figures = {f"first_{each.output.name}": leader(found, each)}
+        yield Sentence(measure_first(found.names, each), figures, brief=True, to_do=True)
         if each.varies:
             open_ones = sum(not share.decided for share in each.shares)
             yield Sentence(

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from plant_models import every_axle
-from synth.frame.exhibits import Chapter, Chart, Column, File, Row, Sentence, Table
+from synth.frame.exhibits import Chapter, Chart, Column, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals
 from synth.retarder.sensors.layout_plan import CHOOSING_PASSES, JudgedLayout
@@ -35,7 +35,7 @@ REACHED = {True: "yes", False: "no", None: "not decidable"}
 
 def chapters(found: LayoutResults) -> Iterator[Chapter]:
     """All of it, in the order of the page."""
-    yield Chapter("What to do first", (first(found), *links(found)))
+    yield Chapter("Configurations", (tiles(found), first(found), *links(found)))
     yield Chapter("Layouts", (Table("layouts", "Layouts", LAYOUTS, list(layout_rows(found)), brief=True), how(found)))
     yield Chapter("Pictures", tuple(charts(found)))
     yield Chapter("Case by case", (Table("cases", "Case by case", CASES, list(case_rows(found))),))
@@ -52,7 +52,21 @@ def first(found: LayoutResults) -> Sentence:
             f"wanted. Ask for more sensors (--sensors), decide on every axle ([sensors] decides_on), or allow more "
             f"(--rms). Their places stand in {name}."
         )
-    return Sentence(text, {"chosen_sensors": None if found.chosen is None else number}, brief=True)
+    return Sentence(text, {"chosen_sensors": None if found.chosen is None else number}, brief=True, to_do=True)
+
+
+def tiles(found: LayoutResults) -> Tiles:
+    """How many sensors, what they give, and what a radar gives."""
+    shown, of_radar = found.shown, found.shown.errors.over(found.radar)
+    number = Tile(
+        f"{shown.deciding + 1} sensors",
+        f"are the fewest planned for an rms of {found.wanted_rms_m_s:.4f} m/s"
+        if found.chosen is not None
+        else f"are the most that were asked for; an rms of {found.wanted_rms_m_s:.4f} m/s is wanted",
+    )
+    rms = Tile(f"{shown.errors.rms.value:.3f} m/s", "is their rms error at the exit", found.is_reached(shown))
+    radar = Tile(f"{of_radar.value:.2f} times", f"the rms of the radar, {found.radar.rms.value:.3f} m/s")
+    return Tiles((number, rms, radar))
 
 
 def how(found: LayoutResults) -> Sentence:

@@ -7,7 +7,6 @@ from typing import Final
 
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.printed_numbers import per_cent
-from synth.retarder.acceptance import advice_of
 from synth.retarder.configuration.point_sensors.resolved_sensors import ResolvedSensors
 from synth.retarder.exit_figures import CASE, DETAILS, EFFORT, TOLD, told
 from synth.retarder.found_book import FoundBook
@@ -26,6 +25,7 @@ from synth.retarder.shown.cases import (
     identity_row,
     passes_told,
 )
+from synth.retarder.shown.first_screen import tiles, to_do
 
 CASES: Final = (*CASE, VERDICT, *TOLD, UNAVOIDABLE, *EFFORT, *DETAILS, *KEYS, *PROMISE)
 HOW_TO_READ: Final = (
@@ -56,11 +56,11 @@ DESIGNS: Final = (
 
 def results(found: FoundBook[SensorCase]) -> Iterator[Exhibit]:
     """The table of cases, and what is to be known of it."""
+    yield tiles(found)
     yield from cases_table(found, CASES, case_row)
     criterion = {"criterion": found.book.config.criterion.sentence}
     yield Sentence(f"{passes_told(found.book.cases)} {HOW_TO_READ}", criterion, brief=True)
-    if advice := advice_of(found.verdicts):
-        yield Sentence(advice, brief=True)
+    yield from to_do(found)
     if found.no_st:
         yield Sentence(f"No Structured Text is written: {found.no_st}.", brief=True)
 

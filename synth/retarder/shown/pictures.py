@@ -7,27 +7,38 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from synth.frame.exhibits import Chapter, Chart
-from synth.retarder.case_names import by_class, file_stem
+from synth.frame.exhibits import Chart, Exhibit, Sentence
+from synth.frame.printed_numbers import of_ten_thousand, speed
+from synth.retarder.case_names import file_stem
 from synth.retarder.case_result import CaseResult
+from synth.retarder.exit_bins import prediction_origin
 from synth.retarder.pareto.pareto_front import ParetoFront
-from synth.retarder.shown.case_charts import exits_chart, passes_chart
+from synth.retarder.shown_case import ShownCase, shown_case
+from synth.simulation.exit_statistics import OVERSPEED_M_S
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def chapters(cases: Sequence[CaseResult]) -> Iterator[Chapter]:
-    """The pictures of classes and cases; surfaces and sample passes for the middle target of a class only."""
-    classes = by_class(cases)
-    middles = [group[len(group) // 2] for group in classes]
-    seen = " under the exported table"
-    yield Chapter("Predicted and simulated exit speed", tuple(exits_chart(group) for group in classes))
-    yield Chapter("Switching surfaces", tuple(surfaces_chart(case) for case in middles))
-    yield Chapter("Sample passes", tuple(passes_chart(case, seen, sample_passes) for case in middles))
-    yield Chapter("Switching lines", tuple(lines_chart(case) for case in cases))
+RUN: Final = (
+    "Left: one run of mean friction. The colour and the number tell the stage in force; thin lines are the switching "
+    "lines of that stage, where it is in force; grey: the retarders; the dot: where the cut leaves. Right: the speed "
+    "axis enlarged around the target, with the simulated cuts and the density that is"
+)
+GRID: Final = "The step of the grid widens the peak of that density, most at low targets."
+MORE: Final = (
+    "Further pictures of every table are drawn by: retarder-synth plot DIR. They show its switching lines in all "
+    "stages, its switching surfaces, and passes of low and high friction."
+)
+
+
+def case_pictures(cases: Sequence[CaseResult]) -> Iterator[Exhibit]:
+    """A picture of each case."""
+    yield Sentence(f"{RUN} {prediction_origin(cases)}. {GRID}")
+    yield from (case_chart(case) for case in cases)
+    yield Sentence(MORE)
 
 
 def accuracy_charts(cases: Sequence[CaseResult], limit_m_s: float) -> Iterator[Chart]:
@@ -58,26 +69,16 @@ def fronts_chart(fronts: Sequence[ParetoFront]) -> Chart:
     )
 
 
-def surfaces_chart(case: CaseResult) -> Chart:
-    """The lines of one case over path and pressure."""
-    name = case.name
+def case_chart(case: CaseResult) -> Chart:
+    """One case: a run, and how all leave."""
+    found = case.statistics
+    low, high = (speed(each) for each in found.p95_ci95_m_s)
     return Chart(
-        file_stem("surfaces", name),
-        f"Switching surfaces of {name}",
-        f"{name}: the exported lines (bold) over path and pressure, joined linearly between the stages.",
-        partial(surfaces, case),
-    )
-
-
-def lines_chart(case: CaseResult) -> Chart:
-    """The command by stage of one case."""
-    name = case.name
-    return Chart(
-        file_stem("policy-map", name),
-        f"Best command by stage, {name}",
-        f"{name}: best command by stage, the region of indifferent control (hatched), the solver's switching lines "
-        "(dots), the exported polynomial lines (bold), and simulated passes while they were in the stage.",
-        partial(policy_map, case),
+        file_stem("case", case.name),
+        case.name,
+        f"95 of 100 cuts leave within ±{speed(found.p95_m_s)} [{low}, {high}] m/s of the target; "
+        f"{of_ten_thousand(found.overspeed)} in 10 000 leave more than {OVERSPEED_M_S:g} m/s above it.",
+        partial(case_picture, shown_case(case)),
     )
 
 
@@ -102,22 +103,8 @@ def pareto_fronts(fronts: Sequence[ParetoFront]) -> Figure:
     return pareto_fronts(fronts)
 
 
-def surfaces(case: CaseResult) -> Figure:
+def case_picture(case: ShownCase) -> Figure:
     """See `rms_by_controller`."""
-    from synth.retarder.pictures.surfaces import surfaces
+    from synth.retarder.pictures.case_picture import case_picture
 
-    return surfaces(case)
-
-
-def sample_passes(case: CaseResult) -> Figure:
-    """See `rms_by_controller`."""
-    from synth.retarder.pictures.sample_passes import sample_passes
-
-    return sample_passes(case)
-
-
-def policy_map(case: CaseResult) -> Figure:
-    """See `rms_by_controller`."""
-    from synth.retarder.pictures.policy_map import policy_map
-
-    return policy_map(case)
+    return case_picture(case)

@@ -9,7 +9,7 @@ from typing import Final
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, speed
-from synth.retarder.acceptance import CaseVerdict, advice_of
+from synth.retarder.acceptance import CaseVerdict
 from synth.retarder.case_result import CaseResult, fronts_of
 from synth.retarder.comparison.measured import Measured
 from synth.retarder.exit_figures import CASE, DETAILS, EFFORT, TOLD, told
@@ -18,6 +18,7 @@ from synth.retarder.off_nominal.worst import worst_of
 from synth.retarder.pareto.pareto_front import told as nearly_free
 from synth.retarder.permissions.refusal import tellable
 from synth.retarder.shown.cases import KEYS, PROMISE, UNAVOIDABLE, VERDICT, case_row, cases_table, passes_told
+from synth.retarder.shown.first_screen import tiles, to_do
 from synth.retarder.shown.pictures import accuracy_charts
 
 ENTRY: Final = (
@@ -41,7 +42,7 @@ HOW_TO_READ: Final = (
     "see the same passes, and may act from the same place."
 )
 PERMISSIONS: Final = (
-    "What commands at any time and other permissions of the hardware would give: retarder-synth permissions."
+    "'retarder-synth permissions' tells what commands at any time and other permissions of the hardware would give."
 )
 
 
@@ -53,11 +54,13 @@ NO_REGRET: Final = (
 
 def results(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
     """The table of cases, what is to be known of it, and the pictures of all cases."""
+    yield tiles(found)
     yield from cases_table(found, CASES, result_row)
     yield Sentence(passes_told(found.book.cases), overall(found), brief=True)
     yield Sentence(HOW_TO_READ)
     for sentence in (*remarks(found), *(infeasible(case, each) for case, each in found.judged if not each.feasible)):
         yield Sentence(sentence, brief=True)
+    yield from to_do(found)
     yield from accuracy_charts(found.book.cases, found.book.config.acceptance.rms_m_s)
 
 
@@ -103,8 +106,6 @@ def remarks(found: FoundBook[CaseResult]) -> Iterator[str]:
     worst = worst_of(found.feasible)
     if worst is not None:
         yield worst.told
-    if advice := advice_of(found.verdicts):
-        yield advice
     if fronts := fronts_of(found.book.cases):
         yield nearly_free(fronts)
     if tellable(found.book.config):

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from statistics import median
 from typing import Final
 
 from synth.frame.command import Limit
-from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
+from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import counted, decimals, per_cent
 from synth.retarder.exit_figures import (
     DETAILS,
@@ -36,6 +37,8 @@ WORDS: Final = {"accepted": "limits kept", "missed": "limits missed", "not decid
 
 def tables(title: str, seed: int, found: Sequence[Revalidation]) -> Iterator[Exhibit]:
     """A row for each table, and what it comes to."""
+    yield first_tiles(found)
+    yield from (Sentence(step, to_do=True) for step in to_do(found))
     yield Table("tables", title, TABLES, [row_of(each) for each in found], True)
     passes = found[0].statistics.passes
     yield Sentence(f"{passes} stratified passes of each table, seed {seed}. {LEGEND}", {"seed": seed}, brief=True)
@@ -49,6 +52,41 @@ def tables(title: str, seed: int, found: Sequence[Revalidation]) -> Iterator[Exh
                 "infeasible, so it does not count.",
                 brief=True,
             )
+
+
+def first_tiles(found: Sequence[Revalidation]) -> Tiles:
+    """How many tables keep the limits, how near cuts leave, and how many files these passes confirm."""
+    counting = [each for each in found if not each.infeasible]
+    kept = sum(each.judgement.word == "accepted" for each in counting)
+    missed = any(each.judgement.missed for each in counting)
+    whole = Tile(
+        f"{kept} of {len(counting)}", "tables keep the limits of [acceptance]; infeasible cases do not count",
+        False if missed else True if counting and kept == len(counting) else None,
+    )  # fmt: skip
+    near = [each.statistics.p95_m_s for each in counting] or [each.statistics.p95_m_s for each in found]
+    half = Tile(
+        f"±{median(near):.3f} m/s",
+        f"of the commanded speed leave 95 of 100 cuts: median, from ±{min(near):.3f} to ±{max(near):.3f}",
+    )
+    stated = [each.confirmed for each in found if each.confirmed is not None]
+    same = Tile(f"{sum(stated)} of {len(stated)}", "files state an rms that these passes confirm")
+    return Tiles((whole, half, *((same,) if stated else ())))
+
+
+def to_do(found: Sequence[Revalidation]) -> Iterator[str]:
+    """What the passes call for."""
+    other = [each for each in found if not each.same_config]
+    if other:
+        yield (
+            f"Give the configuration that made the tables: {len(other)} of {counted(len(found), 'table')} were made "
+            "from another one."
+        )
+    if any(each.confirmed is False for each in found):
+        yield "Find out why a file states another rms than these passes have, before you load its table."
+    if any(each.judgement.missed for each in found if not each.infeasible):
+        yield "Do not load a table that misses a limit; tune again, or change the limits of [acceptance]."
+    if any(each.judgement.word == "not decidable" for each in found if not each.infeasible):
+        yield "Ask for more passes (--passes): with these some limits are not decidable."
 
 
 def limits_of(found: Sequence[Revalidation]) -> Iterator[Limit]:

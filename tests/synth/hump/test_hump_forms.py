@@ -16,7 +16,7 @@ from synth.hump.forms.hump_tree import tree_toml
 from synth.hump.hump_file import parse_hump
 from tests.effort import sized
 from tests.plant_models.hump.random_humps import random_hump
-from tests.plant_models.hump.test_hump_file import SMALL
+from tests.plant_models.hump.small_hump import SMALL
 
 
 def humps() -> list[HumpEntry]:

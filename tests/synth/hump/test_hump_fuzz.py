@@ -13,7 +13,8 @@ from plant_models.library.type_file import HUMPS
 from synth.frame.input_error import InputError
 from synth.hump.hump_file import parse_hump
 from tests.effort import sized
-from tests.plant_models.hump.test_hump_file import LINES, SMALL
+from tests.plant_models.hump.small_hump import SMALL
+from tests.plant_models.hump.test_hump_file import LINES
 
 FILES = sized(1000, 100_000)
 

@@ -13,11 +13,7 @@ from hypothesis import strategies as st
 from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
 from scripts.studies.point_sensors.sensor_fault_figures import FaultCase, fault_figures, single_faults
-from synth.simulation.passage_controller import of_speeds
-from synth.simulation.passage_loop import PassageLoop, close_passage_loop, simulate_passages
-from synth.simulation.passage_sample import DECIDED, NOT_BELIEVED, NOT_HEARD, PassReadings
-from synth.simulation.random_passes import RandomPasses, random_passes
-from synth.simulation.sensor_faults import (
+from scripts.studies.point_sensors.sensor_faults import (
     DeadSensor,
     LateSensor,
     LoneAxle,
@@ -30,6 +26,10 @@ from synth.simulation.sensor_faults import (
     SwappedSensors,
     together,
 )
+from synth.simulation.passage_controller import of_speeds
+from synth.simulation.passage_loop import PassageLoop, close_passage_loop, simulate_passages
+from synth.simulation.passage_sample import DECIDED, NOT_BELIEVED, NOT_HEARD, PassReadings
+from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from tests.effort import sized
 from tests.synth.conftest import pilot_plant

@@ -38,7 +38,7 @@ def test_every_unit_is_named() -> None:
 
 
 def test_the_examples_are_read(tmp_path: Path) -> None:
-    (tmp_path / "log.csv").write_text(block("csv"), encoding="utf-8")
+    (tmp_path / "log.csv").write_text(block("text"), encoding="utf-8")
     columns = read_csv_log(tmp_path / "log.csv", LogMapping())
     assert (columns.rows, columns.cut_id.value, columns.category.value) == (3, ("2026-03-02/117",), ("СТ",))
     assert np.array_equal(columns.numbers["speed_m_s"], [5.31, 5.32, np.nan], equal_nan=True)

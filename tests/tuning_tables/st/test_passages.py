@@ -177,8 +177,9 @@ def test_a_wrong_block_is_found_by_the_small_self_test(before: str, after: str) 
         assert self_tested(text.replace(before, after, 1))[0] > 0
 
 
-def test_the_page_tells_what_is_asked_here() -> None:
-    page = (Path(__file__).parents[3] / "docs" / "how-to" / "controllers.md").read_text("utf-8")
+def test_the_page_states_what_is_asked_here() -> None:
+    path = Path(__file__).parents[3] / "docs" / "reference" / "code-checks.md"
+    page = " ".join(path.read_text("utf-8").split())
     assert f"{FEW // 1000} 000 questions to the rules of each kind" in page
     assert f"with `scripts/test --long` {MANY // 10**6} 000 000" in page
     assert f"{len(CHANGES)} in the Structured Text" in page

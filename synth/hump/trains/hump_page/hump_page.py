@@ -9,8 +9,10 @@ from importlib.resources import files
 from typing import Any, Final
 
 from plant_models.library.hump_entry import HumpEntry
+from plant_models.library.weight_category import WeightCategory
 from synth.frame.page.markup import Markup, element
 from synth.frame.page.page_style import STYLE
+from synth.frame.picture.category_colour import category_colour
 from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.hump_page.plan_data import plan_data
 from synth.hump.trains.hump_page.train_data import train_data
@@ -29,13 +31,13 @@ SCRIPTS: Final = ("train_ways.js", "plan_panel.js", "alarms.js", "player.js")
 class PlayedRun:
     """Trains of one run over `hump`, in the order of the menu; `name` tells it from the others, '' where it is alone.
 
-    `categories`: names of the weight categories. `couplings`: which couplings are too fast.
+    `categories`: the weight categories in their places. `couplings`: which couplings are too fast.
     """
 
     name: str
     hump: HumpEntry
     traces: tuple[TrainTrace, ...]
-    categories: tuple[str, ...]
+    categories: tuple[WeightCategory, ...]
     couplings: CouplingLimits
 
 
@@ -72,7 +74,7 @@ def run_data(run: PlayedRun) -> dict[str, Any]:
     return {
         "name": run.name,
         "plan": plan_data(run.hump.graph, routes),
-        "categories": list(run.categories),
+        "categories": [{"name": each.label, "colour": category_colour(each.number)} for each in run.categories],
         "coupling_limits_m_s": list(run.couplings.classes_m_s),
         "trains": [train_data(trace) for trace in run.traces],
     }

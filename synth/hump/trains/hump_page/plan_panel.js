@@ -2,13 +2,10 @@
 // The plan of one run with the cuts of its train. One text for a page of one run and of several.
 
 const SVG = "http://www.w3.org/2000/svg";
-const CATEGORY_COLOURS = ["#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#222222", "#0072b2", "#f0e442"];
 const COUPLING_COLOURS = ["#009e73", "#f0c000", "#e8740c", "#b3001b"];
 const ALARM = "#d55e00", QUIET = "#767676";
 const BEHIND_CREST_M = 60, BEHIND_LAST_M = 90, TOLD_S = 6, COUPLER_M = 0.6;
 const LEAST_ROW_PX = 9, MOST_ROW_PX = 60, PLAN_PX = 600, MARGIN_PX = 5;
-
-const colourOf = (category) => CATEGORY_COLOURS[category % CATEGORY_COLOURS.length];
 
 const set = (node, attributes) => {
   for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
@@ -37,7 +34,7 @@ const couplingClass = (speed, limits) => limits.filter((limit) => speed > limit)
 class PlanPanel {
   // svg: where it is drawn; share: of the height of a page that one run alone has.
   constructor(svg, run, ways, share) {
-    Object.assign(this, { svg, plan: run.plan, limits: run.coupling_limits_m_s, ways, share });
+    Object.assign(this, { svg, plan: run.plan, limits: run.coupling_limits_m_s, categories: run.categories, ways, share });
     this.row = 0;
   }
 
@@ -146,7 +143,7 @@ class PlanPanel {
     if (!seen) return;
     body.setAttribute("points", this.points(way, head - COUPLER_M, cut.length_m - 2 * COUPLER_M));
     const alarmed = this.ways.inAlarm(cut, now) ? ALARM : QUIET;
-    body.setAttribute("stroke", colours === "category" ? colourOf(cut.category) : alarmed);
+    body.setAttribute("stroke", colours === "category" ? this.categories[cut.category].colour : alarmed);
     const fill = COUPLING_COLOURS[couplingClass(cut.coupled_m_s, this.limits)];
     if (state === "coupled") set(dot, { cx: X, cy: Y, fill });
     const [middleX, middleY] = onWay(way, head - 0.5 * cut.length_m), number = `${cut.place + 1}`;

@@ -96,7 +96,7 @@
   const cuts = ({ run, lists }, all) => fill(lists.querySelector(".cuts"), all.map(({ cut, head, speed, state }) => {
     const called = run.plan.tracks_called, waits = state === "waits";
     return [
-      cut.place + 1, cut.cars, cut.mass_t.toFixed(0), run.categories[cut.category],
+      cut.place + 1, cut.cars, cut.mass_t.toFixed(0), run.categories[cut.category].name,
       cut.track === cut.wanted ? called[cut.track] : `${called[cut.wanted]}, went to ${called[cut.track]}`,
       waits ? "" : head.toFixed(0), waits ? "" : number(speed), stateOf(cut, state),
     ];
@@ -129,7 +129,7 @@
     const { categories, coupling_limits_m_s: limits } = runs[0];
     const used = new Set(panels.flatMap(({ ways }) => ways.cuts.map(({ category }) => category)));
     for (const category of [...used].sort((one, other) => one - other)) {
-      key(colourOf(category), `category ${categories[category]}`);
+      key(categories[category].colour, `category ${categories[category].name}`);
     }
     const above = limits.map((limit) => `above ${withUnit(limit)}`);
     const classes = [`coupled at up to ${withUnit(limits[0])}`, ...above];

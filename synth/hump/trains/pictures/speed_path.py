@@ -9,15 +9,16 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from plant_models.library.weight_category import WeightCategory
+from synth.frame.picture.category_colour import category_colour
 from synth.frame.picture.house_style import INK, LINE_STYLES, VERMILLION, dress, legend_below, new_figure, place
-from synth.frame.picture.series import graded
 from synth.hump.trains.pictures.element_strip import draw_strip
 from synth.hump.trains.train_trace import TracedCut, TrainTrace
 
 STEP_M = 2.0
 
 
-def speed_path(trace: TrainTrace, categories: Sequence[str]) -> Figure:
+def speed_path(trace: TrainTrace, categories: Sequence[WeightCategory]) -> Figure:
     """A line for each cut, its look by its place among the `categories`; marks at the end of each pass."""
     figure = new_figure(
         12.5,
@@ -28,12 +29,11 @@ def speed_path(trace: TrainTrace, categories: Sequence[str]) -> Figure:
     place(figure, left=0.65, right=0.3, bottom=1.05, top=1.3)
     axes = figure.subplots()
     dress(axes, "", "metres from the crest", "m/s")
-    colours = graded(len(categories))
     for cut in trace.cuts:
-        style = LINE_STYLES[cut.category % len(LINE_STYLES)]
+        style, colour = LINE_STYLES[cut.category % len(LINE_STYLES)], category_colour(categories[cut.category].number)
         heads = np.append(np.arange(0.0, cut.trace.head_m[-1], STEP_M), cut.trace.head_m[-1])
         speeds = np.interp(heads, cut.trace.head_m, cut.trace.speed_m_s)
-        axes.plot(heads, speeds, color=colours[cut.category], linestyle=style, linewidth=0.9, zorder=3)
+        axes.plot(heads, speeds, color=colour, linestyle=style, linewidth=0.9, zorder=3)
         for at_m, command, left in exits(trace, cut):
             axes.plot([at_m, at_m], [command, left], color=VERMILLION, linewidth=0.8, zorder=5)
             axes.plot([at_m], [command], marker="_", color=VERMILLION, markersize=6, zorder=5)
@@ -42,7 +42,7 @@ def speed_path(trace: TrainTrace, categories: Sequence[str]) -> Figure:
     axes.axhline(trace.allowed_m_s, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), zorder=2)
     axes.set_xlim(0.0, upto_m)
     axes.set_ylim(bottom=0.0)
-    legend_below(figure, legend(trace, categories, colours), columns=5)
+    legend_below(figure, legend(trace, categories), columns=5)
     return figure
 
 
@@ -55,11 +55,17 @@ def exits(trace: TrainTrace, cut: TracedCut) -> list[tuple[float, float, float]]
     ]
 
 
-def legend(trace: TrainTrace, categories: Sequence[str], colours: Sequence[str]) -> list[Artist]:
+def legend(trace: TrainTrace, categories: Sequence[WeightCategory]) -> list[Artist]:
     """The categories that are in the train, and the marks."""
     there = sorted({cut.category for cut in trace.cuts})
     handles: list[Artist] = [
-        Line2D([], [], color=colours[c], linestyle=LINE_STYLES[c % len(LINE_STYLES)], label=f"category {categories[c]}")
+        Line2D(
+            [],
+            [],
+            color=category_colour(categories[c].number),
+            linestyle=LINE_STYLES[c % len(LINE_STYLES)],
+            label=f"category {categories[c].label}",
+        )
         for c in there
     ]
     handles.append(

@@ -15,11 +15,11 @@ from matplotlib.patches import Patch
 from plant_models.hump import Retarder, Switch
 from synth.frame.picture.house_style import (
     BLUE,
-    GREEN,
     GREY,
     INK,
     ORANGE,
     PURPLE,
+    SKY,
     VERMILLION,
     dress,
     legend_below,
@@ -32,8 +32,8 @@ from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.pictures.element_strip import colour_of, draw_strip
 from synth.hump.trains.train_trace import AlarmKind, TracedCut, TrainTrace
 
-BAND_COLOURS = (GREEN, PURPLE, INK, GREY)
-"""Of cuts to different bunches; orange and blue are the sections."""
+BAND_COLOURS = (INK, PURPLE, GREY, SKY)
+"""Of cuts to different bunches; orange and blue are the sections, and green is a weight category elsewhere."""
 
 SECONDS_PER_INCH, SHORTEST_IN, TALLEST_IN = 24.0, 4.0, 40.0
 STEP_M = 4.0

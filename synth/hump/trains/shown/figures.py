@@ -11,6 +11,7 @@ from synth.frame.printed_numbers import three_figures
 from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.outcome_file import TRAINS, to_npz
+from synth.hump.trains.shift_sums import in_shifts
 from synth.hump.trains.train_figures import TrainFigure
 
 TITLES: Final = {
@@ -23,17 +24,23 @@ TITLES: Final = {
     "caught_on_track": "caught up on the track",
     "stopped_on_the_way": "stopped on the way",
     "unseparated_elements_per_cut": "elements where a cut was not separated",
+    "no_room": "no room on the track",
     "gap_per_cut": "gap a cut",
+    "occupied_share": "share of the tracks that is taken before a train",
+    "pushed_up_per_train": "tracks pushed up before a train",
+    "pulled_per_train": "tracks pulled before a train",
     "strokes_per_pass": "commands to valves a pass",
 }
 """What figures are called, but for those of over-speeds."""
 
 HOW_TO_READ: Final = (
     "Misrouted: the cut came to a switch before it could be thrown behind the cut ahead, and followed that one. In "
-    "contact: it ran into the cut ahead. Catch-up: one of both, but not in the last position alone. Over-speed: of the "
-    "cuts that reached a track undisturbed, those that couple faster than allowed. Gap: what such cuts leave free, 0 "
-    "for those that couple. Brackets: 95 % intervals; a train is what is drawn, and cuts of one train are not "
-    "independent. The last column of the shares tells how many cuts would give the share within 0.5 % either way."
+    "contact: it ran into the cut ahead. Catch-up: one of both, but not in the last position alone. No room: less of "
+    "the track was free than the cut is long. Over-speed: of the cuts that reached a track undisturbed, those that "
+    "couple faster than allowed. Gap: what such cuts leave free, 0 for those that couple. Taken: by cars, and by gaps "
+    "between them. Brackets: 95 % intervals; a train is what is drawn, or a shift of trains on the same tracks, and "
+    "what is in it is not independent. The last column of the shares tells how many cuts would give the share within "
+    "0.5 % either way."
 )
 
 
@@ -54,7 +61,6 @@ MEANS: Final = (
     Column("name", "name", words=True, detail=True),
     Column("mean", "mean"),
     Column("unit", "unit", words=True),
-    Column("n", "trains", spare=1),
 )
 
 
@@ -70,7 +76,8 @@ def figures(result: HumpedTrial) -> Iterator[Exhibit]:
     titles = titles_of(result.trial.couplings)
     shares = [share_row(each, titles) for each in result.figures if each.is_share]
     means = [mean_row(each, titles) for each in result.figures if not each.is_share]
-    yield Table("means", "Means over trains", MEANS, means, brief=True)
+    counted = Column("n", "shifts" if in_shifts(found) else "trains", spare=1)
+    yield Table("means", "Means over trains", (*MEANS, counted), means, brief=True)
     yield Table("shares", "Shares of cuts", SHARES, shares, brief=True)
     yield Sentence(HOW_TO_READ)
     yield File(TRAINS, to_npz(found, result.of_trial))

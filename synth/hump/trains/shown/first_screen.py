@@ -12,6 +12,7 @@ from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table, Tile, Ti
 from synth.frame.printed_numbers import decimals, three_figures
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.outcomes import caught_at
+from synth.hump.trains.shift_sums import shift_sums
 from synth.hump.trains.shown.positions import role_words
 from synth.hump.trains.train_figures import TrainFigure, interval_of, ratio
 from synth.hump.trains.trial_limits import kept_within
@@ -137,7 +138,7 @@ def exits_row(result: HumpedTrial, place: int) -> Row:
     """Those of one position; a category of which no cut came has none."""
     found, row = result.found, {"number": place + 1, "role": role_words(result.config, place)}
     for k, member in enumerate(result.config.categories.members):
-        passes = found.commanded[:, place, k].astype(float)
-        mean, low, high = ratio(found.commands_m_s[:, place, k], passes)
-        row[f"{member.latin}_m_s"] = None if math.isnan(mean) else interval_of(mean, low, high, len(found))
+        commands, passes = (shift_sums(found, each[:, place, k]) for each in (found.commands_m_s, found.commanded))
+        mean, low, high = ratio(commands, passes)
+        row[f"{member.latin}_m_s"] = None if math.isnan(mean) else interval_of(mean, low, high, len(passes))
     return row

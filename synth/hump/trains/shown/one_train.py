@@ -35,13 +35,14 @@ def traced_once(shown: OneTrain) -> Traced:
 
 def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Traced) -> Iterator[Exhibit]:
     """What happened to it: the page that plays it and others, its log, and pictures."""
+    members = result.config.categories.members
     yield from standing_cuts(result, shown)
     if result.config.settings.output.report:
         chosen = chosen_trains(result.found)
         others = some_trains(result.trial, [each.number for each in chosen[1:]])
         traces = (traced(), *(each.traced() for each in others))
         titles = [each.title for each in chosen]
-        played = PlayedRun("", result.config.hump, traces, result.category_names, result.config.settings.couplings)
+        played = PlayedRun("", result.config.hump, traces, members, result.config.settings.couplings)
         page = hump_page("Trains over the hump", (played,), titles)
         yield File(PLAYER, page.encode(), f"Play on the plan: {'; '.join(titles)}")
     control = shown.controlled()
@@ -59,7 +60,7 @@ def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Traced) -> 
     )  # fmt: skip
     yield Chart(
         "hump-speed-path", f"Speed over path of train {number}", SPEED_PATH,
-        lambda: _pictures().speed_path(traced(), result.category_names),
+        lambda: _pictures().speed_path(traced(), members),
     )  # fmt: skip
 
 

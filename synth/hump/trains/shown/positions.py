@@ -19,6 +19,7 @@ from synth.hump.trains.position_choice import PositionChoice
 from synth.hump.trains.position_roles import Fixed
 from synth.hump.trains.position_strength import MOST_SHORT, strengths
 from synth.hump.trains.resolved_trial import ResolvedTrial
+from synth.hump.trains.shift_sums import shift_sums
 from synth.hump.trains.shown.figures import in_hundred
 from synth.hump.trains.train_figures import Floats, interval_of, ratio, share
 from synth.hump.trains.trial_aim import stated_exit_std_m_s
@@ -83,20 +84,21 @@ def position_row(result: HumpedTrial, choice: PositionChoice, place: int) -> Row
     """The tracks on whose routes the position is the last one, so that it aims; its passes, how exactly cuts left it,
     and commands to its valves, none where none are modelled."""
     found = result.found
-    passes, strokes = found.passes[:, place].astype(float), found.strokes[:, place].astype(float)
-    lowest = found.at_lowest[:, place].astype(float)
+    passes, strokes, lowest, error2 = (
+        shift_sums(found, each[:, place]) for each in (found.passes, found.strokes, found.at_lowest, found.error2_m2_s2)
+    )
     exits = result.config.roles.exits[place]
-    rms, low, high = (root(each) for each in ratio(found.error2_m2_s2[:, place], passes))
+    rms, low, high = (root(each) for each in ratio(error2, passes))
     return {
         "number": choice.number,
         "site": choice.site,
         "role": role_words(result.config, place),
         "aims_on_tracks": aimed_tracks(result.config, place),
         "passes": int(passes.sum()),
-        "rms_of_exit_less_command_m_s": interval_of(rms, low, high, len(found)),
+        "rms_of_exit_less_command_m_s": interval_of(rms, low, high, len(passes)),
         "stated_exit_std_m_s": stated_exit_std_m_s(choice),
         "at_lowest": None if isinstance(exits, Fixed) else share_of(lowest, passes),
-        "strokes_per_pass": interval_of(*ratio(strokes, passes), len(found)) if strokes.any() else None,
+        "strokes_per_pass": interval_of(*ratio(strokes, passes), len(passes)) if strokes.any() else None,
     }
 
 

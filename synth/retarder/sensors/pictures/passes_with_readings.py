@@ -17,7 +17,7 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.retarder.pictures.sample_passes import outcome
+from synth.retarder.pictures.stage_colours import outcome
 from synth.retarder.sensors.pictures.switching_speeds import mark_sensors
 from synth.retarder.sensors.sensor_case import SensorCase
 from synth.simulation.passage_sample import DECIDED, UNFINISHED, PassageTrace

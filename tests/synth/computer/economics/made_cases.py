@@ -90,7 +90,8 @@ def made_outcomes(
     over = np.array([random.multinomial(n, [*shares, 1.0 - sum(shares)])[:3] for n in judged])
     none, wide = np.zeros(trains, dtype=np.int64), np.zeros((trains, 1), dtype=np.int64)
     return TrainOutcomes(
-        train=np.arange(trains), cuts=base, cars=np.rint(cars).astype(np.int64),
+        train=np.arange(trains), shift=np.arange(trains), occupied=none.astype(float), pushed_up=none, pulled=none,
+        no_room=none, cuts=base, cars=np.rint(cars).astype(np.int64),
         span_s=3600.0 * cars / rates.cars_per_h * train_effect * random.normal(1.0, 0.02, trains),
         span_m=15.0 * cars, span_cars=cars, misrouted=misrouted[:, None], contact=wide, unseparated=wide, foul=wide,
         caught=caught, caught_in_last=none, caught_on_track=none, stopped=none, judged=judged, overspeed=over,

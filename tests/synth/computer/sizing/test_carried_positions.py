@@ -38,7 +38,7 @@ def test_the_counts_of_c_are_those_of_the_kept_study() -> None:
 
 
 def test_the_counts_of_structured_text_are_those_of_its_page() -> None:
-    page, costs = (DOCS / "structured-text.md").read_text("utf-8"), st_costs()
+    page, costs = (DOCS / "reference" / "structured-text.md").read_text("utf-8"), st_costs()
 
     def stated(call: str) -> int:
         (row,) = re.findall(rf"^\| {re.escape(call)} *\| *([\d ]+)\|", page, re.MULTILINE)

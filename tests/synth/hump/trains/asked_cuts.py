@@ -63,6 +63,11 @@ class AlikeCuts:
     cuts: int = 1
 
     @property
+    def numbers(self) -> Ints:
+        """Of each train."""
+        return self.first + np.arange(self.trains)
+
+    @property
     def length_m(self) -> Floats:
         """Over couplers."""
         return np.full(self.trains, CUT_M)

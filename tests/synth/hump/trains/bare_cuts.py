@@ -101,6 +101,11 @@ class BareTrains:
         return len(self.tracks)
 
     @property
+    def numbers(self) -> Ints:
+        """Of each train."""
+        return self.first + np.arange(self.trains)
+
+    @property
     def cuts(self) -> int:
         """Of each train."""
         return int(self.tracks.shape[1])

@@ -14,8 +14,9 @@ from synth.hump.trains.humping import Hump, humped
 from synth.hump.trains.interval_control import Feedback, FeedbackSpeeds
 from synth.hump.trains.rollability import Rollability
 from synth.hump.trains.route_rolling import rolling_on
+from synth.hump.trains.tracks_between import with_room
 from synth.hump.trains.train_memory import TrainMemory
-from synth.hump.trains.trial import Control, HumpTrial, Sensing, with_room
+from synth.hump.trains.trial import Control, HumpTrial, Sensing
 from tests.effort import every
 from tests.synth.hump.trains.made_trials import Day
 

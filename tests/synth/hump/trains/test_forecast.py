@@ -13,6 +13,7 @@ from synth.hump.trains.asked import Asked
 from synth.hump.trains.forecast import Expected, Given, SpeedRange, Ways, from_crest
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.humping import Hump, humped
+from synth.hump.trains.known_rolls import KnownRolls
 from synth.hump.trains.motion import Cars, Moving, Push
 from synth.hump.trains.normal_hump_position import NormalHumpPosition
 from synth.hump.trains.route_rolling import rolling_on
@@ -39,7 +40,7 @@ def single_cuts(trial: HumpTrial) -> tuple[TrainCuts, Expected, Moving, Push]:
     cars = Cars(rolls, np.arange(COUNT), made.route, known.resistance_n_per_kn)
     braked = np.full((COUNT, trial.routes.positions), BRAKED_M2_S2)
     axles = made.first_axle_m, made.last_axle_m
-    own = Expected(cars, *axles, braked)
+    own = Expected(cars, *axles, braked, KnownRolls(COUNT))
     start = Moving(0.5 * made.length_m, np.linspace(1.4, 3.0, COUNT), np.linspace(5.0, 9.0, COUNT))
     return made, own, start, Push(start.speed_m_s, made.length_m)
 
@@ -165,3 +166,30 @@ def test_cuts_that_roll_as_expected_pass_when_forecast(day: Day, hump: str) -> N
         assert np.isfinite(times).all()
         simulated = memory.time_s[:, 0, :, mark] + start.time_s[:, None]
         np.testing.assert_allclose(simulated, times, atol=1e-2)
+
+
+def test_rolls_that_are_known_are_those_that_are_worked_out() -> None:
+    """To the bit: the same questions to one memory, which has seen other speeds, routes and resistances, and anew."""
+    trial = STALLING.on("medium")
+    made, own, start, push = single_cuts(trial)
+    random, changed = np.random.default_rng(3), np.arange(COUNT) % 3 == 0
+    choices, own_n_per_kn = choices_for(trial.routes), own.cars.resistance_n_per_kn
+    assert own_n_per_kn is not None
+    for _ in range(4):
+        speeds = np.where(changed, np.round(random.uniform(1.0, 3.4, COUNT), 1), start.speed_m_s)
+        routes = np.where(random.random(COUNT) < 0.2, (made.route + 1) % len(trial.routes.routes), made.route)
+        resistance = np.where(random.random(COUNT) < 0.2, 2.5, own_n_per_kn)
+        some = np.flatnonzero(random.random(COUNT) < 0.8)
+        cars = Cars(own.cars.rolls, some, routes[some], resistance[some])
+        let_go = Moving(start.head_m[some], speeds[some], start.time_s[some])
+        pushed = Push(push.before_m_s[some], push.apart_m[some])
+        axles = own.first_axle_m[some], own.last_axle_m[some], own.braked_m2_s2[some]
+        seen, fresh = (
+            from_crest(trial.routes, Expected(cars, *axles, rolls), let_go, pushed, choices).legs
+            for rolls in (own.rolled, KnownRolls(COUNT))
+        )
+        for name, known in seen._asdict().items():
+            np.testing.assert_array_equal(known, getattr(fresh, name), err_msg=name)
+    assert set(own.rolled.kept) == {("from the crest", 0, 1)} | {
+        leg for q in range(trial.routes.positions) for leg in (("unbraked", q, 1), ("behind", q, 3))
+    }

@@ -24,7 +24,7 @@ from synth.hump.trains.train_trace import TrainTrace, train_trace
 from tests.plant_models.rolling.populations import CATEGORIES
 from tests.synth.hump.trains.humped_trains import HumpedTrains, humped_trains
 
-NAMES = tuple(category.name for category in CATEGORIES.members)
+CATEGORY_TYPES = CATEGORIES.members
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 SECONDS, SLID_S = 75.0, 120.0
 FRAME_MS = 250
@@ -124,7 +124,13 @@ def in_browser(page: str, folder: Path, fragment: str) -> Seen:
 
 def played(humped: HumpedTrains, name: str, *traces: TrainTrace) -> PlayedRun:
     """A run as a page plays it."""
-    return PlayedRun(name, replace(humped.entry, title=EVIL), traces, (EVIL, *NAMES[1:]), USUAL_COUPLINGS)
+    return PlayedRun(
+        name,
+        replace(humped.entry, title=EVIL),
+        traces,
+        (replace(CATEGORY_TYPES[0], name=EVIL, latin=EVIL), *CATEGORY_TYPES[1:]),
+        USUAL_COUPLINGS,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -233,7 +239,7 @@ def test_a_frame_plays_the_time_since_the_frame_before_and_a_pause_shows_no_late
 def test_the_page_loads_nothing_and_is_the_same_each_time(
     humped: HumpedTrains, traces: tuple[TrainTrace, TrainTrace]
 ) -> None:
-    run = PlayedRun("", humped.entry, traces, NAMES, USUAL_COUPLINGS)
+    run = PlayedRun("", humped.entry, traces, CATEGORY_TYPES, USUAL_COUPLINGS)
     page = hump_page("One", (run,), ["first", "other"])
     assert page == hump_page("One", (run,), ["first", "other"])
     outside = re.findall(r"""(?:src|href)=|@import|url\(|fetch\(|https?://(?!www\.w3\.org/2000/svg)""", page)

@@ -22,7 +22,7 @@ from synth.hump.trains.train_trace import AlarmKind, TrainTrace, train_trace
 from tests.plant_models.rolling.populations import CATEGORIES
 from tests.synth.hump.trains.humped_trains import CUTS, TRAINS, HumpedTrains, humped_trains
 
-NAMES = tuple(category.name for category in CATEGORIES.members)
+CATEGORY_TYPES = CATEGORIES.members
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +45,7 @@ def figures(humped: HumpedTrains, trace: TrainTrace, found: TrainOutcomes) -> di
     counts = by_element(humped.hump.routes, found.misrouted)
     return {
         "time_path": time_path(trace),
-        "speed_path": speed_path(trace, NAMES),
+        "speed_path": speed_path(trace, CATEGORY_TYPES),
         "program": hump_speed_program(pushed_train(trace)),
         "catch_ups": catch_ups(humped.entry, counts, TRAINS * CUTS, "misroutes"),
         "no catch_ups": catch_ups(humped.entry, {}, TRAINS * CUTS),
@@ -72,7 +72,7 @@ def test_pictures_repeat_to_the_byte(humped: HumpedTrains, trace: TrainTrace, fo
             catch_ups(humped.entry, counts, TRAINS * CUTS, "contacts"),
             couplings(found),
             time_path(trace),
-            speed_path(trace, NAMES),
+            speed_path(trace, CATEGORY_TYPES),
             hump_speed_program(pushed_train(trace)),
         )
         return [draw(picture) for picture in pictures]

@@ -21,8 +21,8 @@ from synth.hump.trains.outcomes import (
     joined,
     outcomes,
 )
+from synth.hump.trains.tracks_between import SPARE_M, with_room
 from synth.hump.trains.train_memory import TrainMemory
-from synth.hump.trains.trial import SPARE_M, with_room
 from tests.plant_models.rolling.populations import population
 from tests.synth.hump.trains.bare_cuts import LEAD, BareTrains, one_switch
 from tests.synth.hump.trains.made_trials import Day
@@ -52,6 +52,9 @@ def memory_of_six(routes: HumpRoutes) -> TrainMemory:
     memory.contact_at[0, 3] = BRAKE
     memory.unseparated[0, 2, SWITCH] = memory.unseparated[0, 3, BRAKE] = memory.foul[0, 2, SWITCH] = True
     memory.free_m[:] = [500.0, 480.0, 400.0, np.nan, 450.0, 440.0]
+    memory.free_m[0, 0] = routes.standing_from_m[0] + 13.0
+    memory.found_free_m[:] = routes.standing_from_m + 0.75 * (routes.length_m - routes.standing_from_m)
+    memory.pulled[:] = 2
     memory.end_m[:] = [500.0, 455.0, 400.0, np.nan, 90.0, 430.0]
     memory.end_speed_m_s[:] = [1.6, 0.0, 3.0, np.nan, 0.0, 0.0]
     memory.caught_on_track[0, 5] = True
@@ -71,6 +74,11 @@ def test_six_cuts_are_counted_by_hand() -> None:
     counts = {f.name: getattr(found, f.name).tolist()[0] for f in fields(TrainOutcomes) if "bins" not in f.name}
     assert counts == {
         "train": 7,
+        "shift": 7,
+        "occupied": 0.25,
+        "pushed_up": 0,
+        "pulled": 2,
+        "no_room": 1,
         "cuts": 6,
         "cars": 9,
         "span_s": 46.0,

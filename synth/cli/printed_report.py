@@ -1,0 +1,32 @@
+"""What a command prints that only reads, as report.html in a directory of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+from synth.frame.creation_time import creation_time, require_date
+from synth.frame.page.document import Stamp
+from synth.frame.page.printed_document import printed_document
+from synth.frame.perform import PAGE
+from synth.frame.results_directory import require_own, results_directory
+from synth.frame.terminal.printed_page import Exhibit
+
+
+def require_place(command: str, output: Path) -> None:
+    """`InputError` where `output` shows before any work that a page of `command` cannot go there."""
+    require_date()
+    if output.is_dir():
+        require_own(output, command)
+
+
+def write_report(
+    command: str, title: str, page: Sequence[Exhibit], source: Path, output: Path, steps: Sequence[str] = ()
+) -> None:
+    """Write `page` of `command` about `source` into `output`; `InputError` where that is not its own directory."""
+    from synth.retarder.forms.table_file import files_at
+
+    stamp = Stamp(title, creation_time(), version("retarder-synth"))
+    with results_directory(output, command, files_at(source)) as directory:
+        directory.write(PAGE, printed_document(stamp, page, steps).encode())

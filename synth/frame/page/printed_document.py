@@ -1,0 +1,60 @@
+"""What a command prints that only reads, as a page: the same sentences, verdict and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import Any, Final
+
+from synth.frame.page.document import Stamp, document
+from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.page.told_page import VERDICTS, to_do_box
+from synth.frame.printed_numbers import ABSENT
+from synth.frame.terminal.printed_page import Exhibit, Verdict
+from synth.frame.terminal.printed_table import PrintedTable
+
+INDENT: Final = "  "
+"""A sentence that begins so is a fact of the one before it."""
+
+
+def printed_document(stamp: Stamp, page: Sequence[Exhibit], steps: Sequence[str] = ()) -> str:
+    """One HTML document of `page`: its verdicts, and `steps` to take first, above all else."""
+    verdicts = (verdict_box(each) for each in page if isinstance(each, Verdict))
+    shown = joined(parts([each for each in page if not isinstance(each, Verdict)]))
+    return document(stamp, joined((*verdicts, to_do_box(steps))), (("found", "What was found", shown),))
+
+
+def verdict_box(verdict: Verdict) -> Markup:
+    """The verdict in a sentence."""
+    word, style = VERDICTS[verdict.kept]
+    head, sentence = element("p", element("strong", word)), element("p", verdict.sentence)
+    return element("section", head, sentence, class_=f"verdict {style}", id="verdict")
+
+
+def parts(page: Sequence[Exhibit]) -> Iterator[Markup]:
+    """Sentences, facts in a list below the sentence that they belong to, and tables."""
+    for is_fact, group in groupby(page, lambda each: isinstance(each, str) and each.startswith(INDENT)):
+        if is_fact:
+            yield element("ul", *(fact(str(each)) for each in group), class_="facts")
+        else:
+            yield from map(sentence_or_table, group)
+
+
+def fact(text: str) -> Markup:
+    """A fact; what it is about stands apart from it by two spaces or more."""
+    name, _, told = text.strip().partition(INDENT)
+    return element("li", element("strong", name), f" {told.strip()}") if told else element("li", name)
+
+
+def sentence_or_table(each: Exhibit) -> Markup:
+    """What is no fact of a sentence before it."""
+    return shown_table(each) if isinstance(each, PrintedTable) else element("p", str(each))
+
+
+def shown_table(of: PrintedTable[Any]) -> Markup:
+    """All columns; the first cell of a row names it."""
+    rows = (
+        ([Cell(column.cell(row) or ABSENT, kind="words" if column.words else "") for column in of.columns], "")
+        for row in of.rows
+    )
+    return table(of.title or of.elsewhere, (head_row(*(column.heading for column in of.columns)),), rows, kind="cases")

@@ -1,0 +1,1 @@
+"""Exported tables as control loops: the command, and what it shows."""

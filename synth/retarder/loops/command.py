@@ -1,0 +1,121 @@
+"""The command `loop`: exported tables in the loop as python-control sees it; nothing is solved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, TypeAlias
+
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.exhibits import Chapter
+from synth.frame.input_error import InputError
+from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configured import head_of
+from synth.retarder.exit_figures import MODEL_ONLY
+from synth.retarder.loops.options import LoopOptions
+
+if TYPE_CHECKING:
+    from synth.retarder.line_control_loop import LineControlLoop
+    from synth.retarder.passage_control_loop import PassageControlLoop
+    from tuning_tables.table_kinds import StageTable
+
+    AnyLoop: TypeAlias = LineControlLoop | PassageControlLoop
+
+LIMITS_OF_USE = (
+    MODEL_ONLY,
+    "A nominal pass has mean friction and resistance, the median entry speed and no noise; it tells nothing of the "
+    "spread of exits. What does is 'retarder-synth validate'.",
+)
+
+
+@dataclass(frozen=True)
+class AskedLoops:
+    """What closes each loop, and the configuration with its plant."""
+
+    config: ResolvedConfig
+    closings: tuple[Callable[[], AnyLoop], ...]
+
+
+@dataclass(frozen=True)
+class FoundLoops:
+    """The loops, in the order of their tables, and the title of their configuration."""
+
+    title: str
+    loops: tuple[AnyLoop, ...]
+
+
+def resolve(asked: Asked[ResolvedConfig, LoopOptions]) -> AskedLoops:
+    """The tables; refused where one fits no class of the configuration, or python-control cannot close its loop."""
+    from synth.retarder.forms.any_tables import any_tables
+
+    config, tables = asked.settings, any_tables(asked.options.source)
+    return AskedLoops(config, tuple(closing(table, config, asked.place) for table in tables))
+
+
+def closing(table: StageTable, config: ResolvedConfig, source: str) -> Callable[[], AnyLoop]:
+    """What closes the loop of `table` with the plant of `config` that it is for; `InputError` if there is none."""
+    from synth.retarder.line_control_loop import line_control_loop
+    from synth.retarder.passage_control_loop import passage_control_loop
+    from synth.retarder.served_class import served_class
+    from tuning_tables.decisions import Decisions
+    from tuning_tables.passages.passage_table import PassageTable
+
+    if isinstance(table, PassageTable):
+        return partial(passage_control_loop, table, served_class(table, config, source))
+    if table.decisions is Decisions.AT_ANY_TIME:
+        raise InputError(
+            f"{table.id}: the table decides at any time; the loop of python-control is built for tables that decide at "
+            "rest and for point sensors: give one of those"
+        )
+    return partial(line_control_loop, table, served_class(table, config, source))
+
+
+def head(asked: AskedLoops) -> Head:
+    """What is said of the configuration."""
+    return head_of(asked.config)
+
+
+def steps(asked: AskedLoops) -> Steps:
+    """A step for each table."""
+    return Steps(len(asked.closings), "closing", "loops")
+
+
+def compute(asked: AskedLoops, work: Work) -> FoundLoops:
+    """All loops."""
+    from synth.kernels.cache import guarded
+
+    loops = []
+    for close in asked.closings:
+        loops.append(guarded(close))
+        work.progress.done(loops[-1].table.id)
+    return FoundLoops(asked.config.title, tuple(loops))
+
+
+def limits(found: FoundLoops) -> Iterator[Limit]:
+    """Whether python-control and the simulator agree."""
+    from synth.retarder.loops.shown import limits_of
+
+    return limits_of(found.loops)
+
+
+def show(found: FoundLoops) -> Iterator[Chapter]:
+    """What is shown of it."""
+    from synth.retarder.loops.shown import chapters
+
+    return chapters(found.title, found.loops)
+
+
+COMMAND = Command(
+    name="loop",
+    read=parse_config,
+    options=LoopOptions,
+    resolve=resolve,
+    head=head,
+    steps=steps,
+    compute=compute,
+    show=show,
+    limits=limits,
+    limits_of_use=LIMITS_OF_USE,
+)

@@ -1,0 +1,14 @@
+"""Options of the command `loop`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from synth.frame.settings.options import BY_PLACE, NEEDED, Options, word_option
+
+
+class LoopOptions(Options):
+    """Options of the command line."""
+
+    source: Path = word_option(BY_PLACE, "TABLE|BOOK|DIR", NEEDED, "A table, a book, or a folder of tables.")
+    config: Path | None = word_option("--config", "C", None, "Configuration with the plant; built-in unless given.")

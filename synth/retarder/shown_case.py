@@ -1,0 +1,130 @@
+"""What one picture shows of a case, as plain values: a run by the stage in force, and how all simulated cuts leave."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.retarder.case_result import CaseResult
+from synth.retarder.exit_bins import bin_edges_m_s, predicted_density
+from synth.simulation.exit_statistics import OVERSPEED_M_S
+from synth.simulation.passes import TRACE_FACTORS, PassTrace
+from synth.solver.switching_lines import SwitchingLines
+
+NOMINAL: Final = TRACE_FACTORS.index(1.0)
+"""Which of the traced passes is shown: that of mean friction."""
+
+NEAR_M_S: Final = 1.2 * OVERSPEED_M_S
+"""Exit speeds are shown so far from the target."""
+
+PlainNumbers = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class SwitchingLine:
+    """A line over path; empty where the stage has none there."""
+
+    path_m: PlainNumbers
+    speed_m_s: PlainNumbers
+
+
+@dataclass(frozen=True)
+class StagePart:
+    """A part of a run with one stage in force: path and speed at its events, and the lines of the stage there."""
+
+    stage: int
+    pressure_kpa: float
+    path_m: PlainNumbers
+    speed_m_s: PlainNumbers
+    upper: SwitchingLine
+    lower: SwitchingLine
+
+
+@dataclass(frozen=True)
+class ExitDensities:
+    """Densities of the exit speed in s/m near the target: of simulated cuts in bins between `edges_m_s` (one more than
+    bins), and predicted at `speed_m_s`."""
+
+    edges_m_s: PlainNumbers
+    simulated_s_m: PlainNumbers
+    speed_m_s: PlainNumbers
+    predicted_s_m: PlainNumbers
+
+
+@dataclass(frozen=True)
+class ShownCase:
+    """Position, target and fastest entry of a case, its `run` in parts (none where no pass was traced), its exits.
+
+    `stalled`: the run stopped in the position.
+    """
+
+    label: str
+    target_m_s: float
+    zones_m: tuple[tuple[float, float], ...]
+    ends_m: tuple[float, float]
+    fastest_entry_m_s: float
+    run: tuple[StagePart, ...]
+    stalled: bool
+    rms_m_s: float
+    exits: ExitDensities
+
+
+def shown_case(case: CaseResult) -> ShownCase:
+    """The picture's values of `case`."""
+    runs = case.traces[NOMINAL : NOMINAL + 1]
+    pressures = case.plant.position.stage_pressures_kpa
+    return ShownCase(
+        label=case.label,
+        target_m_s=case.target_speed_m_s,
+        zones_m=case.plant.position.zones_m,
+        ends_m=(case.plant.start_m, case.plant.exit_m),
+        fastest_entry_m_s=case.plant.entry.high_m_s,
+        run=tuple(part for run in runs for part in stage_parts(run, case.study.table_lines, pressures)),
+        stalled=any(run.stalled for run in runs),
+        rms_m_s=case.statistics.rms_m_s,
+        exits=exit_densities(case),
+    )
+
+
+def stage_parts(run: PassTrace, lines: SwitchingLines, pressures_kpa: tuple[float, ...]) -> list[StagePart]:
+    """The run cut where its stage changes; an event between two parts belongs to both."""
+    ends = [*(np.flatnonzero(np.diff(run.stage)) + 1).tolist(), len(run.stage) - 1]
+    parts = []
+    for start, end in zip([0, *ends[:-1]], ends, strict=True):
+        if end > start:
+            stage, path = int(run.stage[start]), run.path_m[start : end + 1]
+            there = (lines.nodes_m >= path[0]) & (lines.nodes_m <= path[-1])
+            upper, lower = (
+                line_of(lines.nodes_m[there], sides[stage][there]) for sides in (lines.upper_m_s, lines.lower_m_s)
+            )
+            speed = numbers(run.speed_m_s[start : end + 1])
+            parts.append(StagePart(stage, pressures_kpa[stage], numbers(path), speed, upper, lower))
+    return parts
+
+
+def line_of(path_m: NDArray[np.float64], speed_m_s: NDArray[np.float64]) -> SwitchingLine:
+    """What there is of a line."""
+    known = np.isfinite(speed_m_s)
+    return SwitchingLine(numbers(path_m[known]), numbers(speed_m_s[known]))
+
+
+def exit_densities(case: CaseResult) -> ExitDensities:
+    """Simulated and predicted, within `NEAR_M_S` of the target."""
+    target, share = case.target_speed_m_s, case.exit_weight / case.exit_weight.sum()
+    speed, predicted = predicted_density(case.predicted)
+    edges = bin_edges_m_s(target, float(max(case.exit_speeds_m_s.max(initial=0.0), speed[-1])))
+    moving = case.exit_speeds_m_s > 0.0
+    simulated = np.histogram(case.exit_speeds_m_s[moving], edges, weights=share[moving])[0] / np.diff(edges)
+    inside, near = (np.abs(each - target) <= NEAR_M_S + 1e-9 for each in (edges, speed))
+    return ExitDensities(
+        numbers(edges[inside]), numbers(simulated[inside[:-1] & inside[1:]]), numbers(speed[near]),
+        numbers(predicted[near]),
+    )  # fmt: skip
+
+
+def numbers(values: NDArray[np.float64]) -> PlainNumbers:
+    """As plain numbers."""
+    return tuple(float(each) for each in values)
