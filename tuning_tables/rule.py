@@ -45,8 +45,8 @@ def decide_for(
 
     Notes
     -----
-    The rule is that of "The decision rule" in docs/reference/table-format.md, in float32; C and Structured Text give
-    the same bits.
+    The rule is that of the page "Table formats", section "The rule", in float32; C and Structured Text give the same
+    bits.
 
     Examples
     --------
@@ -102,8 +102,7 @@ def speed_for(
 
     Notes
     -----
-    The estimator is a Kalman filter of speed, friction and resistance; see "The estimator" in
-    docs/reference/table-format.md.
+    The estimator is a Kalman filter of speed, friction and resistance; see the page "Table formats".
 
     Examples
     --------

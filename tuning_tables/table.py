@@ -38,8 +38,8 @@ class ControllerTable:
     with slopes at every pressure from that of stage 0 to that of the highest stage that the table raises to, and at the
     stage's own.
 
-    Raises `InvalidTable`. What a member means and may be stands in docs/reference/table-format.md. The others follow
-    from them, as read-only arrays; line 0 is `lower`, line 1 is `upper`:
+    Raises `InvalidTable`. What a member means and may be stands on the page "Table formats". The others follow from
+    them, as read-only arrays; line 0 is `lower`, line 1 is `upper`:
 
     Attributes
     ----------

@@ -127,7 +127,7 @@ PROFILE: Final = Key("m, permille", pairs)
 ELSEWHERE: Final[Mapping[str, str]] = {
     **dict.fromkeys(
         ("exit_speed_m_s", "exit_m_s", "target_m_s", "speed_m_s"),
-        "a hump file holds no exit speeds; the configuration of a trial does (retarder-synth init --hump)",
+        "a hump file holds no exit speeds; the configuration of a trial does (retarder-synth init trial)",
     ),
     "name": "only switches, retarders and sections have names",
     "radius_m": "give curves, [from_m, to_m, degrees]",

@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from plant_models.hump import GROUPS
-from plant_models.library.data_file import number, number_or_pairs, pairs
+from plant_models.library.data_file import number, number_or_pairs
+from plant_models.library.form_schema import FORMS, NUMBER, Json, rows_of
 from plant_models.library.hump_cells import CONTROLLERS, ELEMENTS, PROFILE, Key, Schema
 from plant_models.library.hump_entry import FORMAT, VERSION
 from plant_models.library.hump_forms import (
@@ -23,23 +24,10 @@ from plant_models.library.hump_forms import (
 from plant_models.library.sourced_value import CONFIDENCES
 from plant_models.library.written_units import unit_schema
 
-Json = dict[str, Any]
-
 PRINTABLE: Final[Json] = {"type": "string", "minLength": 1}
 ORIGIN: Final[Json] = {"source": PRINTABLE, "confidence": {"enum": list(CONFIDENCES)}}
-NUMBER: Final[Json] = {"type": "number"}
-
-
-def rows_of(numbers: int, fewest: int = 0) -> Json:
-    """A list of rows of so many numbers."""
-    row = {"type": "array", "items": NUMBER, "minItems": numbers, "maxItems": numbers}
-    return {"type": "array", "items": row, "minItems": fewest}
-
-
-FORMS: Final[Mapping[Callable[[object], Any], Json]] = {
-    number: NUMBER,
-    number_or_pairs: {"anyOf": [NUMBER, rows_of(2, 1)]},
-    pairs: rows_of(2, 1),
+CELL_FORMS: Final[Mapping[Callable[[object], Any], Json]] = {
+    **FORMS,
     some_pairs: rows_of(2),
     some_numbers: {"type": "array", "items": NUMBER},
     triples: rows_of(3),
@@ -122,7 +110,7 @@ def table_schema(schema: Schema) -> Json:
 
 def cell_schema(key: Key) -> Json:
     """A value, or where it is a number, a table of it and its origin."""
-    plain = FORMS[key.form]
+    plain = CELL_FORMS[key.form]
     if key.range is not None:
         plain = {**plain, "minimum": key.range.low, "maximum": key.range.high}
     if not key.unit:

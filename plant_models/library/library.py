@@ -16,7 +16,7 @@ class Library:
     """The types of the program and `own`, the user's files; a plain value that can be sent to another machine.
 
     No file of the user's may take a name that the program or another of the user's files has given: a table says by the
-    name what it was made for. Positions and retarders share their names, for `init --retarder` takes either.
+    name what it was made for. Positions and retarders share their names: messages call both by the name alone.
     Raises `TypeFileError`.
     """
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.cli.study import Wanted
 from synth.frame.input_error import InputError
-from synth.frame.terminal.printed_page import print_page
-from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
+from synth.frame.terminal.manner import Manner
+from synth.frame.terminal.telling import LIMITS_MISSED, OK
 
 if TYPE_CHECKING:
     from scripts.studies.result import Result
@@ -27,7 +25,7 @@ def study_command(name: str | None, words: list[str], wanted: Wanted, general_he
     from scripts.studies.registry import STUDIES
 
     if wanted.show_list:
-        print_list(STUDIES, wanted.as_json)
+        print_list(STUDIES, wanted.manner)
         return OK
     if name is None or name in HELP:
         if name in HELP or HELP.intersection(words):
@@ -45,14 +43,12 @@ def study_command(name: str | None, words: list[str], wanted: Wanted, general_he
     return run_command(study, words, wanted)
 
 
-def print_list(studies: tuple[Study, ...], as_json: bool) -> None:
+def print_list(studies: tuple[Study, ...], manner: Manner) -> None:
     """Name, time and question of every study."""
-    if as_json:
-        rows = [{"name": s.name, "question": s.question, "seconds": s.seconds, "page": s.page} for s in studies]
-        print(json.dumps({"studies": rows}, indent=1, ensure_ascii=False))
-        return
+    rows = [{"name": s.name, "question": s.question, "seconds": s.seconds, "page": s.page} for s in studies]
     wide, long = max(len(s.name) for s in studies), max(len(s.duration) for s in studies)
-    print_page(*(f"{s.name:<{wide}}  {s.duration:>{long}}  {s.question}" for s in studies))
+    lines = [f"{s.name:<{wide}}  {s.duration:>{long}}  {s.question}" for s in studies]
+    manner.give(lambda: {"studies": rows}, lambda: lines)
 
 
 def help_of(study: Study) -> str:
@@ -81,13 +77,14 @@ def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
     if wanted.small and words:
         raise InputError("study: --small has options of its own; leave the others out")
     with results_directory(wanted.output, "study") as directory:
-        result = guarded(run_study, study, options, lambda sentence: print(sentence, file=sys.stderr, flush=True))
+        result = guarded(run_study, study, options, wanted.manner.note)
         files = directory.write_all(result_files(result))
-    print(result.json() if wanted.as_json else result.markdown(), end="")
+    if wanted.manner.as_json or not wanted.manner.quiet:
+        print(result.json() if wanted.manner.as_json else result.markdown(), end="")
     if wanted.document:
         kept(Path(), study.name).write_text(result.json(), encoding="utf-8")
         files += [kept(Path(), study.name), *written(Path())]
-    say(f"written: {', '.join(map(str, files))}")
+    wanted.manner.warn(f"written: {', '.join(map(str, files))}")
     return LIMITS_MISSED if result.findings.faults() else OK
 
 

@@ -87,7 +87,7 @@ def imports() -> nx.DiGraph:
     import grimp
     import networkx as nx
 
-    from synth.cli.listed import COMMANDS, HUMP, SENSORS
+    from synth.cli.listed import COMMANDS, HUMP
 
     found = grimp.build_graph(*PACKAGES)
     modules = [each for each in PACKAGES if each != HOUSE] + sorted(found.find_children(HOUSE))
@@ -102,7 +102,7 @@ def imports() -> nx.DiGraph:
         for other in found.find_modules_directly_imported_by(module)
         if other in modules and other != module
     )
-    graph.add_edges_from(("cli", each.place.split(".")[1]) for each in (*COMMANDS, *SENSORS, *HUMP))
+    graph.add_edges_from(("cli", each.place.split(".")[1]) for each in (*COMMANDS, *HUMP))
     return graph
 
 

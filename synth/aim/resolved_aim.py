@@ -42,6 +42,7 @@ from synth.frame.settings.output import OutputSettings
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.plant_fault import in_file
 from synth.retarder.configuration.position_choice import require_held
+from synth.retarder.forms.table_file import book_in
 from tuning_tables.canonical import canonical_json
 
 BOUNDS_M_S: Final = (0.5, 7.0)
@@ -203,7 +204,7 @@ def book_of(file: AimFile) -> tuple[Path, Path | None] | None:
     if named is None:
         return None
     folder = Path(file.place).parent
-    path = folder / named
+    path = book_in(folder / named)
     if not path.is_file():
         raise InputError(
             f"{file.place}: aim.tables names the book {str(path)!r}, which does not exist; 'retarder-synth tune' makes "

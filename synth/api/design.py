@@ -88,7 +88,7 @@ def solve(problem: Problem, resolution: Resolution | None = None) -> Solution:
 
     Notes
     -----
-    Backward induction over the quanta of the path; see "The dynamic programme" in docs/explanation/method.md.
+    Backward induction over the quanta of the path; see the page "Method", sections 3 and 4.
 
     Examples
     --------

@@ -97,7 +97,7 @@ def identify(passes: FittingPasses, config: Config = None) -> Identified:
 
     Notes
     -----
-    Maximum likelihood with sandwich intervals; see docs/how-to/identify.md.
+    Maximum likelihood with sandwich intervals; see the page on `identify`.
 
     Examples
     --------

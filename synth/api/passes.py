@@ -123,7 +123,7 @@ def predict(table: ControllerTable, problem: Problem, resolution: Resolution | N
 
     Notes
     -----
-    The law of the state is carried forward over the path: docs/explanation/method.md, "Prediction without sampling".
+    The law of the state is carried forward over the path; see the page "Method", sections 5 and 7.
 
     Examples
     --------

@@ -23,8 +23,8 @@ CARRIERS: Final = ("book.h5", "tables/", "c/", "st/")
 """What files that hold tables are called; pictures and report may go without a word."""
 FIGURES: Final = ("rms_m_s", "bias_m_s", "p_overspeed", "switchings", "p_stall", "passes")
 """What a table predicts of itself; in a summary each name begins with `predicted_`."""
-RADAR_TUNE: Final = "tune"
-MAKERS: Final = (RADAR_TUNE, "sensors tune", "sweep run")
+TUNE: Final = "tune"
+MAKERS: Final = (TUNE, "sweep run")
 """Commands whose summaries tell of tables."""
 
 
@@ -173,7 +173,8 @@ def read_summary(path: Path) -> Summary:
             canonical_form(document)  # nothing in it that JSON cannot hold faithfully
             named = {case["id"]: case for case in cases if isinstance(case, dict) and isinstance(case.get("id"), str)}
             hashes = {name: sha for name, sha in files.items() if isinstance(sha, str) and is_inside(name)}
-            off_nominal = by_case(tables.get("off_nominal")) if command == RADAR_TUNE else None
+            with_radar = command == TUNE and "sensors" not in config
+            off_nominal = by_case(tables.get("off_nominal")) if with_radar else None
             return Summary(path, config, sha256, named, hashes, off_nominal)
         case {"format": "retarder-synth-summary", "command": str(command)} if command not in MAKERS:
             raise OtherSummaryError(command)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 from synth.checker.aim.reading import Aim
 from synth.checker.aim.sense import claim_faults
@@ -24,6 +25,8 @@ from synth.checker.statistics import ExitFigures, figures_of
 from synth.checker.summary import DEFAULT_PREDICTION_RATIO, OtherSummaryError, Summary, read_summary
 from synth.checker.table_reading import Table
 from synth.checker.table_sense import exit_gap_m_s, sense
+
+V = TypeVar("V", "TableVerdict", "PassageVerdict")
 
 CONFIRMED, NOT_CONFIRMED, DAMAGED = 0, 1, 3
 
@@ -85,23 +88,36 @@ class Verdict:
         return NOT_CONFIRMED if kinds else CONFIRMED
 
 
-def verify(path: Path, passes: int, seed: int) -> Verdict:
-    """Check the table, book or directory at `path`; `NothingToVerifyError` where there is nothing to read."""
+def untold(sentence: str) -> None:
+    """Nobody asks how far it is."""
+
+
+def verify(path: Path, passes: int, seed: int, tell: Callable[[str], None] = untold) -> Verdict:
+    """Check the table, book or directory at `path`, and `tell` each step; `NothingToVerifyError` where there is nothing
+    to read."""
     require_right_crc32()
     source = read_source(path)
+    tell(f"read: {len(source.tables) + len(source.aims) + len(source.passages)} tables")
     report = check_exports(source, source.folder) if source.folder else ExportReport((), ())
+    tell(f"compared with: {', '.join(report.files) or 'no exports'}")
     # The summary of a tune says nothing of tables to aim by.
     of_tables = bool(source.tables or source.passages or not source.aims)
     summary, summary_findings = summary_beside(source) if of_tables else (None, [])
     found = [*source.findings, *report.findings, *summary_findings]
-    tables = tuple(judge(table, summary, passes, seed, found) for table in source.tables)
+    tables = tuple(told(judge(table, summary, passes, seed, found), tell) for table in source.tables)
     aims = tuple(judge_aim(aim, found) for aim in source.aims)
-    passages = tuple(judge_passages(each, summary, passes, seed, found) for each in source.passages)
+    passages = tuple(told(judge_passages(each, summary, passes, seed, found), tell) for each in source.passages)
     ids = {each.id for each in source.tables} | {each.id for each in source.aims}
     ids |= {each.id for each in source.passages}
     others = tuple(finding for finding in found if finding.about not in ids)
     files = (*source.files, *report.files, *([summary.path.name] if summary else []))
     return Verdict(path, passes, seed, tables, others, files, aims, passages)
+
+
+def told(judged: V, tell: Callable[[str], None]) -> V:
+    """`judged`, of which is told that it is."""
+    tell(f"judged: {judged.table.id}")
+    return judged
 
 
 def judge_aim(aim: Aim, found: list[Finding]) -> AimVerdict:

@@ -8,25 +8,20 @@ from typing import Annotated
 
 import typer
 
-from synth.cli import hump_commands, sensors_commands, sweep_commands
-from synth.cli.arguments import (
-    Config,
-    ExportSource,
-    PageFolder,
-    SourceOrDirectory,
-    with_names,
-)
+from synth.cli import hump_commands, sweep_commands
+from synth.cli.arguments import ExportSource, PageFolder, SourceOrDirectory
 from synth.cli.guide import TOP
 from synth.cli.init_commands import add_init_command
 from synth.cli.listed import COMMANDS
-from synth.frame.arguments import Json, directory, whole_number
+from synth.frame.arguments import directory, in_its_manner, whole_number
 from synth.frame.command_line import add_listed, listed_group
+from synth.frame.terminal.manner import Manner
 
 app = typer.Typer(
     name="retarder-synth",
     cls=listed_group(COMMANDS, TOP),
     help="Designs the controller of a hump-yard car retarder: switching lines, controller tables, and their proof.",
-    add_completion=False,
+    add_completion=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -38,7 +33,7 @@ def run(arguments: list[str]) -> int:
     from synth.frame.terminal.telling import INPUT_FAULT, say
 
     try:
-        code = app(with_names(arguments), prog_name="retarder-synth", standalone_mode=False)
+        code = app(arguments, prog_name="retarder-synth", standalone_mode=False)
     except typer.TyperException as fault:
         if not arguments:
             typer.echo(fault.format_message(), err=True)
@@ -67,14 +62,15 @@ def common(
 
 
 app.add_typer(hump_commands.app, name="hump")
-app.add_typer(sensors_commands.app, name="sensors")
 app.add_typer(sweep_commands.app, name="sweep")
 add_listed(app, COMMANDS)
 
 
 @app.command()
+@in_its_manner
 def verify(
     source: SourceOrDirectory,
+    manner: Manner,
     passes: Annotated[
         int,
         typer.Option(
@@ -85,7 +81,6 @@ def verify(
         int, typer.Option(parser=whole_number(0, 2**63 - 1), metavar="N", help="Of the random numbers.")
     ] = 1,
     output: PageFolder = None,
-    as_json: Json = False,
 ) -> int:
     """Check exported tables by a second, independent program.
 
@@ -94,44 +89,46 @@ def verify(
     """
     from synth.cli.verify import verify_command
 
-    return verify_command(source, passes, seed, output, as_json)
+    return verify_command(source, passes, seed, output, manner)
 
 
 @app.command()
-def plot(
+@in_its_manner
+def inspect(
     source: SourceOrDirectory,
+    manner: Manner,
     output: Annotated[
-        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the pictures go.")
-    ] = Path("plots"),
-    config: Config = None,
-    as_json: Json = False,
+        Path | None,
+        typer.Option(
+            "-o", "--output", parser=directory, metavar="DIR", help="Draw the tables too, into this folder, and a page."
+        ),
+    ] = None,
+    config: Annotated[
+        Path | None,
+        typer.Option(
+            "--config", metavar="C", help="With -o: configuration with the plant; that of the tables unless given."
+        ),
+    ] = None,
 ) -> int:
-    """Draw exported tables.
+    """Tell what is in exported tables, and draw them.
 
-    Lines, surfaces and exit speeds; where the plant is known, simulated passes too. Nothing is solved.
-    """
-    from synth.cli.plot import plot_command
-
-    return plot_command(source, output, config, as_json)
-
-
-@app.command()
-def inspect(source: SourceOrDirectory, output: PageFolder = None, as_json: Json = False) -> int:
-    """Tell what is in exported tables.
-
-    What they are for, what they promise, where their lines run; checksums are checked.
+    What they are for, what they promise, where their lines run; checksums are checked. Pictures of lines, surfaces and
+    exit speeds; where the plant is known, of simulated passes. Nothing is solved.
     """
     from synth.cli.inspect import inspect_command
+    from synth.cli.inspect_drawn import asked_drawing
 
-    return inspect_command(source, output, as_json)
+    return inspect_command(source, asked_drawing(output, config), manner)
 
 
 @app.command()
+@in_its_manner
 def export(
     source: ExportSource,
     form: Annotated[
         str, typer.Option("--format", metavar="json|csv|c|st|plcopen|twincat|scl|fmu", help="Form of the tables.")
     ],
+    manner: Manner,
     output: Annotated[
         Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where they go.")
     ] = Path("out/export"),
@@ -145,7 +142,6 @@ def export(
     correction: Annotated[
         float | None, typer.Option(metavar="LIMIT", help="With code that corrects by the last exits, up to LIMIT m/s.")
     ] = None,
-    as_json: Json = False,
 ) -> int:
     """Write tables in another form.
 
@@ -155,15 +151,17 @@ def export(
     """
     from synth.cli.export import AskedCode, export_command
 
-    return export_command(source, form, output, AskedCode(prefix, self_test, split, correction), as_json)
+    return export_command(source, form, output, AskedCode(prefix, self_test, split, correction), manner)
 
 
 add_init_command(app)
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []})
+@in_its_manner
 def study(
     context: typer.Context,
+    manner: Manner,
     name: Annotated[str | None, typer.Argument(metavar="NAME", help="The study; --list tells all.")] = None,
     output: Annotated[
         Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where its results go.")
@@ -172,7 +170,6 @@ def study(
     small: Annotated[bool, typer.Option("--small", help="Its smallest form: seconds, no figure to rely on.")] = False,
     document: Annotated[bool, typer.Option("--document", help="Fill the tables of a checkout's documents.")] = False,
     check: Annotated[bool, typer.Option("--check", help="Tell which documents are stale.")] = False,
-    as_json: Json = False,
 ) -> int:
     """Run a study that figures of the documentation come from, in a checkout; NAME --help tells its options.
 
@@ -180,5 +177,5 @@ def study(
     """
     from synth.cli.study import Wanted, study_command
 
-    wanted = Wanted(output, show_list, small, document, check, as_json)
+    wanted = Wanted(output, show_list, small, document, check, manner)
     return study_command(name, context.args, wanted, context.get_help)

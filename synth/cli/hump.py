@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from synth.frame.terminal.printed_page import print_page
+from synth.frame.terminal.manner import Manner
+from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.telling import OK
 from synth.hump.control.number_ranges import ranges
 
@@ -20,7 +21,7 @@ MOST_TOLD = 30
 """Kinds of elements that were read over; `--json` tells all."""
 
 
-def check_command(source: Path, as_json: bool) -> int:
+def check_command(source: Path, manner: Manner) -> int:
     """Tell what the hump in `source` has, where everything stands, and what is likely a mistake; `InputError` with all
     faults of it."""
     from synth.frame.summary import figures_of, plain, tables_of
@@ -33,40 +34,40 @@ def check_command(source: Path, as_json: bool) -> int:
     with in_file(str(source)):
         checked = checked_hump(read.entry)
     found = checked.exhibits()
-    if as_json:
-        document = {"path": str(source), **figures_of(found), **tables_of(found), "ignored": read.ignored}
-        print(json.dumps(plain(document), indent=1, ensure_ascii=False))
-        return OK
-    page = [*brief_exhibits(found, "--json"), *(f"warning: {each.sentence}" for each in checked.warnings)]
-    if read.ignored:
-        more = len(read.ignored) - MOST_TOLD
-        rest = f" and {more} more" if more > 0 else ""
-        page.append(f"  read over: {', '.join(read.ignored[:MOST_TOLD])}{rest}")
-    print_page(*page)
+
+    def document() -> Any:
+        return plain({"path": str(source), **figures_of(found), **tables_of(found), "ignored": read.ignored})
+
+    def page() -> Iterator[Exhibit]:
+        yield from brief_exhibits(found, "--json")
+        yield from (f"warning: {each.sentence}" for each in checked.warnings)
+        if read.ignored:
+            more = len(read.ignored) - MOST_TOLD
+            rest = f" and {more} more" if more > 0 else ""
+            yield f"  read over: {', '.join(read.ignored[:MOST_TOLD])}{rest}"
+
+    manner.give(document, page)
     return OK
 
 
-def routes_command(source: Path, as_json: bool) -> int:
+def routes_command(source: Path, manner: Manner) -> int:
     """Print every route of the hump in `source`, and the lists of tracks of its switches."""
     from synth.hump.control.hump_document import routes_document
     from synth.hump.hump_file import read_hump
 
     graph = read_hump(source).entry.graph
-    if as_json:
-        print(json.dumps(routes_document(graph), indent=1, ensure_ascii=False))
-        return OK
-    page = [
-        "Elements with their metres from the crest; switches with the position that they need. Code: 0 left, 1 right."
-    ]
+    manner.give(partial(routes_document, graph), partial(routes_page, graph))
+    return OK
+
+
+def routes_page(graph: HumpGraph) -> Iterator[str]:
+    """The routes, then the switches, in a line each."""
+    yield "Elements with their metres from the crest; switches with the position that they need. Code: 0 left, 1 right."
     for lead in graph.leads:
-        page += (route_words(route, graph) for route in graph.routes(lead).values())
+        yield from (route_words(route, graph) for route in graph.routes(lead).values())
     for switch in graph.switches:
         left, right = graph.left_tracks(switch.number), graph.right_tracks(switch.number)
-        page.append(
-            f"{graph.element_called(switch.number)}: left to tracks {ranges(left)}; right to tracks {ranges(right)}"
-        )
-    print_page(*page)
-    return OK
+        yield f"{graph.element_called(switch.number)}: left to tracks {ranges(left)}; right to tracks {ranges(right)}"
 
 
 def route_words(route: Route, graph: HumpGraph) -> str:
@@ -77,7 +78,7 @@ def route_words(route: Route, graph: HumpGraph) -> str:
     return f"{name}: {', '.join(steps)}, end {route.length_m:g}"
 
 
-def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -> int:
+def draw_command(source: Path, output: Path, track: int | None, manner: Manner) -> int:
     """Draw the hump in `source` into the directory `output`; the profile is that of `track`."""
     from synth.frame.results_directory import results_directory
     from synth.hump.hump_file import read_hump
@@ -91,44 +92,35 @@ def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -
 
     with results_directory(output, "hump draw", [source]) as directory:
         rolls = guarded(roll_runners, route)
+        manner.step("a good, a mean and a bad runner rolled")
         files = directory.write_all(figure_files(hump_picture(hump, route, rolls), f"{hump.name}-hump"))
-    if as_json:
-        print(json.dumps({"track": route.track, "files": [str(file) for file in files]}, indent=1))
-    else:
-        print(*files, sep="\n")
+    names = [str(file) for file in files]
+    manner.give(lambda: {"track": route.track, "files": names}, lambda: names)
     return OK
 
 
-def export_command(source: Path, output: Path) -> int:
-    """Write the hump in `source` into the file `output`: railML, CSV, workbook or TOML, as its name ends."""
+def export_command(source: Path, form: str, output: Path, manner: Manner) -> int:
+    """Write the hump in `source` as `form` into the directory `output`."""
     from synth.frame.input_error import InputError
-    from synth.frame.new_file import require_new
+    from synth.frame.results_directory import results_directory
     from synth.hump.forms.hump_csv import to_csv, to_xlsx
     from synth.hump.forms.hump_tree import tree_toml
-    from synth.hump.hump_file import CSV_SUFFIX, RAILML_SUFFIXES, WORKBOOK_SUFFIX, read_hump
+    from synth.hump.hump_file import read_hump
     from synth.hump.railml.write import to_railml
-    from tuning_tables.atomic_file import write_atomically
 
     forms: dict[str, Callable[[HumpEntry], bytes]] = {
-        **dict.fromkeys(RAILML_SUFFIXES, to_railml),
-        CSV_SUFFIX: lambda hump: to_csv(hump).encode(),
-        WORKBOOK_SUFFIX: to_xlsx,
-        ".toml": lambda hump: tree_toml(hump).encode(),
+        "railml": to_railml,
+        "csv": lambda hump: to_csv(hump).encode(),
+        "xlsx": to_xlsx,
+        "toml": lambda hump: tree_toml(hump).encode(),
     }
-    if output.suffix not in forms:
-        *others, last = forms
-        raise InputError(f"--output is {output}; its name must end with {', '.join(others)} or {last}")
-    require_new(output)
-    write_atomically(output, forms[output.suffix](read_hump(source).entry))
-    print(output)
-    return OK
-
-
-def schema_command() -> int:
-    """Print the JSON Schema of hump files."""
-    from plant_models.library.hump_schema import hump_schema
-
-    print(json.dumps(hump_schema(), indent=1, ensure_ascii=False))
+    if form not in forms:
+        raise InputError(f"--format {form}: there is no such form; give {', '.join(forms)}")
+    hump = read_hump(source).entry
+    content = forms[form](hump)
+    with results_directory(output, "hump export", [source]) as directory:
+        name = str(directory.write(f"{hump.name}.{form}", content))
+    manner.give(lambda: {"files": [name]}, lambda: [name])
     return OK
 
 

@@ -3,63 +3,66 @@
 Annotations are not postponed here: typer would compile every one of them anew at each start.
 """
 
-from collections.abc import Callable
-from inspect import Parameter, signature
 from pathlib import Path
+from textwrap import fill
 from typing import Annotated
 
 import typer
 
-from synth.frame.arguments import Json, whole_number
+from synth.cli.file_kinds import FILE_KINDS
+from synth.frame.arguments import in_its_manner, whole_number
+from synth.frame.terminal.manner import Manner
 
-FILES = {
-    "retarder": ("retarders", "File of a retarder type. With the name of a position: its configuration."),
-    "position": ("positions", "File of a position."),
-    "car": ("cars", "File of a car type."),
-    "sensor": ("sensors", "File of a radar."),
-    "wheel_sensor": ("wheel_sensors", "File of a point speed sensor."),
-    "sensors": ("point sensors", "Configuration with point sensors, of a position or a file."),
-    "weight_categories": ("weight_categories", "File of a set of weight categories."),
-    "aim": ("aim", "Aim configuration. With the name of a track or car mix: its file."),
-    "hump": ("hump", "Hump trial configuration. With the name of a hump: its file."),
-    "short_hump": ("short hump", "Short file that hump make turns into a hump file."),
-    "computer": ("computer", "Configuration of a control computer."),
-    "sweep": ("sweep", "Table [sweep] of a configuration: what a sweep is over."),
-}
-"""Options that ask for a file: what `init_command` calls it, and the help."""
+
+def kinds_beginning(incomplete: str) -> list[tuple[str, str]]:
+    """The words of kinds that begin so, for completion."""
+    return [(kind.word, kind.title) for kind in FILE_KINDS if kind.word.startswith(incomplete)]
+
+
+def names_beginning(context: typer.Context, incomplete: str) -> list[str]:
+    """The names of the library of the kind that is typed, for completion."""
+    word = context.params.get("kind")
+    return [name for kind in FILE_KINDS if kind.word == word for name in kind.names if name.startswith(incomplete)]
 
 
 def add_init_command(app: typer.Typer) -> None:
     """Add the command to `app`."""
-    app.command()(with_file_options(init))
+    app.command(help=f"{init.__doc__}\n\n\b\nKIND is one of\n{kinds_in_lines()}")(in_its_manner(init))
 
 
-def with_file_options(command: Callable[..., int]) -> Callable[..., int]:
-    """`command`, whose keywords are those of `FILES` for the parser; each may stand without a name
-    (`arguments.with_names`)."""
-    options = [
-        Parameter(
-            name,
-            Parameter.KEYWORD_ONLY,
-            default=None,
-            annotation=Annotated[str | None, typer.Option(metavar="[NAME]", help=words)],
-        )
-        for name, (_, words) in FILES.items()
-    ]
-    own = [each for each in signature(command).parameters.values() if each.kind is not Parameter.VAR_KEYWORD]
-    own = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in own]
-    parameters = [*options, *own]
-    # mypy knows no such attribute, though every callable may have it
-    command.__signature__ = signature(command).replace(parameters=parameters)  # type: ignore[attr-defined]
-    command.__annotations__ = {each.name: each.annotation for each in parameters}
-    return command
+def kinds_in_lines() -> str:
+    """The words of kinds, whole words in lines for the narrowest terminal."""
+    words = ", ".join(kind.word for kind in FILE_KINDS)
+    return fill(words, 54, initial_indent="  ", subsequent_indent="  ", break_on_hyphens=False)
 
 
 def init(
-    show_list: Annotated[bool, typer.Option("--list", help="Only list what the library holds.")] = False,
+    kind: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="KIND",
+            autocompletion=kinds_beginning,
+            help=f"Of file, as above; {FILE_KINDS[0].word} unless given.",
+        ),
+    ] = None,
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="NAME",
+            autocompletion=names_beginning,
+            help="Of the library, as --list tells; a usual one unless given. Of configurations, a position.",
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE", help="A new file, with its schema beside it; printed unless given."
+        ),
+    ] = None,
     schema: Annotated[
-        bool, typer.Option("--schema", help="The JSON Schema of such a configuration instead, for editors.")
+        bool, typer.Option("--schema", help="The JSON Schema of such a file instead, for editors.")
     ] = False,
+    show_list: Annotated[bool, typer.Option("--list", help="Only list all kinds, and what the library holds.")] = False,
     for_trial: Annotated[
         Path | None,
         typer.Option(
@@ -76,14 +79,15 @@ def init(
             help="With --for: which position, 1 being the first behind the crest.",
         ),
     ] = None,
-    as_json: Json = False,
-    **files: str | None,
+    *,
+    manner: Manner,
 ) -> int:
-    """Print a commented configuration to start from, or the file of one type."""
-    from synth.cli.init import init_command, schema_command, tables_command
+    """Print or write a commented file to start from, or its schema."""
+    from synth.cli.init import AskedFile, init_command, print_list, tables_command
 
-    types = {FILES[name][0]: given for name, given in files.items()}
+    if show_list:
+        return print_list(manner)
+    asked = AskedFile(kind or "", name or "", schema, output)
     if for_trial is not None or position_number is not None:
-        alone = not (schema or show_list or any(given is not None for given in types.values()))
-        return tables_command(for_trial, position_number, alone, as_json)
-    return schema_command(types) if schema else init_command(types, show_list, as_json)
+        return tables_command(for_trial, position_number, asked, manner)
+    return init_command(asked, manner)

@@ -3,85 +3,91 @@
 from __future__ import annotations
 
 import hashlib
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from synth.checker.code_file import CodeFile
 from synth.cli.inspect_aim import aim_document, aim_page
 from synth.cli.inspect_code import code_at, code_document, code_sentence
+from synth.cli.inspect_drawn import AskedDrawing, draw
 from synth.cli.inspect_passages import passage_document, passage_page
 from synth.cli.inspect_table import table_words
 from synth.frame.command import Limit, Verdict
 from synth.frame.printed_numbers import counted
-from synth.frame.terminal.printed_page import Exhibit, print_page
+from synth.frame.terminal.manner import Manner
+from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
-from synth.retarder.forms.aim_file import AimFile, read_aims
-from synth.retarder.forms.passage_file import read_passages
-from synth.retarder.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
+from synth.frame.terminal.telling import OK
+from synth.retarder.forms.table_file import TableFile, summary_beside
+from synth.retarder.forms.tables_at import TablesAt, tables_at
 from tuning_tables import DamagedTable
 from tuning_tables.approach import Approach
 from tuning_tables.decisions import Decisions
 from tuning_tables.document import to_document
 from tuning_tables.estimator import Estimator
-from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.table import ControllerTable
 
 SHOWN_POINTS = 5
 
 
-def inspect_command(source: Path, output: Path | None, as_json: bool) -> int:
-    """Print the contents of the tables in `source`, and what controller code is there, and on a page in `output`;
-    `TableError` for damage."""
-    if output is not None:
+def inspect_command(source: Path, asked: AskedDrawing | None, manner: Manner) -> int:
+    """Tell the contents of the tables in `source`, and what controller code is there, and draw what is `asked`.
+
+    `TableError` for damage.
+    """
+    if asked is not None:
         from synth.cli.printed_report import require_place
 
-        require_place("inspect", output)
+        require_place("inspect", asked.output)
     code = code_at(source)
-    aims, passages = read_aims(source), read_passages(source)
-    nothing_else = bool(code or aims or passages) and not holds_tables(source)
-    files = () if nothing_else else read_tables(source, directory_allowed=True)
+    tables = tables_at(source, else_there=bool(code))
     summary = checked_summary(source) if source.is_dir() else None
-    page = whole_page(source, files, passages, aims)
-    page += map(code_sentence, code)
-    if summary is not None:
-        page.append(f"{source / 'summary.json'}: {summary['sentence']}")
-    if output is not None:
-        from synth.cli.printed_report import write_report
-
-        write_report("inspect", f"Contents of {source.name}", page, source, output)
-    if as_json:
-        found: dict[str, Any] = {"path": str(source), "files": [*map(file_document, files), *map(aim_document, aims)]}
-        found |= {"passage_tables": [passage_document(table) for table in passages]} if passages else {}
-        found |= {"code": [code_document(each) for each in code]} if code else {}
-        if summary is not None:
-            found["summary"] = summary
-        print(json.dumps(found, indent=1, ensure_ascii=False))
-        return 0
-    print_page(*page)
-    return 0
+    manner.step("read; all sums are right")
+    found = Inspected(tables, code, summary)
+    drawn = None if asked is None else draw(source, tables, asked, tuple(found.page()), manner)
+    extra = drawn.document() if drawn else {}
+    manner.give(lambda: found.document() | extra, lambda: [*found.page(), *(drawn.page() if drawn else ())])
+    return OK
 
 
-def whole_page(
-    source: Path, files: Sequence[TableFile], passages: Sequence[PassageTable], aims: Sequence[AimFile]
-) -> list[Exhibit]:
-    """All tables in words."""
-    mixed = is_mixed([table for file in files for table in file.tables])
-    page: list[Exhibit] = []
-    for file in files:
-        page.append(f"{file.path}: {contents(file)}")
-        for table in file.tables:
-            page += table_page(table, mixed)
-    if passages:
-        page.append(f"{source}: {counted(len(passages), 'table')} for point sensors; their sums are right")
-    for each in passages:
-        page += passage_page(each)
-    for aim in aims:
-        page += aim_page(aim)
-    return page
+@dataclass(frozen=True)
+class Inspected:
+    """All that is told of a source: tables, controller code, and its summary."""
+
+    tables: TablesAt
+    code: Sequence[CodeFile]
+    summary: dict[str, Any] | None
+
+    def document(self) -> dict[str, Any]:
+        """It for programs."""
+        tables = self.tables
+        files = [*map(file_document, tables.files), *map(aim_document, tables.aims)]
+        found: dict[str, Any] = {"path": str(tables.path), "files": files}
+        found |= {"passage_tables": [*map(passage_document, tables.passages)]} if tables.passages else {}
+        found |= {"code": [*map(code_document, self.code)]} if self.code else {}
+        return found | ({"summary": self.summary} if self.summary else {})
+
+    def page(self) -> Iterator[Exhibit]:
+        """It in words."""
+        tables, mixed = self.tables, is_mixed(self.tables.lines)
+        for file in tables.files:
+            yield f"{file.path}: {contents(file)}"
+            for table in file.tables:
+                yield from table_page(table, mixed)
+        if tables.passages:
+            yield f"{tables.path}: {counted(len(tables.passages), 'table')} for point sensors; their sums are right"
+        for each in tables.passages:
+            yield from passage_page(each)
+        for aim in tables.aims:
+            yield from aim_page(aim)
+        yield from map(code_sentence, self.code)
+        if self.summary is not None:
+            yield f"{tables.path / 'summary.json'}: {self.summary['sentence']}"
 
 
 def contents(file: TableFile) -> str:

@@ -17,14 +17,24 @@ COMMANDS: Final = (
         "synth.retarder.tune_options:TuneOptions",
         "init",
         "Make a book of tables, its pictures and report.\n\n"
-        "Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.",
+        "For a radar, or for point sensors where the configuration has some. Exit code 1 if the table of a feasible "
+        "case misses a limit of the configuration, or a case has no table.",
         folder="out",
+    ),
+    Listed(
+        "sensors",
+        "synth.retarder.sensors.plan_command:COMMAND",
+        "synth.retarder.sensors.plan_options:PlanOptions",
+        "init",
+        "Plan where point sensors stand: the least rms for each number, and the fewest for a wanted rms.\n\n"
+        "Compared with equal sections, with the rule that each change of stage ends inside its section, and with the "
+        "radar. Exit code 1 if none of the numbers gives the wanted rms.",
     ),
     Listed(
         "aim",
         "synth.hump.aiming.command:COMMAND",
         "synth.hump.aiming.options:AimOptions",
-        "init --aim",
+        "init aim",
         "Make aim tables: the exit speeds at which a park position lets cuts go.\n\n"
         "Random cuts roll to the standing cars; the tables keep a required probability of coupling too fast. Exit code "
         "1 if a table misses it.",
@@ -56,7 +66,7 @@ COMMANDS: Final = (
         "number.",
     ),
     Listed(
-        "permissions",
+        "hardware",
         "synth.retarder.permissions.command:COMMAND",
         "synth.retarder.permissions.options:PermissionsOptions",
         "init",
@@ -68,7 +78,7 @@ COMMANDS: Final = (
         "computer",
         "synth.computer.command:COMMAND",
         "synth.computer.uncertainty:ComputerOptions",
-        "init --computer",
+        "init computer",
         "Size the control computer of a hump: how fast, how reliable, and what it pays.\n\n"
         "Exit code 1 if it is slower than its tasks need, or misses a limit of the configuration.",
     ),
@@ -107,33 +117,12 @@ COMMANDS: Final = (
 )
 """By themselves."""
 
-SENSORS: Final = (
-    Listed(
-        "sensors tune",
-        "synth.retarder.sensors.tune_command:COMMAND",
-        "synth.retarder.sensors.tune_options:SensorsTuneOptions",
-        "init --sensors",
-        "Make tables that decide where axles pass point sensors, with their code, pictures and report.\n\n"
-        "Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.",
-    ),
-    Listed(
-        "sensors plan",
-        "synth.retarder.sensors.plan_command:COMMAND",
-        "synth.retarder.sensors.plan_options:PlanOptions",
-        "init",
-        "Plan where point sensors stand: the least rms for each number, and the fewest for a wanted rms.\n\n"
-        "Compared with equal sections, with the rule that each change of stage ends inside its section, and with the "
-        "radar. Exit code 1 if none of the numbers gives the wanted rms.",
-    ),
-)
-"""Behind the word `sensors`."""
-
 SWEEP: Final = (
     Listed(
         "sweep run",
         "synth.retarder.sweep.command:COMMAND",
         "synth.retarder.sweep.options:SweepOptions",
-        "init --sweep",
+        "init sweep",
         "Make books over a grid of cut classes, targets and conditions; resumable.\n\n"
         "The table [sweep] of CONFIG.toml says what is swept. The same command goes on after an end of any kind. Exit "
         "code 1 if a unit failed or a target has no table; 'sweep failed DIR' tells why, 'sweep status DIR' how far a "
@@ -148,14 +137,14 @@ HUMP: Final = (
         "hump make",
         "synth.hump.making.make_command:COMMAND",
         "synth.hump.making.make_options:MakeOptions",
-        "init --short-hump",
+        "init short-hump",
         "Make a hump file, and its picture, from a short file: tracks, profile, places of switches and positions.",
     ),
     Listed(
         "hump simulate",
         "synth.hump.trains.simulate_command:COMMAND",
         "synth.hump.trains.simulate_options:SimulateOptions",
-        "init --hump",
+        "init trial",
         "Hump whole trains: catch-ups, couplings, gaps and cars an hour, with intervals; resumable.\n\n"
         "The same command goes on after an end of any kind. Exit code 1 if a limit of the configuration is missed.",
     ),
@@ -163,7 +152,7 @@ HUMP: Final = (
         "hump capacity",
         "synth.hump.capacity.command:COMMAND",
         "synth.hump.capacity.options:CapacityOptions",
-        "init --hump",
+        "init trial",
         "Tell how many cars an hour a hump can hump at an allowed share of catch-ups.\n\n"
         "A curve for the trial as it is, or one for each accuracy of the positions and each value of a key; all hump "
         "the same trains. Resumable.",
@@ -172,7 +161,7 @@ HUMP: Final = (
         "hump design",
         "synth.hump.design.command:COMMAND",
         "synth.hump.design.options:DesignOptions",
-        "init --hump",
+        "init trial",
         "Test the design of a hump: fall, brakes, entry speeds and intervals of a bad, a good and a bad runner.\n\n"
         "Every two tracks are tried; up to which hump speed they do is told. Exit code 1 if the test is not passed.",
     ),
@@ -180,7 +169,7 @@ HUMP: Final = (
         "hump compare",
         "synth.hump.comparison.command:COMMAND",
         "synth.hump.comparison.options:CompareOptions",
-        "init --hump",
+        "init trial",
         "Compare runs of 'hump simulate' on the same trains: every figure, and by how much it differs.\n\n"
         "Differences from the first run are paired by train, so they are known better than the figures themselves.",
     ),
@@ -188,7 +177,7 @@ HUMP: Final = (
         "hump speed",
         "synth.hump.trains.speed_command:COMMAND",
         "synth.hump.trains.trial_options:SpeedOptions",
-        "init --hump",
+        "init trial",
         "Plan one train: hump speeds for the locomotive, and the uncoupler's sheet.",
     ),
 )

@@ -27,6 +27,11 @@ def write_report(
     """Write `page` of `command` about `source` into `output`; `InputError` where that is not its own directory."""
     from synth.retarder.forms.table_file import files_at
 
-    stamp = Stamp(title, creation_time(), version("retarder-synth"))
     with results_directory(output, command, files_at(source)) as directory:
-        directory.write(PAGE, printed_document(stamp, page, steps).encode())
+        directory.write(PAGE, report_of(title, page, steps))
+
+
+def report_of(title: str, page: Sequence[Exhibit], steps: Sequence[str] = ()) -> bytes:
+    """The page as it is stored."""
+    stamp = Stamp(title, creation_time(), version("retarder-synth"))
+    return printed_document(stamp, page, steps).encode()

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import ModuleType
 
 from synth.frame.input_error import InputError
+from synth.frame.terminal.manner import Manner
 
 LABORATORY = "scripts.studies.command"
 
@@ -22,7 +23,7 @@ class Wanted:
     small: bool
     document: bool
     check: bool
-    as_json: bool
+    manner: Manner
 
 
 def study_command(name: str | None, words: list[str], wanted: Wanted, general_help: Callable[[], str]) -> int:

@@ -10,8 +10,9 @@ import typer
 
 from synth.cli.guide import GUIDES
 from synth.cli.listed import SWEEP
-from synth.frame.arguments import Json
+from synth.frame.arguments import in_its_manner
 from synth.frame.command_line import add_listed, listed_group
+from synth.frame.terminal.manner import Manner
 
 app = typer.Typer(
     cls=listed_group(SWEEP, GUIDES["sweep"]),
@@ -25,16 +26,18 @@ add_listed(app, SWEEP)
 
 
 @app.command()
-def status(path: Swept, as_json: Json = False) -> int:
+@in_its_manner
+def status(path: Swept, manner: Manner) -> int:
     """Tell how far a sweep is, while it runs or later."""
     from synth.cli.sweep import status_command
 
-    return status_command(path, as_json)
+    return status_command(path, manner)
 
 
 @app.command()
-def failed(path: Swept, as_json: Json = False) -> int:
+@in_its_manner
+def failed(path: Swept, manner: Manner) -> int:
     """Tell which units of a sweep have failed, which targets have no table, and why."""
     from synth.cli.sweep import failed_command
 
-    return failed_command(path, as_json)
+    return failed_command(path, manner)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from synth.frame.printed_numbers import counted
+from synth.frame.terminal.manner import Manner
+from synth.frame.terminal.printed_page import Exhibit
+from synth.frame.terminal.printed_page import Verdict as Told
 from synth.frame.terminal.telling import INPUT_FAULT, say
 
 if TYPE_CHECKING:
@@ -15,7 +18,7 @@ if TYPE_CHECKING:
     from synth.checker.verdict import AimVerdict, PassageVerdict, TableVerdict, Verdict
 
 
-def verify_command(source: Path, passes: int, seed: int, output: Path | None, as_json: bool) -> int:
+def verify_command(source: Path, passes: int, seed: int, output: Path | None, manner: Manner) -> int:
     """Check what is at `source` and print it, a line a table, and on a page in `output`; the exit code."""
     from synth.checker.finding import NothingToVerifyError
     from synth.checker.verdict import verify
@@ -25,24 +28,16 @@ def verify_command(source: Path, passes: int, seed: int, output: Path | None, as
 
         require_place("verify", output)
     try:
-        verdict = verify(source, passes, seed)
+        verdict = verify(source, passes, seed, manner.step)
     except NothingToVerifyError as fault:
         say(str(fault))
         return INPUT_FAULT
     if output is not None:
         from synth.cli.printed_report import write_report
-        from synth.frame.terminal.printed_page import Exhibit
-        from synth.frame.terminal.printed_page import Verdict as Verdicted
 
-        *lines, last = words(verdict)
-        page: list[Exhibit] = [Verdicted(verdict.code == 0, last), *lines]
+        page: list[Exhibit] = [verdict_words(verdict), *words(verdict)]
         write_report("verify", f"Check of {source.name}", page, source, output, steps(verdict))
-    if as_json:
-        print(json.dumps(document(verdict), indent=1, ensure_ascii=False))
-    else:
-        from synth.frame.terminal.printed_page import print_page
-
-        print_page(*words(verdict))
+    manner.give(lambda: document(verdict), lambda: [*words(verdict), verdict_words(verdict)])
     return verdict.code
 
 
@@ -164,7 +159,11 @@ def words(verdict: Verdict) -> list[str]:
         lines += finding_lines(each.findings)
     lines += [line for each in verdict.aims for line in aim_words(each)]
     lines += [line for each in verdict.passages for line in passages_words(each)]
-    lines += [f"{finding.about}: {finding.kind.value}: {finding.sentence}" for finding in verdict.others]
+    return [*lines, *(f"{finding.about}: {finding.kind.value}: {finding.sentence}" for finding in verdict.others)]
+
+
+def verdict_words(verdict: Verdict) -> Told:
+    """What it comes to."""
     found = state(verdict.findings) if verdict.findings else "nothing found"
     count = len(verdict.tables) + len(verdict.aims) + len(verdict.passages)
-    return [*lines, f"{count} tables, {len(verdict.files)} files: {found}"]
+    return Told(verdict.code == 0, f"{counted(count, 'table')}, {counted(len(verdict.files), 'file')}: {found}")

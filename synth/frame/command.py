@@ -11,7 +11,7 @@ import hashlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from plant_models.library import SourcedValue
 from synth.frame.exhibits import Chapter, Chart
@@ -140,7 +140,8 @@ class Command(Generic[S, O, P, R]):
     say. `text`: the text of the configuration at a path, where that may be something else than a TOML file, so that the
     frame keeps no copy of it; its other argument is the command that prints such a file. `inputs`: a folder of the
     results into which `compute` copies what is read, before anything else; a later run may read it there. `drawing`:
-    how many processes draw its charts, which are pickled where there is more than one.
+    how many processes draw its charts, which are pickled where there is more than one. `variant`: the command of the
+    same name that does what is asked, where the settings decide between two.
     """
 
     name: str
@@ -154,6 +155,7 @@ class Command(Generic[S, O, P, R]):
     limits: Callable[[R], Iterable[Limit]] = no_limits
     limits_of_use: Sequence[str] = ()
     drawing: Callable[[P], int] = in_this_process
+    variant: Callable[[Asked[S, O]], Command[S, O, Any, Any]] | None = None
     text: Callable[[Path, str], str] = read_text
     inputs: str = ""
 

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from inspect import Parameter, Signature
+from inspect import Parameter
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperArgument, TyperGroup
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
@@ -21,13 +21,14 @@ if TYPE_CHECKING:
     from synth.frame.command import Command
     from synth.frame.command_guide import CommandGuide
     from synth.frame.settings.options import Options, Words
+    from synth.frame.terminal.manner import Manner
 
 
 @dataclass(frozen=True)
 class Listed:
     """A command as the program lists it.
 
-    `words`: as it is typed, "sensors plan"; `place` of the `Command` and `options_place` of its options alone, each
+    `words`: as it is typed, "sensors"; `place` of the `Command` and `options_place` of its options alone, each
     "module:NAME"; `init`: what prints a configuration; `help`: what it does, a paragraph or two. `folder`: where its
     results go unless told; in a folder of its name in out/ if that is not given.
     """
@@ -73,6 +74,9 @@ def listed_group(listed: Sequence[Listed], guide: CommandGuide) -> type[TyperGro
             command = loaded(by_name[name]) if name in by_name else found
             if command is not None and name is not None and name in guide.shown:
                 command.epilog = guide.shown[name].epilog
+                for each in command.params:
+                    if isinstance(each, TyperArgument):  # its metavar says what it is; the type is Python's word for it
+                        each.display_type = no_type  # type: ignore[method-assign, assignment]
             return name, command, rest
 
         def format_commands(self, ctx: Any, formatter: Any) -> None:
@@ -81,6 +85,11 @@ def listed_group(listed: Sequence[Listed], guide: CommandGuide) -> type[TyperGro
                     formatter.write_dl([(name, first_sentence(self.commands[name].help or "")) for name in names])
 
     return ListedGroup
+
+
+def no_type(context: Any) -> str:
+    """What the help says of the type of an argument."""
+    return ""
 
 
 def first_sentence(text: str) -> str:
@@ -122,14 +131,20 @@ def annotation_of(field: FieldInfo) -> Any:
     if flag == BY_PLACE:
         return Annotated[words | None, typer.Argument(metavar=metavar, help=field.description)]
     unsaid = field.is_required() or field.default in (None, ())
-    default = "" if unsaid else f" [default: {field.default}]"
+    default = "" if unsaid else f" [default: {as_typed(field.default)}]"
     return Annotated[words | None, typer.Option(flag, metavar=metavar, help=f"{field.description}{default}")]
+
+
+def as_typed(value: object) -> str:
+    """A default as it would be typed; a list has commas."""
+    return ",".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
 def function(listed: Listed, options: tuple[Parameter, ...]) -> Callable[..., int]:
     """A function with the signature that Typer reads."""
+    from synth.frame.arguments import directory, in_its_manner, with_parameters
 
-    def run(output: Path, as_json: bool, **words: Words) -> int:
+    def run(output: Path, manner: Manner, **words: Words) -> int:
         from synth.frame.settings.options import read_options
 
         typed = read_options(listed.options(), words)
@@ -137,22 +152,12 @@ def function(listed: Listed, options: tuple[Parameter, ...]) -> Callable[..., in
         from synth.frame.perform import perform
 
         command = listed.load()
-        return perform(command, asked_of(command, typed, listed.init), output, as_json)
+        asked = asked_of(command, typed, listed.init)
+        return perform(command.variant(asked) if command.variant else command, asked, output, manner)
 
-    parameters = [*common_parameters(listed), *options]
-    # mypy knows no such attribute, though every callable may have it
-    run.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
-    run.__annotations__ = {each.name: each.annotation for each in parameters}
-    return run
-
-
-def common_parameters(listed: Listed) -> Iterator[Parameter]:
-    """What every command takes: where the results go, and whether a program reads them."""
-    from synth.frame.arguments import Json, directory
-
-    output = typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
-    for name, default, annotation in (
-        ("output", listed.output, Annotated[Path, output]),
-        ("as_json", False, Json),
-    ):
-        yield Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+    folder = typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
+    common = [
+        Parameter("output", Parameter.KEYWORD_ONLY, default=listed.output, annotation=Annotated[Path, folder]),
+        Parameter("manner", Parameter.KEYWORD_ONLY),
+    ]
+    return in_its_manner(with_parameters(run, [*common, *options], run))

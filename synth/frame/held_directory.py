@@ -1,57 +1,55 @@
 """One run at a time holds a directory.
 
-The lock is on the directory itself and the kernel's: no lock file is left, and it ends with the process, however that
-ends. A file system without locks holds nobody back.
+The lock is that of the system on a file in the directory, so it ends with the process, however that ends. The file goes
+with the run; one that a killed run has left holds nobody back, and neither does a file system without locks.
 """
 
 from __future__ import annotations
 
 import contextlib
-import fcntl
-import os
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-TRIES: Final = 10
-PAUSE_S: Final = 0.05
-"""The lock is asked for so often: `is_held` takes it for a moment to see whether it is free."""
+from filelock import FileLock, Timeout
+
+LOCK: Final = ".retarder-synth.lock"
+"""Name of the file."""
+
+PATIENCE_S: Final = 0.5
+"""The lock is asked for so long: `is_held` takes it for a moment to see whether it is free."""
 
 
 @contextlib.contextmanager
-def held(path: Path) -> Iterator[int | None]:
-    """Hold the directory `path`, open under the descriptor handed out; None where another run holds it."""
-    descriptor = os.open(path, os.O_RDONLY)
+def held(path: Path) -> Iterator[bool]:
+    """Hold the directory `path` within; False where another run holds it."""
+    lock = FileLock(path / LOCK, timeout=PATIENCE_S, thread_local=False)
     try:
-        yield descriptor if locked(descriptor) else None
+        lock.acquire()
+    except Timeout:
+        yield False
+        return
+    except OSError:  # a file system without locks
+        yield True
+        return
+    try:
+        yield True
     finally:
-        os.close(descriptor)
-
-
-def locked(descriptor: int) -> bool:
-    """Lock the open directory for this process; True also on a file system without locks."""
-    for _ in range(TRIES):
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            time.sleep(PAUSE_S)
-        except OSError:
-            return True
-        else:
-            return True
-    return False
+        with contextlib.suppress(OSError):  # Windows removes it after the release, not before
+            (path / LOCK).unlink()
+        lock.release()
 
 
 def is_held(path: Path) -> bool:
-    """Whether a run holds the directory `path` now."""
-    descriptor = os.open(path, os.O_RDONLY)
+    """Whether a run holds the directory `path` now; False where the system does not let us ask."""
+    if not (path / LOCK).exists():
+        return False
+    lock = FileLock(path / LOCK, timeout=0.0, thread_local=False)
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
+        lock.acquire()
+    except Timeout:
         return True
     except OSError:
         return False
-    finally:
-        os.close(descriptor)
+    lock.release()
     return False

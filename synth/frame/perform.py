@@ -16,6 +16,7 @@ from synth.frame.printed_numbers import counted
 from synth.frame.results_directory import SUMMARY, ResultsDirectory, results_directory
 from synth.frame.settings.toml_file import read_text
 from synth.frame.terminal.interrupt import interruptible
+from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 from synth.frame.told import Told
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 PAGE, WORKBOOK = "report.html", "sheets.xlsx"
 
 
-def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_json: bool) -> int:
+def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, manner: Manner) -> int:
     """Run `command` as `asked`, into the directory `output`; the exit code.
 
     Raises `InputError` and `PlantError` before anything is written, `OSError` where the disk does.
@@ -33,40 +34,47 @@ def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, as_j
     require_date()
     problem = command.resolve(asked)
     head = command.head(problem)
+    manner.step(f"read and found possible: {head.title}")
     reads = (*asked.options.reads, *head.reads)
     with results_directory(output, command.name, reads, inputs=command.inputs) as directory:
         for warning in head.warnings:
-            say(f"warning: {warning}")
+            manner.warn(f"warning: {warning}")
         try:
-            told = finished(command, asked, problem, head, directory)
+            told = finished(command, asked, problem, head, directory, manner)
         except Unfinished as fault:
             say(f"{fault}; what was done before is kept in {output}, and the same command goes on from it")
             return LIMITS_MISSED
         names = (*directory.written,)
-    if as_json:
+    if manner.as_json:
         sys.stdout.write((output / SUMMARY).read_text(encoding="utf-8"))
     else:
-        from synth.frame.terminal.told_print import print_told
+        from synth.frame.terminal.told_print import page_of_run
 
-        print_told(told, output, names)
+        manner.give(dict, lambda: page_of_run(told, output, names))
     return OK if told.verdict.accepted else LIMITS_MISSED
 
 
 def finished(
-    command: Command[S, O, P, R], asked: Asked[S, O], problem: P, head: Head, directory: ResultsDirectory
+    command: Command[S, O, P, R],
+    asked: Asked[S, O],
+    problem: P,
+    head: Head,
+    directory: ResultsDirectory,
+    manner: Manner,
 ) -> Told:
     """Compute, judge and write; what a chapter holds is on the disk before the next one is made."""
     from synth.frame.picture.studio import Studio
     from synth.frame.terminal.progress import Progress  # rich: a refusal needs none
 
-    started, created, steps = time.monotonic(), creation_time(), command.steps(problem)
+    created, steps = creation_time(), command.steps(problem)
     processes = command.drawing(problem) if head.output.plots or head.output.report else 1
     with (
         interruptible(directory, "summary"),
-        Progress(steps.count, steps.word, steps.noun) as progress,
+        Progress(steps.count, steps.word, steps.noun, manner) as progress,
         Studio(processes) as studio,
     ):
         result = command.compute(problem, Work(progress, directory, studio.begin))
+        progress.step("computed")
         verdict = Verdict(tuple(command.limits(result)))
         if asked.options.config is not None and command.text is read_text:
             directory.keep_configuration(asked.options.config, asked.text)
@@ -74,11 +82,12 @@ def finished(
         for chapter in command.show(result):
             write_data(chapter, directory)
             chapters.append(chapter)
+            progress.step(f"chapter made: {chapter.heading}")
         if head.output.workbook:
             directory.write(WORKBOOK, workbook_of(chapters))
         told = Told(command.name, head, created, verdict, tuple(chapters), command.limits_of_use)
         write_shown(told, directory, studio, progress.note)
-        progress.note(f"all files written after {time.monotonic() - started:.1f} s")
+        progress.note(f"all files written after {time.monotonic() - manner.began_s:.1f} s")
     return told
 
 

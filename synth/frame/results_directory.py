@@ -19,11 +19,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
-from synth.frame.held_directory import held
+from synth.frame.held_directory import LOCK, held
 from synth.frame.input_error import InputError
 from synth.frame.machine_fault import MACHINE_FAULTS
 from synth.frame.own_files import CHANGING, MARKER, OwnFiles, command_of, sha256_of
-from tuning_tables.atomic_file import faults_naming, replacing
+from tuning_tables.atomic_file import replacing
 
 SUMMARY: Final = "summary.json"
 CONFIGURATION: Final = "configuration.toml"
@@ -182,8 +182,8 @@ def results_directory(
     `InputError` where the directory is not the command's, cannot be written, or is held by another run.
     """
     make_directory(path)
-    with held(path) as descriptor:
-        if descriptor is None:
+    with held(path) as is_ours:
+        if not is_ours:
             raise InputError(
                 f"{path}: another {command_of(path) or command} is writing there; wait for it, or {ELSEWHERE}"
             )
@@ -194,9 +194,7 @@ def results_directory(
         results = ResultsDirectory(path, own, reading)
         results.remove_leftovers()
         results.remove(SUMMARY)
-        own.tidy()
-        with faults_naming(path):
-            os.fsync(descriptor)
+        own.tidy()  # which has the names in the directory on the disk, too
         yield results
         own.tidy()
 
@@ -229,7 +227,8 @@ def first_file(path: Path) -> Path | None:
     for each in sorted(path.iterdir()):
         if each.is_symlink() or not each.is_dir():
             named = LEFTOVER.fullmatch(each.name)
-            if named is None or named[1] != MARKER:  # a marker that a killed command did not finish
+            unfinished = named is not None and named[1] == MARKER  # by a command that was killed
+            if not unfinished and each.name != LOCK:
                 return each
         elif command_of(each) is None:
             found = first_file(each)

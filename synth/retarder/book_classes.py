@@ -8,7 +8,7 @@ from plant_models import PlantError
 from synth.frame.input_error import InputError
 from synth.frame.settings.settings_file import BUILT_IN
 from synth.retarder.configuration.config_file import load_config
-from synth.retarder.forms.table_file import read_tables
+from synth.retarder.forms.tables_at import tables_at
 from synth.retarder.table_class import TableClass, table_classes
 
 
@@ -21,8 +21,8 @@ def book_classes(
     Raises `InputError` for a book of another position or one that does not fit its configuration, `TableError` for a
     damaged one.
     """
-    (file,) = read_tables(book)
-    for table in file.tables:
+    tables = tables_at(book).only_lines(named)
+    for table in tables:
         if table.retarder.name != position:
             raise InputError(
                 f"{named} names {book}, whose table {table.id} is for the position {table.retarder.name}, but "
@@ -30,7 +30,7 @@ def book_classes(
             )
     config = load_config(tuned_with)
     try:
-        return table_classes(file.tables, config, str(tuned_with or BUILT_IN))
+        return table_classes(tables, config, str(tuned_with or BUILT_IN))
     except PlantError as fault:
         raise InputError(unfitting(named, book, fault)) from None
 

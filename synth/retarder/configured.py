@@ -30,7 +30,7 @@ def sensors_left_aside(config: ResolvedConfig) -> tuple[str, ...]:
     """A word about point sensors in a configuration whose tables are made for a radar."""
     if config.sensors is None:
         return ()
-    return ("tables are made for the radar of [sensor]; 'retarder-synth sensors tune' makes those for [sensors]",)
+    return ("tables are made for the radar of [sensor]; 'retarder-synth tune' makes those for [sensors]",)
 
 
 def require_room(config: ResolvedConfig, epochs: Epochs[Any, Any], place: str, workers: int) -> None:

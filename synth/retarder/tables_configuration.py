@@ -1,4 +1,4 @@
-"""The configuration by which a command understands tables: the user's, else the one that is built in for their kind."""
+"""The configuration by which a command understands tables: the user's, else the one that they were made of."""
 
 from __future__ import annotations
 
@@ -8,18 +8,47 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from synth.retarder.configuration.resolved_config import ResolvedConfig
-    from tuning_tables.passages.passage_table import PassageTable
+    from tuning_tables.table_kinds import StageTable
 
 
-def configuration_for(path: Path | None, passages: Sequence[PassageTable]) -> tuple[ResolvedConfig, str]:
-    """(the configuration at `path`, what messages call it).
+def configuration_for(path: Path | None, source: Path, tables: Sequence[StageTable]) -> tuple[ResolvedConfig, str]:
+    """(the configuration at `path`, what messages call it); `InputError`.
 
-    Without a path that of `sensors tune` where all of `passages` are for its position, else that of `tune`.
+    Without a path the copy that lies beside the `tables` at `source`. Without one the built-in configuration: that with
+    point sensors where all tables are for point sensors at its position.
     """
     from synth.frame.settings.settings_file import BUILT_IN
     from synth.retarder.configuration.config_file import load_config
     from synth.retarder.configuration.point_sensors.template import BUILT_IN_SENSORS, DUMPER_POSITION, built_in_sensors
+    from synth.retarder.forms.configuration_beside import configuration_beside
+    from tuning_tables.passages.passage_table import PassageTable
 
-    if path is None and passages and all(table.retarder.name == DUMPER_POSITION for table in passages):
+    if path is not None:
+        return load_config(path), str(path)
+    kept = configuration_beside(source, tables)
+    if kept is not None:
+        return kept_config(kept.path), str(kept.path)
+    passages = [table for table in tables if isinstance(table, PassageTable)]
+    if passages and all(table.retarder.name == DUMPER_POSITION for table in passages):
         return built_in_sensors(), BUILT_IN_SENSORS
-    return load_config(path), str(path or BUILT_IN)
+    return load_config(None), BUILT_IN
+
+
+def given_config(text: str, place: str) -> ResolvedConfig | None:
+    """The configuration in `text`; None without a file: then the tables tell which one is theirs."""
+    from synth.frame.settings.settings_file import BUILT_IN
+    from synth.retarder.configuration.config_file import parse_config
+
+    return None if place == BUILT_IN else parse_config(text, place)
+
+
+def kept_config(path: Path) -> ResolvedConfig:
+    """The configuration in the copy at `path`; `InputError`, also with what to do where it names files."""
+    from synth.frame.input_error import InputError
+    from synth.retarder.configuration.config_file import load_config
+
+    try:
+        return load_config(path)
+    except InputError as fault:
+        told = f"{path}: this is the copy beside the tables; if it names files that lie beside yours, give --config"
+        raise InputError(*fault.sentences, told) from None

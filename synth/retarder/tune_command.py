@@ -1,19 +1,22 @@
-"""The command `tune`: a book of tables for every cut class and target of a configuration, and its proof."""
+"""The command `tune`: a book of tables for every cut class and target of a configuration, and its proof.
+
+Where the configuration has point sensors, `sensors.tune_command` does it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from synth.frame.command import Asked, Command, Head, Work
 from synth.frame.exhibits import Chapter, Sentence
 from synth.retarder.asked_tune import AskedTune, asked_tune, drawing, limits, steps, tuned
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.configured import head_of, sensors_left_aside
+from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY, NOT_CERTIFIED
 from synth.retarder.radar_epochs import RadarEpochs
-from synth.retarder.tune_options import TuneOptions
+from synth.retarder.tune_options import TUNE, TuneOptions
 
 if TYPE_CHECKING:
     from synth.frame.exhibits import File
@@ -43,7 +46,7 @@ def resolve(asked: Asked[ResolvedConfig, TuneOptions]) -> AskedTune[CaseResult, 
 
 def head(asked: AskedTune[CaseResult, ControllerTable]) -> Head:
     """What is said of the configuration."""
-    return head_of(asked.config, sensors_left_aside(asked.config))
+    return head_of(asked.config)
 
 
 def compute(asked: AskedTune[CaseResult, ControllerTable], work: Work) -> FoundBook[CaseResult]:
@@ -100,8 +103,15 @@ def show(found: FoundBook[CaseResult]) -> Iterator[Chapter]:
     yield Chapter("Tables", (Sentence(where), *found.files))
 
 
+def by_what_measures(asked: Asked[ResolvedConfig, TuneOptions]) -> Command[ResolvedConfig, TuneOptions, Any, Any]:
+    """The command for a radar, or that for point sensors."""
+    from synth.retarder.sensors.tune_command import COMMAND as WITH_POINT_SENSORS
+
+    return COMMAND if asked.settings.sensors is None else WITH_POINT_SENSORS
+
+
 COMMAND = Command(
-    name="tune",
+    name=TUNE,
     read=parse_config,
     options=TuneOptions,
     resolve=resolve,
@@ -112,4 +122,5 @@ COMMAND = Command(
     limits=limits,
     limits_of_use=LIMITS_OF_USE,
     drawing=drawing,
+    variant=by_what_measures,
 )

@@ -19,6 +19,7 @@ from synth.cli.hump import check_command
 from synth.computer.command import COMMAND as COMPUTER
 from synth.computer.template import default_computer_toml
 from synth.frame.asked_file import asked_of
+from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.telling import say
 from synth.hump.aiming.command import COMMAND as AIM
 from synth.hump.configuration.template import default_trial_toml
@@ -31,8 +32,8 @@ from synth.logs.loaded_passes import loaded_passes
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.point_sensors.template import default_sensors_toml
 from synth.retarder.sensors.tune_command import COMMAND as SENSORS_TUNE
-from synth.retarder.sensors.tune_options import SensorsTuneOptions
 from synth.retarder.sweep.command import COMMAND as SWEEP_RUN
+from synth.retarder.tune_options import TuneOptions
 from tests.attack.attempt import Kind, Reading
 from tests.attack.railml_attributes import attribute_kind
 from tests.attack.trains import trains_kind
@@ -89,44 +90,44 @@ OF_THE_LOG: Final = r".*foreign\.csv: .*(no column|column (cut_id|time_s|path_m|
 
 def read_hump_file(folder: Path, name: str) -> str:
     """As `hump check`, which prints what it has read."""
-    check_command(folder / name, as_json=False)
+    check_command(folder / name, Manner())
     return ""
 
 
 def read_trial(folder: Path) -> str:
     """As `hump simulate`."""
-    SIMULATE.resolve(asked_of(SIMULATE, SIMULATE.options(config=folder / "trial.toml"), "init --hump"))
+    SIMULATE.resolve(asked_of(SIMULATE, SIMULATE.options(config=folder / "trial.toml"), "init trial"))
     return ""
 
 
 def read_short_hump(folder: Path) -> str:
     """As `hump make`."""
-    MAKE.resolve(asked_of(MAKE, MAKE.options(config=folder / "short.toml"), "init --short-hump"))
+    MAKE.resolve(asked_of(MAKE, MAKE.options(config=folder / "short.toml"), "init short-hump"))
     return ""
 
 
 def read_aim(folder: Path) -> str:
     """As `aim`."""
-    AIM.resolve(asked_of(AIM, AIM.options(config=folder / "aim.toml"), "init --aim"))
+    AIM.resolve(asked_of(AIM, AIM.options(config=folder / "aim.toml"), "init aim"))
     return ""
 
 
 def read_computer(folder: Path) -> str:
     """As `computer`."""
-    COMPUTER.resolve(asked_of(COMPUTER, COMPUTER.options(config=folder / "computer.toml"), "init --computer"))
+    COMPUTER.resolve(asked_of(COMPUTER, COMPUTER.options(config=folder / "computer.toml"), "init computer"))
     return ""
 
 
 def read_sweep(folder: Path) -> str:
     """As `sweep run`."""
-    SWEEP_RUN.resolve(asked_of(SWEEP_RUN, SWEEP_RUN.options(config=folder / "sweep.toml"), "init --sweep"))
+    SWEEP_RUN.resolve(asked_of(SWEEP_RUN, SWEEP_RUN.options(config=folder / "sweep.toml"), "init sweep"))
     return ""
 
 
 def read_sensors(folder: Path) -> str:
-    """As `sensors tune`."""
-    typed = SensorsTuneOptions(config=folder / "sensors.toml", workers=1)
-    SENSORS_TUNE.resolve(asked_of(SENSORS_TUNE, typed, "init --sensors"))
+    """As `tune` with point sensors."""
+    typed = TuneOptions(config=folder / "sensors.toml", workers=1)
+    SENSORS_TUNE.resolve(asked_of(SENSORS_TUNE, typed, "init point-sensors"))
     return ""
 
 

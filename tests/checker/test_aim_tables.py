@@ -309,7 +309,7 @@ def test_words_json_and_no_numpy(exported_once: Path, capfd: pytest.CaptureFixtu
     assert main(["verify", str(exported_once)]) == 0
     lines = capfd.readouterr().out.splitlines()
     assert lines[0] == "aim-1-category: ok; an aim table of 35 nodes, 1 without an exit speed"
-    assert lines[-1] == "3 tables, 12 files: nothing found"
+    assert lines[-1] == "accepted: 3 tables, 12 files: nothing found"
     assert main(["verify", str(exported_once), "--json"]) == 0
     told = json.loads(capfd.readouterr().out)
     assert told["aims"][1] == {"id": "aim-1-measured", "ok": True, "nodes": 175, "nodes_without_speed": 26}

@@ -14,6 +14,7 @@ from synth.frame.input_error import InputError
 from synth.frame.perform import perform
 from synth.frame.results_directory import CONFIGURATION
 from synth.frame.settings.toml_file import read_text
+from synth.frame.terminal.manner import Manner
 from tests.frame.small_command import COMMAND, CoinOptions
 
 TEXT = b"# \xd1\x82\xd0\xb0\xd0\xba\r\n[coin]\r\nthrows =   150\n\n[output]\nplots = false\nreport = false\n"
@@ -21,7 +22,7 @@ TEXT = b"# \xd1\x82\xd0\xb0\xd0\xba\r\n[coin]\r\nthrows =   150\n\n[output]\nplo
 
 def done(config: Path | None, output: Path, command: Command = COMMAND) -> list[str]:  # type: ignore[type-arg]
     """The files that the summary lists after a run."""
-    perform(command, asked_of(command, CoinOptions(config=config), "init --coin"), output, as_json=False)
+    perform(command, asked_of(command, CoinOptions(config=config), "init --coin"), output, Manner())
     return sorted(json.loads((output / "summary.json").read_bytes())["files"])
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from synth.cli.listed import COMMANDS, HUMP, SENSORS
+from synth.cli.listed import COMMANDS, HUMP, SWEEP
 from synth.frame.command_line import Listed
 
 
-@pytest.mark.parametrize("listed", [*COMMANDS, *SENSORS, *HUMP], ids=lambda listed: listed.words)
+@pytest.mark.parametrize("listed", [*COMMANDS, *HUMP, *SWEEP], ids=lambda listed: listed.words)
 def test_an_entry_names_its_command_and_the_options_of_it(listed: Listed) -> None:
     command = listed.load()
     assert command.name == listed.words

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from synth.frame.held_directory import held, is_held
+from synth.frame.held_directory import LOCK, held, is_held
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import results_directory
 from tests.frame.results import SUMMARY, files, refused, run
@@ -97,10 +98,36 @@ def test_a_directory_is_held_by_one_command(tmp_path: Path) -> None:
 
 
 def test_who_only_asks_is_not_taken_for_a_run(tmp_path: Path) -> None:
-    asking = os.open(tmp_path, os.O_RDONLY)
-    fcntl.flock(asking, fcntl.LOCK_SH)
     assert not is_held(tmp_path)
-    os.close(asking)
-    with held(tmp_path) as descriptor:
-        assert descriptor is not None
+    with held(tmp_path) as is_ours:
+        assert is_ours
         assert is_held(tmp_path)
+    assert not is_held(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+HOLD = """
+import sys
+from pathlib import Path
+from synth.frame.held_directory import held
+
+with held(Path(sys.argv[1])) as is_ours:
+    print(is_ours, flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_a_killed_process_holds_nothing(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", HOLD, str(tmp_path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as holder:
+        assert holder.stdout is not None
+        assert holder.stdout.readline() == "True\n"
+        assert is_held(tmp_path)
+        with refused("another tune is writing there"):
+            run(tmp_path, {}, "tune")
+        holder.kill()
+        holder.wait()
+    assert (tmp_path / LOCK).exists()
+    assert not is_held(tmp_path)
+    run(tmp_path, {}, "tune")
+    assert not (tmp_path / LOCK).exists()

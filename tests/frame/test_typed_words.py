@@ -26,7 +26,7 @@ class TapeOptions(Options):
     tapes: tuple[Path, ...] = words_option(BY_PLACE, "TAPES", NEEDED, "What was recorded.")
     config: Path | None = word_option("--config", "C", None, "The recorder.")
     head: Path = word_option("--head", "FILE", NEEDED, "The head.")
-    quiet: tuple[Path, ...] = words_option("--quiet", "TAPE", (), "Recorded in silence.")
+    hushed: tuple[Path, ...] = words_option("--hushed", "TAPE", (), "Recorded in silence.")
     speed: float = number_option("--speed", "CM_S", 4.75, 1.0, 100.0, "Of the tape.")
 
 
@@ -37,11 +37,11 @@ TAPES = Listed(
 
 def test_words_become_the_values_that_are_declared() -> None:
     typed = read_options(
-        TapeOptions, {"tapes": [Path("a"), Path("b")], "head": "h", "config": None, "quiet": [], "speed": "9.5"}
+        TapeOptions, {"tapes": [Path("a"), Path("b")], "head": "h", "config": None, "hushed": [], "speed": "9.5"}
     )
     assert typed == TapeOptions(tapes=(Path("a"), Path("b")), head=Path("h"), speed=9.5)
     assert typed.reads == (Path("a"), Path("b"), Path("h"))
-    several = read_options(TapeOptions, {"tapes": ["a"], "head": "h", "quiet": ["x", "y"], "config": "c.toml"})
+    several = read_options(TapeOptions, {"tapes": ["a"], "head": "h", "hushed": ["x", "y"], "config": "c.toml"})
     assert set(several.reads) == {Path("a"), Path("h"), Path("x"), Path("y"), Path("c.toml")}
 
 

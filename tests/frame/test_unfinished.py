@@ -17,6 +17,7 @@ from synth.frame.interval import Interval
 from synth.frame.page.told_page import shown
 from synth.frame.perform import perform
 from synth.frame.results_directory import results_directory
+from synth.frame.terminal.manner import Manner
 from tests.frame.results import results_in
 from tests.frame.small_command import COMMAND, CoinFile, CoinOptions, Game
 
@@ -25,7 +26,7 @@ Coins = Command[CoinFile, CoinOptions, Game, dict[str, Interval]]
 
 def done(command: Coins, out: Path, config: Path | None = None) -> int:
     """Exit code of a run."""
-    return perform(command, asked_of(command, CoinOptions(config=config), "init --coin"), out, as_json=False)
+    return perform(command, asked_of(command, CoinOptions(config=config), "init --coin"), out, Manner())
 
 
 def lose_a_coin(game: Game, work: Work) -> NoReturn:

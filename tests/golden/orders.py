@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from synth.cli.file_kinds import FILE_KINDS
 from tests.sweep.conftest import MEASURED as MEASURED_SPEED
 from tests.sweep.conftest import PLANT, SWEEP
 from tests.synth.hump.making.test_hump_make import SMALL as SHORT
@@ -47,27 +48,14 @@ class Order:
         return f"{self.words} -o {self.output}" if self.output else self.words
 
 
-KINDS = (
-    "retarder",
-    "position",
-    "car",
-    "sensor",
-    "wheel-sensor",
-    "sensors",
-    "weight-categories",
-    "aim",
-    "hump",
-    "short-hump",
-    "computer",
-    "sweep",
-)
 BOOK, PARK = "park/book.h5", "--config park.toml"
 LOG = "validated/log.h5 --config park.toml"
 PASSAGES = "passages/tables/gondola-4-22t-to-2-m-s.json"
 
 ORDERS: tuple[Order, ...] = (
     Order("init"),
-    *(Order(f"init --{kind}") for kind in KINDS),
+    *(Order(f"init {kind.word}") for kind in FILE_KINDS),
+    *(Order(f"init {kind.word} --schema") for kind in FILE_KINDS),
     Order("init --list"),
     Order("init --for trial.toml --position-number 3"),
     Order("tune park.toml --workers 1", "park"),
@@ -75,8 +63,7 @@ ORDERS: tuple[Order, ...] = (
     Order("tune any-time.toml --workers 1", "any-time"),
     Order(f"validate {BOOK} {PARK} --log log.h5 --log-passes 150", "validated"),
     Order(f"verify {BOOK}", "verified"),
-    Order(f"inspect {BOOK}", "inspected"),
-    Order(f"plot {BOOK} {PARK}", "plots"),
+    Order(f"inspect {BOOK} {PARK}", "pictures"),
     Order(f"loop {BOOK} {PARK}", "loops"),
     *(Order(f"export {BOOK} --format {form}", f"export-{form}") for form in ("json", "c", "st", "csv", "fmu")),
     Order(f"export {BOOK} --format st --split --self-test small --correction 0.2 --prefix PARK", "export-split"),
@@ -89,24 +76,23 @@ ORDERS: tuple[Order, ...] = (
     Order(f"watch {LOG}", "watched"),
     Order(f"replay {LOG} --table measured/book.h5 --own {BOOK}", "replayed"),
     Order(f"retune {LOG} --table {BOOK}", "retuned"),
-    Order("permissions measured.toml --workers 1", "permissions"),
+    Order("hardware measured.toml --workers 1", "permissions"),
     Order("sensitivity measured.toml --points 200 --passes 100", "sensitivity"),
     Order("sweep run sweep.toml --workers 1", "swept"),
     Order("sweep status swept"),
     Order("sweep failed swept"),
-    Order("sensors tune sensors.toml --workers 1", "passages"),
+    Order("tune sensors.toml --workers 1", "passages"),
     Order(f"inspect {PASSAGES}"),
     Order(f"export {PASSAGES} --format c", "export-passages-c"),
     Order(f"export {PASSAGES} --format st", "export-passages-st"),
-    Order("sensors plan dumper.toml --sensors 4-5 --workers 1", "planned"),
+    Order("sensors dumper.toml --sensors 4-5 --workers 1", "planned"),
     Order("aim aim.toml", "aimed"),
     Order("aim aim.toml --hump medium --track 7", "aimed-at-7"),
     Order("hump make short.toml", "made"),
     Order("hump check medium"),
     Order("hump routes medium"),
     Order("hump draw medium", "drawn"),
-    Order("hump export medium", "medium.railml"),
-    Order("hump schema"),
+    Order("hump export medium --format railml", "hump-railml"),
     Order("hump simulate trial.toml", "humped"),
     Order("hump simulate humped/inputs/config.toml", "humped"),
     Order("hump simulate trial.toml --trains 2", "humped-short"),

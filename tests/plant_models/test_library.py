@@ -48,7 +48,7 @@ def test_holds_the_promised_types() -> None:
     assert {"rnz-2m-dumper"} <= set(position_names())
     retarders = set(BUILT_IN.names(RETARDERS))
     assert {"knp-5", "vzpg-5", "rnz-2m", "rnz-2m-oiled", "t-50", "kv-3"} <= retarders
-    assert not set(position_names()) & retarders  # init --retarder takes both
+    assert not set(position_names()) & retarders  # a message calls both by the name alone
     assert {"gondola-4", "box-4", "flat-4", "tank-4", "hopper-4", "tank-8", "gondola-6"} <= set(car_names())
 
 

@@ -145,7 +145,7 @@ def test_a_condition_is_an_ordinary_configuration() -> None:
 
 
 def test_what_init_prints_is_the_default_and_its_examples_are_allowed(command: Callable[..., Ran]) -> None:
-    text = command("init", "--sweep")[1]
+    text = command("init", "sweep")[1]
     assert parse_sweep(text, "x") == parse_sweep("", "x")
     examples = re.sub(r"(?m)^# (?=\[\[|[a-z_]+ = )", "", text)
     swept = parse_sweep(MEASURED + examples, "x")

@@ -161,7 +161,7 @@ def test_folders_and_files_that_are_not_there_are_all_told(tmp_path: Path) -> No
     assert "did you mean cars?" in first
     assert "library[1] is 'nowhere/', and there is no such folder; give one that holds positions/" in second
     assert "cut[0].car names the file" in third
-    assert third.endswith("'retarder-synth init --car' prints one to start from")
+    assert third.endswith("'retarder-synth init car' prints one to start from")
 
 
 def test_a_position_with_another_retarder_is_called_by_both_names(tmp_path: Path) -> None:

@@ -103,7 +103,7 @@ def test_a_track_on_which_no_speed_is_safe_is_told_and_not_accepted(command: Com
 
 
 REFUSED = {
-    "a missing file": ("", "gone.toml: there is no such file; write one with 'retarder-synth init --aim > gone.toml'"),
+    "a missing file": ("", "gone.toml: there is no such file; write one with 'retarder-synth init aim -o gone.toml'"),
     "no TOML": ("[aim", "this is not valid TOML"),
     "p": ("[aim]\np_overspeed = 1.5\n", "aim.p_overspeed is 1.5; it must be from 0.005 to 0.9"),
     "category": ('[cuts]\ncategories = ["LL"]\n', "cuts.categories[0]: weight category 'LL' is not in the library"),

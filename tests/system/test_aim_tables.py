@@ -66,14 +66,17 @@ def test_inspect_tells_the_contents(command: Command, aims: Path) -> None:
 
 
 def test_plot_draws_the_speeds_and_no_loop_is_closed(command: Command, aims: Path, tmp_path: Path) -> None:
-    ran = command("plot", aims, "-o", tmp_path / "plots")
+    ran = command("inspect", aims, "-o", tmp_path / "plots")
     assert ran.code == 0
     pictures = {path.name for path in (tmp_path / "plots").glob("aim-*")}
     assert pictures == {f"aim-commands-by-{what}.svg" for what in ("cars", "resistance")}
     assert all((tmp_path / "plots" / name).stat().st_size > 5000 for name in pictures)
-    for name in ("loop", "validate"):
-        assert refused(command, name, aims, "-o", tmp_path / name) == (
-            2, f"{aims}: its tables are aim tables, which regulate nothing; give tables that do",
+    for words, rest in (
+        (("inspect", "--loops"), "leave --loops out"),
+        (("validate",), "'aim' simulates what it makes"),
+    ):
+        assert refused(command, *words, aims, "-o", tmp_path / words[0]) == (
+            2, f"{aims}: its tables are aim tables, which regulate nothing; {rest}",
         )  # fmt: skip
 
 
@@ -127,7 +130,7 @@ def test_verify_reads_what_export_writes(command: Command, aims: Path) -> None:
         file.rename(aims / "tables" / file.name)
     ran = command("verify", aims)
     assert (ran.code, ran.err) == (0, "")
-    assert ran.out.splitlines()[-1] == "3 tables, 12 files: nothing found"
+    assert ran.out.splitlines()[-1] == "accepted: 3 tables, 12 files: nothing found"
     told = command("inspect", aims)
     named = (
         ("c/park_aim_table.c", "C99"),
@@ -173,8 +176,8 @@ def test_damage_and_faults_of_use_are_told_in_one_sentence(command: Command, aim
     assert (code, "must not end with AIM" in sentence) == (2, True)
     (tmp_path / "empty").mkdir()
     assert refused(command, "export", tmp_path / "empty", "--format", "c")[0] == 2
-    assert refused(command, "loop", aims)[0] == 2
-    assert refused(command, "loop", aims / "tables" / "b.json")[0] == 2
+    for source in (aims, aims / "tables" / "b.json"):
+        assert refused(command, "inspect", "--loops", source, "-o", tmp_path / "x")[0] == 2
     assert not (tmp_path / "x").exists()
 
 
@@ -185,7 +188,7 @@ def test_tables_of_both_kinds_in_one_directory(command: Command, aims: Path, tmp
     assert [file["kind"] for file in json.loads(ran.out)["files"]] == ["table", "aim table", "aim table", "aim table"]
     assert command("export", aims, "--format", "csv", "-o", tmp_path / "csv").code == 0
     assert len(results_in(tmp_path / "csv")) == 3
-    assert command("verify", aims).out.splitlines()[-1] == "4 tables, 4 files: nothing found"
+    assert command("verify", aims).out.splitlines()[-1] == "accepted: 4 tables, 4 files: nothing found"
 
 
 def test_equal_tables_make_equal_files(command: Command, aims: Path, tmp_path: Path) -> None:

@@ -130,7 +130,7 @@ def test_inspect_tells_when_they_decide_and_how_lines_rise(
 
 def test_they_are_drawn_and_simulated_again_from_the_file(folder: Path) -> None:
     table = next((folder / "one" / "tables").glob("*.json"))
-    assert main(["plot", str(table), "-o", str(folder / "plots")]) == 0
+    assert main(["inspect", str(table), "-o", str(folder / "plots")]) == 0
     assert {path.name.rpartition("-")[2] for path in (folder / "plots").iterdir()} >= {"surfaces.svg", "lines.svg"}
     asked = [
         "validate",
@@ -194,7 +194,7 @@ def test_a_plant_on_which_it_cannot_be_simulated_is_refused(folder: Path, capsys
 
 def test_a_loop_of_python_control_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = next((folder / "one" / "tables").glob("*.json"))
-    asked = ["loop", str(table), "--config", str(folder / "one.toml"), "-o", str(folder / "loop")]
+    asked = ["inspect", str(table), "--loops", "--config", str(folder / "one.toml"), "-o", str(folder / "loop")]
     assert main(asked) == 2
     assert "the table decides at any time" in capsys.readouterr().err
 

@@ -133,7 +133,7 @@ def test_a_configuration_that_is_no_ordinary_file(tmp_path: Path, command: str, 
     assert ran.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("name", ["tune", "sweep run", "plot", "export"])
+@pytest.mark.parametrize("name", ["tune", "sweep run", "inspect", "export"])
 def test_an_empty_output_is_refused(
     command: Command, tuned: Path, one_class: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
@@ -179,7 +179,7 @@ def test_a_target_that_the_grid_is_too_coarse_for_is_named(command: Command, tmp
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names are POSIX's")
-@pytest.mark.parametrize("command_name", ["inspect", "verify", "validate", "plot"])
+@pytest.mark.parametrize("command_name", ["inspect", "verify", "validate"])
 def test_what_is_no_regular_file_is_no_damaged_table(command: Command, tmp_path: Path, command_name: str) -> None:
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", Path("/dev/zero")):

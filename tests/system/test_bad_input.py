@@ -84,7 +84,7 @@ def test_an_output_that_cannot_be_a_directory(command: Command, one_class: Path,
     before = file.read_bytes()
     for arguments in (
         ("tune", one_class, "-o", file / below),
-        ("plot", tuned / "book.h5", "-o", file / below),
+        ("inspect", tuned / "book.h5", "-o", file / below),
         ("export", tuned / "book.h5", "--format", "csv", "-o", file / below),
     ):
         ran = command(*arguments)
@@ -177,6 +177,6 @@ def command_lines(table: Path, config: Path, output: Path) -> list[tuple[object,
     return [
         ("inspect", table),
         ("validate", table, "--config", config, "-o", output),
-        ("plot", table, "-o", output),
+        ("inspect", table, "-o", output),
         ("export", table, "--format", "json", "-o", output),
     ]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import shlex
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import typer.main
 
-from synth.cli.arguments import with_names
 from synth.cli.commands import app
 from synth.cli.guide import GUIDES
 from synth.frame.command_guide import PAGES, CommandGuide
@@ -37,7 +38,7 @@ def test_every_command_has_its_section_and_its_example(guide: CommandGuide) -> N
 def test_an_example_can_be_typed(example: str) -> None:
     """Every word of it is a command, an option, or a value that an option takes; nothing is run."""
     command: Any = typer.main.get_command(app)
-    words = with_names(shlex.split(example.partition(">")[0]))
+    words = shlex.split(example.partition(">")[0])
     while hasattr(command, "commands"):
         context = command.make_context("retarder-synth", words, resilient_parsing=True)
         _, command, words = command.resolve_command(context, words)
@@ -53,3 +54,27 @@ def test_help_is_not_cut_off(width: int) -> None:
         told = group.get_help(context)
         assert "..." not in told.replace("[ARGS]...", "")
         assert max(map(len, told.splitlines())) <= width
+
+
+def leaves(command: Any, words: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+    """Every command that can be typed, by its words."""
+    inner = getattr(command, "commands", None)
+    if inner is None:
+        yield words
+    for name, below in (inner or {}).items():
+        yield from leaves(below, (*words, name))
+
+
+@pytest.mark.parametrize("width", [60, 80, 100, 140])
+def test_help_of_no_command_is_cut_off(width: int) -> None:
+    top: Any = typer.main.get_command(app)
+    for words in leaves(top):
+        command, typed = top, list(words)
+        while hasattr(command, "commands"):
+            context = command.make_context("retarder-synth", list(typed), resilient_parsing=True)
+            _, command, typed = command.resolve_command(context, typed)
+        name = " ".join(("retarder-synth", *words))
+        told = command.make_context(name, [], resilient_parsing=True, terminal_width=width).get_help()
+        assert "..." not in re.sub(r"(?<=[]},R])\.\.\.", "", told), words  # several words may follow
+        assert "…" not in told, words
+        assert max(map(len, told.splitlines())) <= width, (words, max(told.splitlines(), key=len))

@@ -141,30 +141,31 @@ def test_inspect_finds_a_file_that_does_not_belong(command: Command, tuned: Path
 
 
 def test_plot_draws_without_solving(command: Command, tuned: Path, two_classes: Path, tmp_path: Path) -> None:
-    ran = command("plot", tuned, "-o", tmp_path / "plots", "--config", two_classes, "--json")
+    ran = command("inspect", tuned, "-o", tmp_path / "plots", "--config", two_classes, "--json")
     assert ran.code == 0
-    names = {Path(name).name for name in json.loads(ran.out)["files"]}
+    names = {Path(name).name for name in json.loads(ran.out)["pictures"]}
     kinds = ("lines", "surfaces", "passes")
     assert names == {f"{i}-{kind}.svg" for i in (ID, HEAVIER) for kind in kinds}
     assert names == set(results_in(tmp_path / "plots"))
-    without = command("plot", tuned / "tables" / f"{ID}.json", "-o", tmp_path / "bare")
+    alone = tmp_path / "alone.json"
+    alone.write_bytes((tuned / "tables" / f"{ID}.json").read_bytes())
+    without = command("inspect", alone, "-o", tmp_path / "bare")
     assert without.code == 0
     assert "no passes are drawn" in without.sentence
     assert len(results_in(tmp_path / "bare")) == 2
 
 
 def test_init_prints_what_tune_reads(command: Command) -> None:
-    ran = command("init", "--retarder", "t-50-bunch")
+    ran = command("init", "configuration", "t-50-bunch")
     assert ran.code == 0
     assert parse_config(ran.out, "out").retarder.name == "t-50-bunch"
-    assert json.loads(command("init", "--json").out)["configuration"] == command("init").out
+    assert json.loads(command("init", "--json").out)["text"] == command("init").out
     assert "knp-5-bunch" in command("init", "--list").out
-    assert "did you mean t-50-bunch?" in command("init", "--retarder", "t-50-bu").sentence
+    assert "did you mean t-50-bunch?" in command("init", "configuration", "t-50-bu").sentence
 
 
 def test_init_prints_a_configuration_with_point_sensors(command: Command) -> None:
-    bare, named = command("init", "--sensors"), command("init", "--sensors", "knp-5-bunch")
+    bare, named = command("init", "point-sensors"), command("init", "point-sensors", "knp-5-bunch")
     assert [parse_config(ran.out, "out").retarder.name for ran in (bare, named)] == ["rnz-2m-dumper", "knp-5-bunch"]
-    assert command("init", "--wheel-sensor").out.startswith("# A wheel sensor of retarder-synth")
-    assert "did you mean knp-5-bunch?" in command("init", "--sensors", "knp-5").sentence
-    assert "one file at a time" in command("init", "--sensors", "--sensor").sentence
+    assert command("init", "wheel-sensor").out.splitlines()[1].startswith("# A wheel sensor of retarder-synth")
+    assert "did you mean knp-5-bunch?" in command("init", "point-sensors", "knp-5").sentence

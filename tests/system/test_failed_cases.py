@@ -121,7 +121,7 @@ def test_tables_for_point_sensors_lose_none_but_the_bad_case(command: Command, t
         ("csv", "plots = false\ncsv"),
     )
     config.write_text(changed(POINTS, *swaps) + STEEP, encoding="utf-8")
-    ran = command("sensors", "tune", config, "-o", out, "--workers", "1")
+    ran = command("tune", config, "-o", out, "--workers", "1")
     assert ran.code == 1
     summary = json.loads((out / "summary.json").read_bytes())
     assert [path.stem for path in (out / "tables").glob("*.json")] == ["gondola-4-22t-to-2.5-m-s"]
@@ -154,7 +154,7 @@ def test_permissions_of_the_other_cases_are_told(command: Command, tmp_path: Pat
     config, out = tmp_path / "c.toml", tmp_path / "out"
     swaps = ("[2.5]", "[2.5, 1.5]"), ("speed_step_m_s = 0.05", WIDE[1]), ("[regulator]\n", MEASURED)
     config.write_text(changed(COARSE, *swaps) + STEEP, encoding="utf-8")
-    ran = command("permissions", config, "-o", out)
+    ran = command("hardware", config, "-o", out)
     assert ran.code == 1
     summary = json.loads((out / "summary.json").read_bytes())
     (case,), missing = summary["tables"]["permissions"], summary["tables"]["missing"]

@@ -58,7 +58,7 @@ def test_what_is_missing_is_said(
     ran = command("export", alone, "--format", "fmu", "--prefix", "PARK", "-o", tmp_path / "park")
     assert ran.code == 0
     assert "the position is not exported" in ran.sentence
-    assert "the configuration of the tables is not beside them" in ran.sentence
+    assert "is not the configuration that the tables were made of; give the directory of a tune" in ran.sentence
     assert names_in(tmp_path / "park") == ["park_controller.fmu"]
     monkeypatch.setattr(shutil, "which", lambda _name: None)
     ran = command("export", tuned_once[0], "--format", "fmu", "-o", tmp_path / "sources")

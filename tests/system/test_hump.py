@@ -78,22 +78,22 @@ def test_draw(command: Command, file: Path, tmp_path: Path) -> None:
 
 
 def test_export_in_another_form_and_read_it(command: Command, file: Path, tmp_path: Path) -> None:
-    target = tmp_path / "small.railml"
-    assert command("hump", "export", file, "-o", target).code == 0
+    target = tmp_path / "railml" / "small.railml"
+    assert command("hump", "export", file, "--format", "railml", "-o", target.parent).out == f"{target}\n"
     assert command("hump", "routes", target).out == command("hump", "routes", file).out
     target.write_text(target.read_text().replace("<signalsIS>", "<speeds/><signalsIS>"))
     assert "read over: speeds (1)" in command("hump", "check", target).out
-    for name in ("small.csv", "small.xlsx", "again.toml"):
-        assert command("hump", "export", file, "-o", tmp_path / name).code == 0
-        assert command("hump", "routes", tmp_path / name).out == command("hump", "routes", file).out
-    assert (
-        "must end with .railml, .xml, .csv, .xlsx or .toml"
-        in command("hump", "export", file, "-o", tmp_path / "small.txt").sentence
-    )
+    for form in ("csv", "xlsx", "toml"):
+        (written,) = json.loads(command("hump", "export", file, "--format", form, "-o", tmp_path / form, "--json").out)[
+            "files"
+        ]
+        assert command("hump", "routes", written).out == command("hump", "routes", file).out
+    refused = command("hump", "export", file, "--format", "txt", "-o", tmp_path / "txt")
+    assert refused.sentence == "--format txt: there is no such form; give railml, csv, xlsx, toml"
 
 
 def test_the_schema_is_printed(command: Command) -> None:
-    assert json.loads(command("hump", "schema").out) == hump_schema()
+    assert json.loads(command("init", "hump", "--schema").out) == hump_schema()
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from synth.frame.held_directory import LOCK
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import LEFTOVER
 from tuning_tables import read_book, read_json
@@ -40,7 +41,7 @@ def wait_for(tune: subprocess.Popen[str], words: str) -> None:
 def check(out: Path) -> None:
     """Every file in `out` is whole, and a summary describes exactly the files that are there."""
     for path in out.rglob("*"):
-        if path.is_file() and path.name != MARKER and not LEFTOVER.fullmatch(path.name):
+        if path.is_file() and path.name not in (MARKER, LOCK) and not LEFTOVER.fullmatch(path.name):
             check_file(path)
     if (out / "summary.json").exists():
         files = json.loads((out / "summary.json").read_bytes())["files"]
@@ -118,7 +119,7 @@ def test_ctrl_c_at_a_terminal_is_told_in_one_line(tmp_path: Path) -> None:
     """A terminal sends it to the process that is about to load matplotlib, too."""
     command = [*TUNE, "-o", str(tmp_path / "out")]
     tune = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
-    while not any(b"forkserver" in command_of(pid) for pid in children_of(tune.pid)):
+    while not any(b"spawn_main" in command_of(pid) for pid in children_of(tune.pid)):
         assert tune.poll() is None
         time.sleep(0.01)
     time.sleep(0.1)
@@ -150,14 +151,13 @@ def test_drawing_processes_end_with_the_tune(tmp_path: Path) -> None:
     deadline = time.monotonic() + 20.0
     while len(drawing) < 2 and time.monotonic() < deadline:
         time.sleep(0.05)
-        servers = [pid for pid in children_of(parent.pid) if b"forkserver" in command_of(pid)]
-        drawing = {pid for server in servers for pid in children_of(server)}
+        drawing = {pid for pid in children_of(parent.pid) if b"spawn_main" in command_of(pid)}
     time.sleep(1.5)
     parent.kill()
     parent.wait()
     assert len(drawing) == 2
     deadline = time.monotonic() + 10.0
-    while any(b"forkserver" in command_of(pid) for pid in drawing.union(servers)):
+    while any(b"spawn_main" in command_of(pid) for pid in drawing):
         assert time.monotonic() < deadline
         time.sleep(0.05)
 

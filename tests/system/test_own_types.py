@@ -146,14 +146,16 @@ def test_a_faulty_type_file_ends_a_tune_with_one_line_and_code_2(name: str, tmp_
 
 def test_init_prints_every_kind_of_type(command: Command, tmp_path: Path) -> None:
     """With a name, without one, and what cannot be."""
-    for option, name in (("--car", "tank-8"), ("--retarder", "t-50"), ("--position", "kv-3-bunch")):
-        assert command("init", option, name).out.count(f" {name} of the library") == 1
-        assert f"my-types/{option[2:]}s/my-" in command("init", option).out
-    assert json.loads(command("init", "--sensor", "--json").out)["type"] == command("init", "--sensor").out
-    assert "number = 5" in command("init", "--weight-categories").out
-    assert "[position]" in command("init", "--retarder", "t-50-bunch").out
-    assert "did you mean gondola-4?" in command("init", "--car", "gondola").sentence
-    assert "one file at a time" in command("init", "--car", "--sensor").sentence
+    for word, name in (("car", "tank-8"), ("retarder", "t-50"), ("position", "kv-3-bunch")):
+        assert command("init", word, name).out.count(f" {name} of the library") == 1
+        assert f"my-types/{word}s/my-" in command("init", word).out
+    assert (
+        json.loads(command("init", "sensor", "--json").out)["text"] == command("init", "sensor").out.rstrip("\n") + "\n"
+    )
+    assert "number = 5" in command("init", "weight-categories").out
+    assert "did you mean gondola-4?" in command("init", "car", "gondola").sentence
+    assert command("init", "cars").sentence == "init cars: there is no such kind of file; did you mean car?"
     assert set(json.loads(command("init", "--list", "--json").out)["library"]) == {
         "positions", "retarders", "cars", "sensors", "wheel_sensors", "weight_categories", "tracks", "car_mixes",
+        "humps",
     }  # fmt: skip

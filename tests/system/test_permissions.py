@@ -1,4 +1,4 @@
-"""`retarder-synth permissions` as a user runs it: figures, files, faults, the same bytes."""
+"""`retarder-synth hardware` as a user runs it: figures, files, faults, the same bytes."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ ASKED = {
 }
 
 
-def asked(folder: Path, name: str, *words: str, text: str = SMALL, command: str = "permissions") -> int:
+def asked(folder: Path, name: str, *words: str, text: str = SMALL, command: str = "hardware") -> int:
     """The exit code of a run into a directory of that name."""
     (folder / "c.toml").write_text(text, encoding="utf-8")
     return main([command, str(folder / "c.toml"), "-o", str(folder / name), *words])
@@ -199,7 +199,7 @@ def test_what_cannot_be_worked_out_is_refused(
     assert asked(tmp_path, "out", text=SMALL + lines) == 2
     told = capsys.readouterr().err
     assert says in told
-    assert " permissions " in told
+    assert " 'hardware' " in told
     assert str(tmp_path / "c.toml") in told
     assert not (tmp_path / "out").exists()
     assert not tellable(parse_config(SMALL + lines, "c.toml"))

@@ -1,4 +1,4 @@
-"""`retarder-synth sensors tune`, and what other commands make of its tables."""
+"""`retarder-synth tune`, and what other commands make of its tables."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def tuned_points(config: Path, tmp_path_factory: pytest.TempPathFactory) -> Path
     directory = tmp_path_factory.mktemp("points") / "out"
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
-        assert main(["sensors", "tune", str(config), "-o", str(directory), "--workers", "1"]) == 0
+        assert main(["tune", str(config), "-o", str(directory), "--workers", "1"]) == 0
     return directory
 
 
@@ -129,7 +129,7 @@ def test_one_worker_gives_the_bytes_of_two(
     command: Command, tuned_points: Path, config: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", EPOCH)
-    assert command("sensors", "tune", config, "-o", tmp_path, "--workers", "2").code == 0
+    assert command("tune", config, "-o", tmp_path, "--workers", "2").code == 0
     names = {path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()}
     assert [name for name in names if (tmp_path / name).read_bytes() != (tuned_points / name).read_bytes()] == []
 
@@ -199,12 +199,14 @@ def test_inspect_tells_sensors_passages_and_switching_speeds(
 def test_plot_draws_switching_speeds_and_passes_where_the_plant_is_known(
     command: Command, tuned_points: Path, config: Path, tmp_path: Path
 ) -> None:
-    ran = command("plot", tuned_points, "-o", tmp_path / "all", "--config", config)
+    ran = command("inspect", tuned_points, "-o", tmp_path / "all", "--config", config)
     assert ran.code == 0, ran.err
     assert {path.name.removeprefix("gondola-4-22t-to-") for path in (tmp_path / "all").glob("*.svg")} == {
         "2-m-s-switching-speeds.svg", "2-m-s-passes.svg", "2.5-m-s-switching-speeds.svg", "2.5-m-s-passes.svg",
     }  # fmt: skip
-    unknown = command("plot", tuned_points / "tables" / f"{TABLE}.json", "-o", tmp_path / "one")
+    alone = tmp_path / "alone.json"
+    alone.write_bytes((tuned_points / "tables" / f"{TABLE}.json").read_bytes())
+    unknown = command("inspect", alone, "-o", tmp_path / "one")
     assert unknown.code == 0
     assert "no passes are drawn" in unknown.sentence
     assert set(results_in(tmp_path / "one")) == {
@@ -215,7 +217,7 @@ def test_plot_draws_switching_speeds_and_passes_where_the_plant_is_known(
 def test_a_damaged_table_is_told(command: Command, tuned_points: Path, tmp_path: Path) -> None:
     table = tmp_path / "table.json"
     table.write_text((tuned_points / "tables" / f"{TABLE}.json").read_text(encoding="utf-8").replace("rnz", "rnx"))
-    for words in (["inspect"], ["validate"], ["plot", "-o", tmp_path / "out"]):
+    for words in (["inspect"], ["validate"], ["inspect", "-o", tmp_path / "out"]):
         ran = command(*words, table)
         assert ran.code == 3
         assert "crc32" in ran.sentence
@@ -227,12 +229,10 @@ def test_what_needs_lines_refuses_the_table_in_one_sentence(
     table = tuned_points / "tables" / f"{TABLE}.json"
     ran = command("sensitivity", "--table", table, "-o", tmp_path / "out")
     assert ran.code == 2
-    assert "its kind is passages (switching speeds at passages over point sensors)" in ran.sentence
+    assert "its tables are for point sensors; sensitivity --table takes tables for a radar" in ran.sentence
 
 
 REFUSED = {
-    "no sensors": (("[sensors]\npath_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]\n", ""),
-                   "the section [sensors] is missing; 'retarder-synth init --sensors' prints one"),
     "chance constraint": (("[grid]", f"[criterion]\np_overspeed = 0.1\n{MEASURED}[grid]"), "criterion.p_overspeed and"),
     "first sensor": (("[-4.5, 0.0", "[0.5, 1.0"), "sensors.path_m begins at 0.5; the first sensor must stand at"),
 }  # fmt: skip
@@ -244,19 +244,10 @@ def test_what_makes_no_tables_is_refused_before_anything_is_written(
 ) -> None:
     swap, said = REFUSED[name]
     (tmp_path / "bad.toml").write_text(changed(CONFIG, swap))
-    ran = command("sensors", "tune", tmp_path / "bad.toml", "-o", tmp_path / "out")
+    ran = command("tune", tmp_path / "bad.toml", "-o", tmp_path / "out")
     assert ran.code == 2
     assert said in ran.sentence
     assert not (tmp_path / "out").exists()
-
-
-def test_the_directory_of_another_command_is_left_alone(
-    command: Command, tuned_points: Path, config: Path, one_class: Path, tmp_path: Path
-) -> None:
-    copy = Path(shutil.copytree(tuned_points, tmp_path / "copy"))
-    ran = command("tune", one_class, "-o", copy)
-    assert ran.code == 2
-    assert "holds the results of 'sensors tune'" in ran.sentence
 
 
 def test_an_infeasible_case_stands_outside_the_verdict(command: Command, config: Path, tmp_path: Path) -> None:
@@ -269,7 +260,7 @@ def test_an_infeasible_case_stands_outside_the_verdict(command: Command, config:
         ("csv = true", "plots = false\nreport = false"),
     )
     (tmp_path / "heavy.toml").write_text(heavy)
-    ran = command("sensors", "tune", tmp_path / "heavy.toml", "-o", tmp_path / "out", "--json")
+    ran = command("tune", tmp_path / "heavy.toml", "-o", tmp_path / "out", "--json")
     assert ran.code == 1
     summary = json.loads(ran.out)
     (case,) = summary["tables"]["cases"]
@@ -281,22 +272,30 @@ def test_an_infeasible_case_stands_outside_the_verdict(command: Command, config:
     assert (code, found["verdict"]) == (0, "infeasible")  # as the summary beside it says
 
 
-def test_tune_leaves_point_sensors_aside_and_validate_takes_tables_of_both_kinds(
-    command: Command, tuned_points: Path, tmp_path: Path
-) -> None:
+def test_validate_takes_tables_of_both_kinds(command: Command, tuned_points: Path, tmp_path: Path) -> None:
     text = changed(
         CONFIG,
         ("exit_speeds_m_s = [2.0, 2.5]", "exit_speeds_m_s = [2.5]"),
         ("csv = true", "plots = false\nreport = false"),
     )
     (tmp_path / "one.toml").write_text(text)
-    ran = command("tune", tmp_path / "one.toml", "-o", tmp_path / "out")
-    assert "tables are made for the radar of [sensor]; 'retarder-synth sensors tune' makes those for" in ran.err
+    (tmp_path / "radar.toml").write_text(
+        changed(text, ("[sensors]\npath_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]\n", ""))
+    )
+    assert command("tune", tmp_path / "radar.toml", "-o", tmp_path / "out").code in (0, 1)
     shutil.copy(tuned_points / "tables" / f"{TABLE}.json", tmp_path / "out" / "tables")
-    ran = command("validate", tmp_path / "out" / "tables", "--config", tmp_path / "one.toml", "-o", tmp_path / "again")
+    command("validate", tmp_path / "out" / "tables", "--config", tmp_path / "one.toml", "-o", tmp_path / "again")
     found = json.loads((tmp_path / "again" / "summary.json").read_bytes())["tables"]["tables"]
     assert [each["id"] for each in found] == ["gondola-4-22t-to-2.5-m-s", TABLE]
     assert [each["confirmed"] for each in found] == [True, True]
+
+
+def test_a_front_of_time_is_for_a_radar(command: Command, config: Path, tmp_path: Path) -> None:
+    ran = command("tune", config, "--pareto", "-o", tmp_path / "out")
+    assert (ran.code, ran.out) == (2, "")
+    assert (
+        ran.sentence == f"{config}: it has point sensors; --pareto is for tables for a radar: leave one of the two out"
+    )
 
 
 @pytest.mark.long

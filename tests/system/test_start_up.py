@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from synth.cli.file_kinds import FILE_KINDS
+
 HEAVY = {"control", "h5py", "matplotlib", "numba", "scipy"}
 
 
@@ -43,9 +45,7 @@ def test_help_imports_nothing_numeric(arguments: list[str]) -> None:
     assert modules_after(*arguments).isdisjoint(HEAVY | {"numpy"})
 
 
-@pytest.mark.parametrize(
-    "arguments", [["init"], ["init", "--aim"], ["init", "--hump"], ["init", "--sensors"], ["init", "--sweep"]]
-)
+@pytest.mark.parametrize("arguments", [["init"], *(["init", kind.word] for kind in FILE_KINDS), ["init", "--schema"]])
 def test_init_needs_no_solver(arguments: list[str]) -> None:
     assert modules_after(*arguments).isdisjoint(HEAVY)
 
@@ -88,7 +88,7 @@ def test_installed_command_and_closed_pipe() -> None:
     done = subprocess.run(
         f"{command} init | head -n 1", shell=True, capture_output=True, text=True, timeout=60, check=True
     )
-    assert done.stdout.startswith("# Configuration (retarder-synth tune)")
+    assert done.stdout.startswith("#:schema ./configuration.schema.json")
     assert done.stderr == ""
 
 

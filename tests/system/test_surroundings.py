@@ -210,3 +210,13 @@ def test_a_private_cache_goes_with_its_process(tmp_path: Path) -> None:
     assert ran.returncode == 5
     assert ran.stdout.startswith(f"{tmp_path}/retarder-synth-")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_is_printed_is_utf_8_whatever_the_terminal_has() -> None:
+    ascii_only = {**os.environ, "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
+    ascii_only.pop("PYTHONIOENCODING", None)
+    told = subprocess.run([*COMMAND, "init"], env=ascii_only, capture_output=True, timeout=60, check=True).stdout
+    assert "КНП-5" in told.decode("utf-8")
+    asked = {**ascii_only, "PYTHONIOENCODING": "ascii"}
+    told = subprocess.run([*COMMAND, "init"], env=asked, capture_output=True, timeout=60, check=True).stdout
+    assert b"???-5" in told

@@ -72,8 +72,8 @@ def test_the_tables_that_a_trial_asks_for_run_in_it(
         (["--for", "medium"], "medium: --position-number is missing; the hump has the positions 1 (knp-5-bunch), 2"),
         (["--for", "medium", "--position-number", "4"], "medium: --position-number is 4; the hump has the positions 1"),
         (["--position-number", "1"], "init --position-number is for --for TRIAL.toml, the trial whose position it is"),
-        (["--for", "medium", "--schema"], "init --for prints the configuration of tables for a trial; give none"),
-        (["--for", "nix.toml"], "nix.toml: there is no such file; write one with 'retarder-synth init --hump"),
+        (["--for", "medium", "--schema"], "init --for prints the configuration of tables for a trial; give neither"),
+        (["--for", "nix.toml"], "nix.toml: there is no such file; write one with 'retarder-synth init trial"),
     ],
 )
 def test_what_is_not_said_is_asked_for(command: Command, words: list[str], said: str) -> None:

@@ -95,7 +95,12 @@ def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_cla
 
 
 def test_validate_refuses_a_plant_that_does_not_fit(command: Command, tuned: Path, tmp_path: Path) -> None:
-    ran = command("validate", tuned / "book.h5", "-o", tmp_path / "out")
+    beside = command("validate", tuned / "book.h5", "--passes", "1000", "-o", tmp_path / "beside", "-q")
+    assert beside.code == 0  # by the configuration that lies beside the book
+    assert beside.out.startswith("accepted: ")
+    assert (beside.err, beside.out.count("\n")) == ("", 1)
+    (tmp_path / "alone.h5").write_bytes((tuned / "book.h5").read_bytes())
+    ran = command("validate", tmp_path / "alone.h5", "-o", tmp_path / "out")
     assert ran.code == 2
     assert "no cut class fits the table gondola-4-22t-to-1.5-m-s" in ran.sentence
     assert "retarder.zones_m" in ran.sentence

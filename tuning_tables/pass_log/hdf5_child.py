@@ -7,8 +7,10 @@ comes back is a pickle.
 
 from __future__ import annotations
 
+import contextlib
 import io
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -85,17 +87,16 @@ def _pack(columns: StoredColumns) -> None:
     sys.stdout.buffer.flush()
 
 
-if sys.platform == "win32":
+try:
+    import resource
+except ImportError:
     # Windows has no such limits: the parent's clock ends the child, and the checks of `stored_columns` bound memory.
-    _OUT_OF_TIME: Final = None
+    _OUT_OF_TIME: int | None = None
 
     def _limit(time_s: float, memory_bytes: int) -> None: ...
 
 else:
-    import resource
-    import signal
-
-    _OUT_OF_TIME: Final = -signal.SIGXCPU
+    _OUT_OF_TIME = -signal.SIGXCPU
 
     def _limit(time_s: float, memory_bytes: int) -> None:
         """Let this process have `time_s` more of processor time, and `memory_bytes` in all."""
@@ -104,7 +105,8 @@ else:
         for limited, most in ((resource.RLIMIT_CPU, whole_s), (resource.RLIMIT_AS, memory_bytes)):
             soft, hard = resource.getrlimit(limited)
             known = [each for each in (soft, hard, most) if each != resource.RLIM_INFINITY]
-            resource.setrlimit(limited, (min(known), hard))
+            with contextlib.suppress(ValueError):  # macOS limits no address space that is larger already
+                resource.setrlimit(limited, (min(known), hard))
 
 
 def main() -> int:

@@ -71,7 +71,7 @@ class LogMapping:
 
 
 def read_mapping(path: str | os.PathLike[str]) -> LogMapping:
-    """Read a mapping; docs/reference/pass-log.md shows one.
+    """Read a mapping; the page on pass logs shows one.
 
     Parameters
     ----------

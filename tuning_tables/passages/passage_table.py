@@ -38,8 +38,8 @@ class PassageTable:
     of the sensors, each with K + 1 rows, at most 131 072 switching speeds in all; the path is within 1e-6 m of the
     sensor's plus the axle's offset. The prediction is exact, without passes.
 
-    Raises `InvalidTable`. What a member means and may be stands in docs/reference/table-format.md. The others follow
-    from them, as read-only arrays, for M passages at which is decided, and all T passages that are heard:
+    Raises `InvalidTable`. What a member means and may be stands on the page "Table formats". The others follow from
+    them, as read-only arrays, for M passages at which is decided, and all T passages that are heard:
 
     Attributes
     ----------

@@ -69,8 +69,8 @@ def stage_at_pulse(
 
     Notes
     -----
-    The rule is that of docs/reference/table-format.md, in float32; C and Structured Text give the same bits. The speed
-    is the base over the time, equation (1) of [zhukovitsky-2012].
+    The rule is that of the page "Table formats", section "The step at a pulse pair", in float32; C and Structured Text
+    give the same bits. The speed is the base over the time, equation (1) of [zhukovitsky-2012].
 
     Examples
     --------

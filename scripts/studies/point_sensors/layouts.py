@@ -20,7 +20,7 @@ def equal_sections(problem: LayoutProblem, deciding: Sequence[int]) -> tuple[Pla
 
 
 def planned(problem: LayoutProblem, deciding: Sequence[int]) -> tuple[Places, ...]:
-    """The best found, as `sensors plan` has it."""
+    """The best found, as `sensors` has it."""
     if not deciding:
         return ()
     passes = plan_passes(seed=1, count=1000)

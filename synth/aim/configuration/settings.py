@@ -124,8 +124,9 @@ class AimedSettings(Section):
         f"{JUDGEMENT}: [hump-computer-1970s] asks for 0.15, tables of this tool have less",
     )  # fmt: skip
     tables: str | None = choice(
-        None, "in its place, a book of the position's controller tables: closed loops say how exact they are",
-        "out/book.h5",
+        None, "in its place, controller tables of the position (a file, a book or a folder): closed loops say how "
+        "exact they are",
+        "out",
     )  # fmt: skip
     tables_config: str | None = choice(
         None, "the configuration that it was tuned with; left out: the built-in one", "my.toml"

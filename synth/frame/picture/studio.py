@@ -10,15 +10,15 @@ import contextlib
 import gc
 import multiprocessing
 import os
-import signal
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
-from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
+from queue import SimpleQueue
 from types import TracebackType
 from typing import Final
 
 from synth.frame.exhibits import Chart
+from synth.frame.terminal.interrupt import interrupts_ignored
 
 NICENESS: Final = 5
 """Drawing gives way to computing."""
@@ -36,10 +36,11 @@ class Studio:
         self._mine = threading.local()
         self._pool = ThreadPoolExecutor(max(processes, 1))
         self._begun: dict[str, Future[bytes]] = {}
+        self._free: SimpleQueue[Connection] = SimpleQueue()
         if processes > 1:
-            together = threading.Barrier(processes)
-            for _ in range(processes):  # the barrier gives every thread one of them, so that all processes start now
-                self._pool.submit(lambda: (together.wait(), self._pipe()))
+            with interrupts_ignored():  # Ctrl-C is for the process that was started by hand
+                for _ in range(processes):
+                    self._free.put(drawing_process())
 
     def __enter__(self) -> Studio:
         return self
@@ -73,19 +74,20 @@ class Studio:
         return drawing
 
     def _pipe(self) -> Connection:
+        """The pipe of this thread's process."""
         if not hasattr(self._mine, "pipe"):
-            # What is started here inherits it, from its first moment on: Ctrl-C is for the command.
-            resource_tracker.ensure_running()  # its start would undo it
-            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-            # A fork of this process would copy numba's threads and BLAS's; the server's has none, and has loaded
-            # matplotlib once for all.
-            context = multiprocessing.get_context("forkserver")
-            context.set_forkserver_preload(["synth.frame.picture.house_style"])
-            self._mine.pipe, theirs = context.Pipe()
-            context.Process(target=draw_charts, args=(theirs,), daemon=True).start()
-            theirs.close()
+            self._mine.pipe = self._free.get()
         pipe: Connection = self._mine.pipe
         return pipe
+
+
+def drawing_process() -> Connection:
+    """A new drawing process; our end of its pipe. Started anew, never forked: a fork would copy numba's threads."""
+    context = multiprocessing.get_context("spawn")
+    ours, theirs = context.Pipe()
+    context.Process(target=draw_charts, args=(theirs,), daemon=True).start()
+    theirs.close()
+    return ours
 
 
 def draw_chart(chart: Chart) -> bytes:
@@ -97,9 +99,10 @@ def draw_chart(chart: Chart) -> bytes:
 
 def draw_charts(pipe: Connection) -> None:
     """What a drawing process does: answer each chart with its drawing or with what went wrong, until the pipe ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that was started by hand
-    with contextlib.suppress(OSError):
+    with contextlib.suppress(OSError, AttributeError):  # Windows has no such number
         os.nice(NICENESS)
+    import synth.frame.picture.house_style  # noqa: F401  # matplotlib, while there is nothing to draw yet
+
     gc.disable()  # figures are trees of small objects, and this process ends before their cycles would matter
     while True:
         try:

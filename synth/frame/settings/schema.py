@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any, Final
 
 from plant_models.library.written_units import unit_schema
@@ -11,10 +10,9 @@ from synth.frame.settings.section import Section
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
 
-def schema_of(model: type[Section], title: str) -> str:
-    """The schema as JSON: keys, types, limits, units, meanings and origins, as they are declared."""
-    found = {"$schema": DIALECT, **with_units(model.model_json_schema()), "title": title}
-    return json.dumps(found, indent=1, ensure_ascii=False) + "\n"
+def schema_of(model: type[Section], title: str) -> dict[str, Any]:
+    """The schema: keys, types, limits, units, meanings and origins, as they are declared."""
+    return {"$schema": DIALECT, **with_units(model.model_json_schema()), "title": title}
 
 
 def with_units(node: Any, unit: str = "") -> Any:

@@ -40,7 +40,7 @@ def read_content(path: Path, template: str = "init") -> bytes:
         return read_regular_file(path, LARGEST_FILE_BYTES)
     except FileNotFoundError:
         raise InputError(
-            f"{path}: there is no such file; write one with 'retarder-synth {template} > {path.name}'"
+            f"{path}: there is no such file; write one with 'retarder-synth {template} -o {path.name}'"
         ) from None
     except IsADirectoryError:
         raise InputError(f"{path}: this is a directory; give the path of a TOML configuration file") from None

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, PlainValidator
+from pydantic import AfterValidator, Field, PlainValidator, WithJsonSchema
 
 from plant_models.library import Value
 from plant_models.library.data_file import Form, form_name, number_or_pairs, numbers, pairs
+from plant_models.library.form_schema import FORMS
 
 
 def in_form(form: Form) -> PlainValidator:
@@ -29,9 +30,11 @@ def printable(text: str) -> str:
     return text
 
 
-Numbers = Annotated[tuple[float, ...], in_form(numbers)]
-Pairs = Annotated[tuple[tuple[float, float], ...], in_form(pairs)]
-Grade = Annotated[float | tuple[tuple[float, float], ...], in_form(number_or_pairs)]
+Numbers = Annotated[tuple[float, ...], in_form(numbers), WithJsonSchema(FORMS[numbers])]
+Pairs = Annotated[tuple[tuple[float, float], ...], in_form(pairs), WithJsonSchema(FORMS[pairs])]
+Grade = Annotated[
+    float | tuple[tuple[float, float], ...], in_form(number_or_pairs), WithJsonSchema(FORMS[number_or_pairs])
+]
 Title = Annotated[str, AfterValidator(printable)]
 
 Source = Annotated[str, Field(min_length=1, max_length=400), AfterValidator(printable)]

@@ -1,4 +1,4 @@
-"""Ctrl-C while threads compute: the process ends at once and leaves no unfinished file."""
+"""Ctrl-C while threads or processes compute: this process ends at once and leaves no unfinished file."""
 
 from __future__ import annotations
 
@@ -39,6 +39,19 @@ def interruptible(directory: ResultsDirectory | None = None, result: str = "book
         leave(INTERRUPTED)
 
     before = signal.signal(signal.SIGINT, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextlib.contextmanager
+def interrupts_ignored() -> Iterator[None]:
+    """Within, SIGINT is ignored, also by processes that are started."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         yield
     finally:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from types import TracebackType
 
@@ -10,14 +9,17 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 
+from synth.frame.terminal.manner import Manner
+
 
 class Progress:
     """Counts finished cases out of `cases`; a context manager. Its methods may be called by any thread.
 
-    `word`: what is being done; `noun`: what the cases are called.
+    `word`: what is being done; `noun`: what the cases are called; `manner`: how much of it is told.
     """
 
-    def __init__(self, cases: int, word: str = "tuning", noun: str = "cases") -> None:
+    def __init__(self, cases: int, word: str, noun: str, manner: Manner) -> None:
+        self._manner = manner
         self._cases = cases
         self._noun = noun
         self._done = 0
@@ -25,7 +27,9 @@ class Progress:
         self._started = time.monotonic()
         self._console = Console(stderr=True, highlight=False, soft_wrap=True)
         columns = (TextColumn(word), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-        self._bar = Bar(*columns, console=self._console, transient=True, disable=not self._console.is_terminal)
+        self._bar = Bar(
+            *columns, console=self._console, transient=True, disable=manner.quiet or not self._console.is_terminal
+        )
         self._task = self._bar.add_task(word, total=cases)
 
     def __enter__(self) -> Progress:
@@ -56,9 +60,14 @@ class Progress:
     def note(self, sentence: str) -> None:
         """A line of its own."""
         if self._bar.disable:
-            print(sentence, file=sys.stderr, flush=True)
+            self._manner.note(sentence)
         else:
-            self._console.print(sentence, markup=False)
+            self._console.print(self._manner.timed(sentence), markup=False)
+
+    def step(self, sentence: str) -> None:
+        """The same of a step that is told only where all are."""
+        if self._manner.verbose:
+            self.note(sentence)
 
 
 def pace(elapsed_s: float, done: int, left_s: float, noun: str) -> str:

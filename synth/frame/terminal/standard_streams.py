@@ -83,7 +83,7 @@ def standard_streams() -> Iterator[UnfailingStream]:
     out, err = (stream or open_null() for stream in before)
     for stream in (out, err):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal that knows no Cyrillic letters shall not stop us
+            stream.reconfigure(encoding=encoding_of(stream), errors="replace")  # a letter that it lacks stops nothing
     unfailing = UnfailingStream(err)
     sys.stdout, sys.stderr = NamedStream(out, "standard output"), unfailing
     try:
@@ -91,6 +91,12 @@ def standard_streams() -> Iterator[UnfailingStream]:
     finally:
         unfailing.flush()
         sys.stdout, sys.stderr = before
+
+
+def encoding_of(stream: TextIO) -> str | None:
+    """UTF-8, as all files of the program have it, where `stream` is no terminal and nobody asks for another encoding;
+    None: as it is."""
+    return None if stream.isatty() or os.environ.get("PYTHONIOENCODING") else "utf-8"
 
 
 def open_closed_descriptors() -> None:

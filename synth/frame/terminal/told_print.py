@@ -8,15 +8,16 @@ from pathlib import Path
 
 from synth.frame.exhibits import Column, Row, Sentence, Table, exhibits_of
 from synth.frame.exhibits import Exhibit as Shown
-from synth.frame.terminal.printed_page import Exhibit, Verdict, print_page
+from synth.frame.terminal.printed_page import Exhibit, Verdict
 from synth.frame.terminal.printed_table import Column as PrintedColumn
 from synth.frame.terminal.printed_table import PrintedTable
 from synth.frame.told import Told
 
 
-def print_told(told: Told, directory: Path, files: Sequence[str]) -> None:
-    """Print it; `files`: names of what was written."""
-    print_page(*printed(told), f"{directory}: {', '.join(folders_and_files(files))}")
+def page_of_run(told: Told, directory: Path, files: Sequence[str]) -> Iterator[Exhibit]:
+    """What is printed of it; `files`: names of what was written."""
+    yield from printed(told)
+    yield f"{directory}: {', '.join(folders_and_files(files))}"
 
 
 def printed(told: Told) -> Iterator[Exhibit]:

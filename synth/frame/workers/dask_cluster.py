@@ -11,13 +11,12 @@ import contextlib
 import logging
 import os
 from collections import deque
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 from synth.frame.input_error import InputError
-from synth.frame.terminal.telling import say
 from synth.frame.workers.engine import Answer, Begun, Order, Work
 
 ANSWER_WITHIN_S = 15
@@ -83,8 +82,8 @@ class DaskCluster:
         return Answer(order.key, None, SCHEDULER_LOST)
 
 
-def connect(address: str, work: Work) -> DaskCluster:
-    """The cluster at `address`, which is told; `InputError` without the library, and without an answer from there."""
+def connect(address: str, work: Work, tell: Callable[[str], None]) -> DaskCluster:
+    """The cluster at `address`; `tell` is told its size. `InputError` without the library, and without an answer."""
     try:
         distributed = import_module("distributed")
     except ImportError:
@@ -98,7 +97,7 @@ def connect(address: str, work: Work) -> DaskCluster:
         ) from None
     silence(LOGGERS)
     cluster = DaskCluster(client, distributed, work)
-    say(f"the scheduler at {address} has {cluster.threads()} threads of workers; more may join")
+    tell(f"the scheduler at {address} has {cluster.threads()} threads of workers; more may join")
     return cluster
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import platform
 import time
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
@@ -91,4 +92,4 @@ def sentence_of(fault: Exception) -> str:
 
 def worker_name() -> str:
     """This process on this machine."""
-    return f"{os.uname().nodename}:{os.getpid()}"
+    return f"{platform.node()}:{os.getpid()}"

@@ -14,12 +14,13 @@ import os
 import signal
 import threading
 from collections import deque
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 from typing import Any
 
+from synth.frame.terminal.interrupt import interrupts_ignored
 from synth.frame.workers.engine import Answer, Begun, Order, Work
 
 TRIES = 2
@@ -82,19 +83,6 @@ def start(work: Work) -> Worker:
         process.start()
     theirs.close()
     return Worker(process, ours)
-
-
-@contextlib.contextmanager
-def interrupts_ignored() -> Iterator[None]:
-    """Within, SIGINT is ignored, also by processes that are started."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def hand_out(worker: Worker, order: Order, tries: dict[str, int], begun: Begun) -> None:

@@ -11,7 +11,7 @@ from synth.frame.settings.options import Options, configured, number_option, wor
 class AimOptions(Options):
     """Cuts and random numbers, and the track where a hump file has it."""
 
-    hump: Path | None = word_option("--hump", "FILE|NAME", None, "A hump, of which --track is aimed at.")
+    hump: Path | None = word_option("--hump", "FILE|HUMP", None, "A hump, of which --track is aimed at.")
     track: int | None = number_option("--track", "N", None, 1, 199, "Which track of the hump, by its number.")
     passes: int | None = configured(
         "--passes", "N", SimulationSettings, "passes", "Cuts of each number of cars that speeds are chosen on"

@@ -70,7 +70,7 @@ def compute(asked: AskedCapacity, work: Work) -> FoundCapacity:
         for value, config, trial in zip(asked.axis.values, *guarded(trials_of, points), strict=True):
             name = ", ".join(filter(None, (variant.name, f"{asked.axis.name} {value:g} {asked.axis.unit}")))
             runs.append(run_of(config, trial, asked.number, work.directory, name))
-    outcomes = run_trials(runs, partial(engine_for, asked.options), work.progress)
+    outcomes = run_trials(runs, partial(engine_for, asked.options, work.progress.note), work.progress)
     work.progress.note(f"{len(runs)} points of {asked.number} trains humped after {time.monotonic() - started:.1f} s")
     count, seed = len(asked.axis.values), asked.base.config.settings.trains.seed
     by_curve = [outcomes[place : place + count] for place in range(0, len(outcomes), count)]

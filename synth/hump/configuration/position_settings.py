@@ -63,7 +63,9 @@ class HumpPositionSettings(Section):
         "m/s", 0.0, 1.0, "standard deviation of the exit speed about the commanded one", 0.35
     )
     tables: str | None = choice(
-        None, "in its place, a book of controller tables, which runs in its closed loop", "out/book.h5"
+        None,
+        "in its place, controller tables (a file, a book or a folder), which run in their closed loop",
+        "out/book.h5",
     )
     tables_config: str | None = choice(
         None, "the configuration that it was tuned with; left out: the built-in one", "my.toml"

@@ -49,7 +49,7 @@ def read_trial_file(source: Path | None) -> TrialFile:
     return parse_trial_file("", BUILT_IN) if source is None else parse_trial_file(trial_text(source), str(source))
 
 
-def trial_text(source: Path, template: str = "init --hump") -> str:
+def trial_text(source: Path, template: str = "init trial") -> str:
     """The text of the configuration `source`; a hump has that of the default trial on it. `InputError`.
 
     `template`: the command that prints such a file.

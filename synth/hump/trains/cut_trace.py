@@ -21,6 +21,10 @@ SAMPLE_M = 1.0
 """Samples are so far apart at most; more stand where axles pass the marks of elements."""
 
 
+SAME_M = 1e-6
+"""Places that are no farther apart are one."""
+
+
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class CutTrace:
@@ -56,20 +60,17 @@ class CutTrace:
         )
         return CutTrace(*(np.concatenate((mine[:own], theirs[led])) for mine, theirs in parts)), touch_s
 
-    def held_up(self, leader: CutTrace, length_m: float) -> tuple[CutTrace, float]:
-        """This way, but never ahead of the tail of `leader`, which is `length_m` long; and when they first touch.
-
-        It ends where it ends by itself: so the model tells of cuts that meet on their track.
-        """
-        times = np.union1d(self.time_s, leader.time_s[leader.time_s > self.time_s[0]])
-        own, tail = self.head_at(times), leader.head_at(times) - length_m
-        held = own > tail
-        held[0] = False
-        speeds = np.interp(times, self.time_s, self.speed_m_s), np.interp(times, leader.time_s, leader.speed_m_s)
-        # A tail that is behind the place where this cut was before waits there; a cut never goes back.
-        heads = np.maximum.accumulate(np.where(held, tail, own))
-        touch_s = float(times[held.argmax()] if held.any() else times[-1])
-        return CutTrace(times, heads, np.where(held, speeds[1], speeds[0])), touch_s
+    def rolling_on(self, body: CutTrace, behind_m: float) -> CutTrace:
+        """This way until it couples to others, then with the `body` of all of them, `behind_m` behind its head. A cut
+        that is there before the tail ahead waits for it."""
+        heads = body.head_m - behind_m
+        own = max(int(((self.time_s < body.time_s[0]) & (self.head_m <= heads[0] + SAME_M)).sum()), 1)
+        parts = (
+            (self.time_s[:own], body.time_s),
+            (self.head_m[:own], np.maximum(heads, self.head_m[own - 1])),
+            (self.speed_m_s[:own], body.speed_m_s),
+        )
+        return CutTrace(*(np.concatenate(part) for part in parts))
 
 
 class TracedTrain:
@@ -149,6 +150,25 @@ class TracedTrain:
         self.head_m = self.replaced(self.head_m, cuts, ends[cuts])
         self.speed_m_s = self.replaced(self.speed_m_s, cuts, memory.exit_m_s[lane, cuts, position])
         self.time_s = self.replaced(self.time_s, cuts, memory.end_s[lane, cuts, position])
+
+    def body(self, cuts: Ints, cut: int) -> CutTrace:
+        """The way of the head of these `cuts`, of which the last, `cut`, coupled to the others while they rolled."""
+        memory, lane, route = self.memory, self.lane, self.routes[cut]
+        head = memory.touch_m[lane, cut] + self.length_m[cuts[:-1]].sum()
+        to = max(memory.free_m[lane, cuts[0]], head)
+        at = np.unique(np.append(np.arange(np.floor(head / SAMPLE_M) + 1.0, to / SAMPLE_M) * SAMPLE_M, to))
+        speed = memory.together_m_s[lane, cut]
+        rolled = self.hump.rolls.coupled(self.rows[cuts][None]).roll_on(
+            np.zeros(1, np.int64), np.array([route]), np.array([head]), np.array([speed]), at[None]
+        )
+        time, speeds = rolled.time_s[0], rolled.speed_m_s[0]
+        rolls = np.isfinite(time) & (speeds > 0.0)
+        way = [np.append(first, more[rolls]) for first, more in ((0.0, time), (head, at), (speed, speeds))]
+        if np.isfinite(rolled.stop_m[0]) and rolled.stop_m[0] > way[1][-1] + SAME_M:
+            last_s = 2.0 * (rolled.stop_m[0] - way[1][-1]) / way[2][-1]
+            ends = way[0][-1] + last_s, rolled.stop_m[0], 0.0
+            way = [np.append(each, end) for each, end in zip(way, ends, strict=True)]
+        return CutTrace(memory.touch_s[lane, cut] + way[0], way[1], way[2])
 
     def replaced(self, values: Floats, cuts: Ints, new: Floats) -> Floats:
         """`values`, those of `cuts` being `new`."""

@@ -12,9 +12,10 @@ from synth.hump.trains.asked import Asked, ExitSpeeds, HumpSpeeds
 from synth.hump.trains.hump_position import Arrivals, HumpPosition
 from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.hump.trains.meeting import Ahead, LastUsers, first_of, meeting
-from synth.hump.trains.motion import Cars, Moving, Push, Rolls, braked_evenly, merged, rolled_free
+from synth.hump.trains.motion import Cars, CoupledRolls, Moving, Push, braked_evenly, merged, rolled_free
+from synth.hump.trains.rolled_on import RolledOn, remember
 from synth.hump.trains.skates import NO_SKATES, Skates
-from synth.hump.trains.standing_cars import StandingCars
+from synth.hump.trains.standing_cars import NEARLY_M, StandingCars
 from synth.hump.trains.tails import Tails, followed
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
@@ -22,9 +23,6 @@ from synth.hump.trains.train_memory import TrainMemory
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
-
-NEARLY_M = 0.05
-"""A cut that stops of itself is taken to stand when it has so much to go: the last of it takes time, but no place."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +32,7 @@ class Hump:
 
     routes: HumpRoutes
     positions: tuple[HumpPosition, ...]
-    rolls: Rolls
+    rolls: CoupledRolls
     skates: Skates = NO_SKATES
 
 
@@ -42,7 +40,7 @@ def humped(hump: Hump, trains: TrainCuts, free_m: Floats, speeds: HumpSpeeds, co
     """Hump all `trains`; `free_m` (trains, routes): where the standing cars of each track begin before the train."""
     memory = TrainMemory(trains.trains, trains.cuts, hump.routes)
     memory.found_free_m = free_m
-    users, standing = LastUsers(trains.trains, hump.routes), StandingCars(free_m)
+    users, standing = LastUsers(trains.trains, hump.routes), StandingCars(free_m, hump.rolls)
     for cut in range(trains.cuts):
         OneCut(hump, trains, cut, memory, users, standing).run(speeds, control)
     memory.left_free_m = standing.free_m
@@ -96,7 +94,7 @@ class OneCut:
         """Where the heads are at each mark of their routes, (n, elements · marks)."""
         axle = np.where(OF_FIRST_AXLE, self.first_m[chosen, None], self.last_m[chosen, None])
         places = self.hump.routes.place_m[self.routes[chosen]] + axle[:, None, :]
-        return np.asarray(places.reshape(len(places), -1))
+        return np.asarray(places.reshape(len(places), self.times[0].size))
 
     def cars(self, chosen: Bools) -> Cars:
         """The cuts `chosen` on their routes."""
@@ -269,14 +267,20 @@ class OneCut:
         rolls = self.rolling
         ended = np.where(end.speed_m_s > 0.0, end.time_s, self.halt_s)
         lanes, still = self.lanes[rolls], Moving(end.head_m, end.speed_m_s, ended).chosen(rolls)
-        closing = standing.add(lanes, self.cars(rolls), moving.chosen(rolls), still, self.length_m[rolls])
-        touches = ~np.isnan(closing)
-        memory.caught_on_track[lanes, cut] = touches
         memory.end_m[lanes, cut], memory.end_time_s[lanes, cut] = still.head_m, still.time_s
         memory.tail_m[lanes, cut], memory.still_s[lanes, cut] = still.head_m - self.last_m[rolls], still.time_s
-        coupled = self.hump.skates.left_m_s(self.routes[rolls], still.speed_m_s)
-        memory.end_speed_m_s[lanes, cut] = np.where(touches, closing, coupled)
+        memory.end_speed_m_s[lanes, cut] = self.hump.skates.left_m_s(self.routes[rolls], still.speed_m_s)
+        marks = self.heads_m(rolls)
+        added = standing.add(lanes, self.cars(rolls), moving.chosen(rolls), still, self.length_m[rolls], marks)
+        self.note_behind(marks[added.which], added)
+        coupled = self.hump.skates.left_m_s(added.route, added.end_m_s)
+        remember(memory, self.trains, cut, added, coupled)
         standing.block(self.lanes[~rolls], self.routes[~rolls], self.length_m[~rolls])
+
+    def note_behind(self, marks_m: Floats, found: RolledOn) -> None:
+        """The times of the marks `marks_m` that cuts pass with others ahead of them."""
+        later = (marks_m > found.contact.head_m[:, None]).reshape(len(marks_m), *self.times.shape[1:])
+        self.times[found.lanes] = np.where(later, found.marks_s.reshape(later.shape), self.times[found.lanes])
 
     def halt(self, moving: Moving, ended: Moving) -> None:
         """Note when cuts that rolled freely from `moving` stopped of themselves where they `ended`."""

@@ -52,6 +52,16 @@ class Rolls(Protocol):
         """Over `stations_m` (n, k), from the heads at `start_m` (n,) with `speed_m_s` (n,)."""
 
 
+class CoupledRolls(Rolls, Protocol):
+    """The same, of cuts that may couple and roll on as one."""
+
+    def coupled(self, members: Ints) -> Rolls:
+        """The cuts `members` (n, k), the first ahead, −1 behind the last one, as n cuts."""
+
+    def inertia_t(self, rows: Ints) -> Floats:
+        """Mass of the cuts `rows` (m,), with what their wheels add as they turn."""
+
+
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Cars:

@@ -10,7 +10,8 @@ from typing import TypeVar
 from plant_models.errors import PlantError, require
 from plant_models.hump import Retarder, Route
 from synth.hump.configuration.position_settings import HumpPositionSettings
-from synth.retarder.forms.table_file import read_tables
+from synth.retarder.forms.table_file import book_in
+from synth.retarder.forms.tables_at import tables_at
 
 T = TypeVar("T")
 
@@ -95,10 +96,10 @@ def choice_of(
     site = same_of(number, "position", {r.position for r in held})
     std, book, tuned_with = settings.exit_std_m_s, None, None
     if settings.tables is not None:
-        book = folder / settings.tables
+        book = book_in(folder / settings.tables)
     elif std is None:
         std, named = same_of(number, "exit_std_m_s or book", {(r.exit_std_m_s, r.book) for r in held})
-        book = None if named is None else hump_folder / named
+        book = None if named is None else book_in(hump_folder / named)
     if settings.tables_config is not None:
         require(
             book is not None,
@@ -125,9 +126,9 @@ def choice_of(
 
 def held_in(book: Path) -> HeldTables:
     """What the tables in `book` are for."""
-    (file,) = read_tables(book)
+    tables = tables_at(book).only_lines("a position of a trial")
     targets: dict[tuple[str, float, tuple[float, ...]], list[float]] = {}
-    for table in file.tables:
+    for table in tables:
         key = table.cut.category, table.cut.mass_t, tuple(table.cut.axle_offsets_m)
         targets.setdefault(key, []).append(table.target_speed_m_s)
     return HeldTables(

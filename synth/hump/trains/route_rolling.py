@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.cut import GRAVITY_M_S2
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
+from synth.hump.trains.coupled_cuts import coupled_rows
 from synth.hump.trains.route_ways import RouteWays
 from synth.kernels.roll.felt_track import LANES, Cuts
 from synth.kernels.roll.lane_cuts import CutRows, lay_in_lanes
@@ -54,7 +56,7 @@ class RouteRolling:
             raise ValueError("roll: start_m and speed_m_s must be finite")
         if len(rows) == 0:
             return Rolled(np.empty(stations_m.shape), np.empty(stations_m.shape), np.empty(0))
-        order = np.argsort(-self.rows.cars[rows].astype(np.int8), kind="stable")
+        order = np.argsort(-self.rows.cars[rows].astype(np.int16), kind="stable")
         constant = self.rows.constant[rows] if resistance_n_per_kn is None else 1e-3 * resistance_n_per_kn
         cut_of, route_of = in_lanes(rows[order]), in_lanes(routes[order])
         lanes = self._lanes(len(cut_of), int(self.rows.cars[cut_of[0]]), in_lanes(constant[order]))
@@ -69,6 +71,15 @@ class RouteRolling:
         back = np.empty_like(order)
         back[order] = np.arange(len(order))
         return Rolled(sorted_roll.speed_m_s[back], sorted_roll.time_s[back], sorted_roll.stop_m[back])
+
+    def coupled(self, members: Ints) -> RouteRolling:
+        """The cuts `members` (n, k), the first ahead, −1 behind the last one, coupled to n cuts."""
+        rows = coupled_rows(self.rows, members, self.cuts.cut_mass_t, float(self.ways.way.nodes_per_m))
+        return replace(self, rows=rows)
+
+    def inertia_t(self, rows: Ints) -> Floats:
+        """Mass of the cuts `rows` (m,) with that of their wheels as they turn."""
+        return np.asarray(self.cuts.cut_mass_t[rows] * GRAVITY_M_S2 / self.rows.gravity_m_s2[rows])
 
     def fall_m(self, rows: Ints, routes: Ints, head_m: Floats) -> Floats:
         """How far the cuts `rows` (m,) on `routes` (m,) have fallen when their heads are at `head_m` (m,), as the

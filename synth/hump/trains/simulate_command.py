@@ -25,7 +25,8 @@ LIMITS_OF_USE = (
     CHANCE_ONLY,
     "A figure of 0 does not mean never: the upper end of its interval is what these trains show.",
     "Cuts that were misrouted, in contact, or stopped count as such; their couplings and gaps are not counted.",
-    "A cut in contact does not push the one ahead, which comes as far and as fast as it would alone.",
+    "Cuts that meet while both roll on their track roll on as one. Ahead of it a cut in contact does not push the one "
+    "ahead, which comes as far and as fast as it would alone.",
     "Each train, or each shift of trains (tracks.shift_trains), finds standing cars of its own. In a shift tracks are "
     "pushed up and pulled between two trains, by a rule, as soon as that is needed: no train waits for it.",
     NO_SAFETY,
@@ -88,7 +89,7 @@ def humped(asked: AskedTrains, trial: HumpTrial, work: Work) -> TrainOutcomes:
     from synth.hump.trains.train_run import run_of, run_trials
 
     run = run_of(asked.trial.config, trial, asked.number, work.directory)
-    (found,) = run_trials((run,), partial(engine_for, asked.options), work.progress)
+    (found,) = run_trials((run,), partial(engine_for, asked.options, work.progress.note), work.progress)
     return found
 
 

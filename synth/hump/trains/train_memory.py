@@ -17,7 +17,8 @@ class TrainMemory:
     Columns of elements, the number of elements where none: `misrouted_at`, `contact_at`; `behind`, the cut with which
     it is in contact from `since_s` on, −1 for none. (…, elements): `unseparated`, `foul`. At the track: `free_m` that
     the cut found, head at its end `end_m` with `end_speed_m_s` at `end_time_s`; where it is `caught_on_track`, because
-    it touched the cut ahead while that still rolled, the speed is the difference of both. `tail_m`: where the last axle
+    it touched the cut ahead while that still rolled, the speed is the difference of both; it did so at `touch_s` with
+    its head at `touch_m`, and both rolled on as one, with `together_m_s` at first. `tail_m`: where the last axle
     stands at last, from `still_s` on, also of cuts in contact.
     (trains, routes): `found_free_m` and `left_free_m`, where the standing cars of each track began before the train,
     and behind it. (trains,): tracks that were `pushed_up`, and `pulled`, for it.
@@ -37,6 +38,7 @@ class TrainMemory:
         self.unseparated, self.foul = np.zeros((*shape, elements), bool), np.zeros((*shape, elements), bool)
         self.behind, self.since_s = np.full(shape, -1), np.full(shape, np.nan)
         self.caught_on_track = np.zeros(shape, bool)
+        self.touch_s, self.touch_m, self.together_m_s = (np.full(shape, np.nan) for _ in range(3))
         self.tail_m, self.still_s = np.full(shape, np.nan), np.full(shape, np.nan)
         self.found_free_m, self.left_free_m = (np.full((trains, len(routes.routes)), np.nan) for _ in range(2))
         self.pushed_up, self.pulled = (np.zeros(trains, dtype=np.int64) for _ in range(2))

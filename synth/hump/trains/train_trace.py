@@ -127,17 +127,21 @@ def train_trace(
 
     Nothing is simulated anew: free rolls go from the states that the memory has, passes as they were.
     """
-    ways = list(TracedTrain(hump, trains, memory, lane).traces())
+    traced = TracedTrain(hump, trains, memory, lane)
+    ways = list(traced.traces())
     touch_s: dict[int, float] = {}
     for cut in range(trains.cuts):
         leader = leader_of(memory, lane, cut)
-        if leader is not None:
-            length = float(trains.length_m[lane * trains.cuts + leader])
-            by_s = float(memory.since_s[lane, cut])
-            if memory.caught_on_track[lane, cut]:
-                ways[cut], touch_s[cut] = ways[cut].held_up(ways[leader], length)
-            else:
-                ways[cut], touch_s[cut] = ways[cut].behind(ways[leader], length, by_s)
+        if leader is not None and memory.caught_on_track[lane, cut]:
+            touch_s[cut], behind_m = float(memory.touch_s[lane, cut]), 0.0
+            members = body_of(memory, lane, cut)
+            body = traced.body(members, cut)
+            for each in members:
+                ways[each] = ways[each].rolling_on(body, behind_m)
+                behind_m += float(traced.length_m[each])
+        elif leader is not None:
+            length, by_s = float(traced.length_m[leader]), float(memory.since_s[lane, cut])
+            ways[cut], touch_s[cut] = ways[cut].behind(ways[leader], length, by_s)
     cuts = tuple(traced_cut(hump, trains, memory, lane, way) for way in enumerate(ways))
     occupied = tuple(occupations(hump.routes, memory, lane))
     told = alarms(hump.routes, memory, lane, cuts, touch_s, allowed_m_s)
@@ -150,8 +154,19 @@ def leader_of(memory: TrainMemory, lane: int, cut: int) -> int | None:
     if not memory.caught_on_track[lane, cut]:
         leader = int(memory.behind[lane, cut])
         return leader if leader >= 0 else None
-    same = np.flatnonzero(memory.route[lane, :cut] == memory.route[lane, cut])
+    by_itself = np.isfinite(memory.end_m[lane, :cut])
+    same = np.flatnonzero(by_itself & (memory.route[lane, :cut] == memory.route[lane, cut]))
     return int(same[-1]) if len(same) else None
+
+
+def body_of(memory: TrainMemory, lane: int, cut: int) -> np.ndarray:
+    """The cuts that rolled on as one with `cut` behind them, from the first to it."""
+    found = [cut]
+    while memory.caught_on_track[lane, found[0]]:
+        ahead = leader_of(memory, lane, found[0])
+        assert ahead is not None
+        found.insert(0, ahead)
+    return np.array(found)
 
 
 def user_ahead(routes: HumpRoutes, memory: TrainMemory, lane: int, cut: int, column: int) -> int | None:

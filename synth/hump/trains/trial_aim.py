@@ -13,7 +13,7 @@ from synth.hump.trains.position_choice import PositionChoice
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.table_aim import table_aim
 from synth.hump.trains.trial_aim_range import aim_range_m_s
-from synth.retarder.forms.table_file import read_tables
+from synth.retarder.forms.tables_at import tables_at
 
 
 def trial_aim(config: ResolvedTrial, threads: int) -> HumpAim:
@@ -51,5 +51,5 @@ def stated_exit_std_m_s(choice: PositionChoice) -> float:
     """What an aim takes for the error of a position: of a book, the root mean square of what its tables predict."""
     if choice.book is None:
         return choice.exit_std_m_s or 0.0
-    (file,) = read_tables(choice.book)
-    return float(np.sqrt(np.mean([table.predicted.rms_m_s**2 for table in file.tables])))
+    tables = tables_at(choice.book).only_lines("a position of a trial")
+    return float(np.sqrt(np.mean([table.predicted.rms_m_s**2 for table in tables])))

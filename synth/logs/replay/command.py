@@ -48,18 +48,18 @@ class FoundReplay:
 
 def resolve(asked: Asked[ResolvedConfig, ReplayOptions]) -> AskedReplay:
     """Passes and tables; a table that fits no class is refused."""
-    from synth.retarder.forms.table_file import read_tables
+    from synth.retarder.forms.tables_at import tables_at
 
     config, options = asked.settings, asked.options
-    (other,) = read_tables(options.table)
-    own = None if options.own is None else read_tables(options.own)[0].tables
+    other = tables_at(options.table).only_lines("replay --table")
+    own = None if options.own is None else tables_at(options.own).only_lines("replay --own")
     from synth.logs.asked_passes import asked_passes
 
     passes = asked_passes(options, config, asked.place)
     from synth.logs.retune.tuned_books import tables_by_case  # numba: a log that is refused needs none
 
-    tables_by_case(other.tables, config, asked.place)
-    return AskedReplay(passes, other.tables, own)
+    tables_by_case(other, config, asked.place)
+    return AskedReplay(passes, other, own)
 
 
 def head(asked: AskedReplay) -> Head:

@@ -11,7 +11,7 @@ from synth.logs.log_options import LogOptions
 class ReplayOptions(LogOptions):
     """Options of the command line."""
 
-    table: Path = word_option("--table", "TABLE|BOOK", NEEDED, "The tables to try.")
+    table: Path = word_option("--table", "TABLE|BOOK|DIR", NEEDED, "The tables to try.")
     own: Path | None = word_option(
-        "--own", "BOOK", None, "What drove the log; the configuration's own tables unless given."
+        "--own", "TABLE|BOOK|DIR", None, "What drove the log; the configuration's own tables unless given."
     )

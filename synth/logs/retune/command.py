@@ -39,10 +39,10 @@ class AskedRetune:
 
 def resolve(asked: Asked[ConfigSource, RetuneOptions]) -> AskedRetune:
     """Passes and tables; a table that fits no class is refused."""
-    from synth.retarder.forms.table_file import read_tables
+    from synth.retarder.forms.tables_at import tables_at
 
     config, options = asked.settings.resolved(), asked.options
-    given = None if options.table is None else read_tables(options.table)[0].tables
+    given = None if options.table is None else tables_at(options.table).only_lines("retune --table")
     from synth.logs.asked_passes import asked_passes
 
     passes = asked_passes(options, config, asked.place)

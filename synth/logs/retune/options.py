@@ -12,5 +12,5 @@ class RetuneOptions(LogOptions):
     """Options of the command line."""
 
     table: Path | None = word_option(
-        "--table", "BOOK", None, "What runs now; the configuration's own tables unless given."
+        "--table", "TABLE|BOOK|DIR", None, "What runs now; the configuration's own tables unless given."
     )

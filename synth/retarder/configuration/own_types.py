@@ -40,15 +40,15 @@ SUFFIX: Final = ".toml"
 MOST_FILES: Final = 1000
 """Of one folder of a library."""
 
-INIT_OPTION: Final = {
-    CARS: "--car",
-    RETARDERS: "--retarder",
-    POSITIONS: "--position",
-    SENSORS: "--sensor",
-    WHEEL_SENSORS: "--wheel-sensor",
-    WEIGHT_CATEGORIES: "--weight-categories",
-    TRACKS: "--aim large-hump",
-    CAR_MIXES: "--aim usual",
+INIT_WORDS: Final = {
+    CARS: "car",
+    RETARDERS: "retarder",
+    POSITIONS: "position",
+    SENSORS: "sensor",
+    WHEEL_SENSORS: "wheel-sensor",
+    WEIGHT_CATEGORIES: "weight-categories",
+    TRACKS: "track",
+    CAR_MIXES: "car-mix",
 }
 """What has `retarder-synth init` print a file of a kind."""
 
@@ -69,7 +69,7 @@ class Collection:
         if not there:
             raise InputError(
                 f"{named_by} names the file {excerpt(str(path), 200)!r}, which does not exist; "
-                f"'retarder-synth init {INIT_OPTION[kind]}' prints one to start from"
+                f"'retarder-synth init {INIT_WORDS[kind]}' prints one to start from"
             )
         known = self.found.get(key)
         if known is not None:

@@ -205,7 +205,9 @@ class Settings(TopKeys):
     entry: EntrySettings = EntrySettings()
     friction: FrictionSettings = FrictionSettings()
     sensor: SensorSettings = SensorSettings()
-    sensors: PointSensorSettings | None = choice(None, "point sensors in place of the radar; 'init --sensors' has them")
+    sensors: PointSensorSettings | None = choice(
+        None, "point sensors in place of the radar; 'init point-sensors' has them"
+    )
     targets: TargetSettings = TargetSettings()
     cut: tuple[CutSettings, ...] = many(DEFAULT_CUTS, 1, 1000, "[[cut]] tables")
     grid: GridSettings = GridSettings()

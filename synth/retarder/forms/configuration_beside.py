@@ -1,10 +1,11 @@
-"""The configuration that tables were made of, for whoever gets their code: the copy that lies beside the tables."""
+"""The configuration that tables were made of: the copy that lies beside them."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -17,20 +18,19 @@ from tuning_tables.table_kinds import AnyTable
 NAME: Final = f"retarder_{CONFIGURATION}"
 
 
-def configuration_file(source: Path, tables: Sequence[AnyTable], prefix: ExportPrefix) -> Mapping[str, bytes]:
-    """The user's file that the tables, all of one kind, were made of; none where no command at `source` kept it.
+@dataclass(frozen=True)
+class KeptConfiguration:
+    """The copy at `path`, as it was written."""
 
-    `source`: a table, a book, or the directory of a command.
-    """
-    kept = kept_configuration(source, tables)
-    named = prefix.of_kind(AIM) if isinstance(tables[0], AimTable) else prefix
-    return {} if kept is None else {named.renamed(NAME): kept[1]}
+    path: Path
+    content: bytes
 
 
-def kept_configuration(source: Path, tables: Sequence[AnyTable]) -> tuple[Path, bytes] | None:
-    """Path and content of the copy that lies at `source`, or in a folder above a file; None where there is none.
+def configuration_beside(source: Path, tables: Sequence[AnyTable]) -> KeptConfiguration | None:
+    """The user's file that the tables were made of; None where no command at `source` kept it.
 
-    The summary must have the hash of the tables' configuration, and that of the copy.
+    `source`: a table, a book, or the directory of a command; what it left lies there, or in a folder above a file. The
+    summary must have the hash of the tables' configuration, and that of the copy.
     """
     sha256s = {table.generator.config_sha256 for table in tables}
     here = source if source.is_dir() else source.parent
@@ -43,5 +43,12 @@ def kept_configuration(source: Path, tables: Sequence[AnyTable]) -> tuple[Path, 
         except (OSError, ValueError, KeyError, TypeError):  # no summary, none of ours, or no copy
             continue
         if is_theirs and is_whole:
-            return folder / CONFIGURATION, content
+            return KeptConfiguration(folder / CONFIGURATION, content)
     return None
+
+
+def configuration_file(source: Path, tables: Sequence[AnyTable], prefix: ExportPrefix) -> Mapping[str, bytes]:
+    """The same, for tables of one kind, as a file for whoever gets their code; none where there is no copy."""
+    kept = configuration_beside(source, tables)
+    named = prefix.of_kind(AIM) if isinstance(tables[0], AimTable) else prefix
+    return {named.renamed(NAME): kept.content} if kept else {}

@@ -49,15 +49,9 @@ def read_tables(path: Path, directory_allowed: bool = False) -> tuple[TableFile,
     return (read_table_file(path),)
 
 
-def tables_at(path: Path) -> tuple[ControllerTable, ...]:
-    """The tables with lines at `path`: of a table, a book, or a directory, in the order of its book where it has one.
-
-    Raises as `read_tables`.
-    """
-    book = path / BOOK
-    if path.is_dir() and book.is_file():
-        return read_table_file(book).tables
-    return tuple(table for file in read_tables(path, directory_allowed=True) for table in file.tables)
+def book_in(path: Path) -> Path:
+    """The book in the directory `path` of a tune; else `path` itself, where tables may be or not."""
+    return path / BOOK if (path / BOOK).is_file() else path
 
 
 def table_files(directory: Path) -> list[Path]:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, TypeAlias
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.input_error import InputError
-from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import MODEL_ONLY
 from synth.retarder.loops.options import LoopOptions
+from synth.retarder.tables_configuration import configuration_for, given_config
 
 if TYPE_CHECKING:
     from synth.retarder.line_control_loop import LineControlLoop
@@ -46,12 +46,16 @@ class FoundLoops:
     loops: tuple[AnyLoop, ...]
 
 
-def resolve(asked: Asked[ResolvedConfig, LoopOptions]) -> AskedLoops:
+def resolve(asked: Asked[ResolvedConfig | None, LoopOptions]) -> AskedLoops:
     """The tables; refused where one fits no class of the configuration, or python-control cannot close its loop."""
-    from synth.retarder.forms.any_tables import any_tables
+    from synth.retarder.forms.tables_at import tables_at
 
-    config, tables = asked.settings, any_tables(asked.options.source)
-    return AskedLoops(config, tuple(closing(table, config, asked.place) for table in tables))
+    path = asked.options.source
+    tables = tables_at(path).of_stages
+    if not tables:
+        raise InputError(f"{path}: its tables are aim tables, which regulate nothing; give those of a tune")
+    config, place = (asked.settings, asked.place) if asked.settings else configuration_for(None, path, tables)
+    return AskedLoops(config, tuple(closing(table, config, place) for table in tables))
 
 
 def closing(table: StageTable, config: ResolvedConfig, source: str) -> Callable[[], AnyLoop]:
@@ -109,7 +113,7 @@ def show(found: FoundLoops) -> Iterator[Chapter]:
 
 COMMAND = Command(
     name="loop",
-    read=parse_config,
+    read=given_config,
     options=LoopOptions,
     resolve=resolve,
     head=head,

@@ -11,4 +11,6 @@ class LoopOptions(Options):
     """Options of the command line."""
 
     source: Path = word_option(BY_PLACE, "TABLE|BOOK|DIR", NEEDED, "A table, a book, or a folder of tables.")
-    config: Path | None = word_option("--config", "C", None, "Configuration with the plant; built-in unless given.")
+    config: Path | None = word_option(
+        "--config", "C", None, "Configuration with the plant; that of the tables unless given."
+    )

@@ -1,4 +1,4 @@
-"""The command `permissions`: what to ask of the hardware, told by what each permission would give in every case."""
+"""The command `hardware`: what to ask of the hardware, told by what each permission would give in every case."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def resolve(asked: Asked[ResolvedConfig, PermissionsOptions]) -> AskedPermission
     """Refuse what cannot be told, and what does not fit into memory."""
     from synth.retarder.permissions.refusal import require_tellable
 
-    require_tellable(asked.settings, asked.place, "permissions")
+    require_tellable(asked.settings, asked.place, "'hardware'")
     require_room(asked.settings, RadarEpochs(), asked.place, asked.options.workers)
     return AskedPermissions(asked.settings, asked.place, asked.options.workers)
 
@@ -89,7 +89,7 @@ def show(found: FoundPermissions) -> Iterator[Chapter]:
 
 
 COMMAND = Command(
-    name="permissions",
+    name="hardware",
     read=parse_config,
     options=PermissionsOptions,
     resolve=resolve,

@@ -1,4 +1,4 @@
-"""Options of the command `permissions`."""
+"""Options of the command `hardware`."""
 
 from __future__ import annotations
 

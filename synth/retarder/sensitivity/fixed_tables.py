@@ -12,7 +12,7 @@ from synth.problem.aim import Aim
 from synth.retarder.class_setup import class_setup, origin_of, validation_passes
 from synth.retarder.configuration.cut_class import CutClass
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.forms.table_file import read_tables
+from synth.retarder.forms.tables_at import tables_at
 from synth.retarder.served_class import plant_for
 from synth.retarder.tuned_table import solutions, tuned_table
 from synth.solver.one_blas_thread import one_blas_thread
@@ -32,7 +32,7 @@ class FixedTables:
 
 def tables_in(path: Path, config: ResolvedConfig, source: str) -> tuple[FixedTables, ...]:
     """The tables in `path` with the classes of `config` that they fit; `InputError` where there is none."""
-    tables = [table for file in read_tables(path, directory_allowed=True) for table in file.tables]
+    tables = tables_at(path).only_lines("sensitivity --table")
     labels = [plant_for(table, config, source)[0] for table in tables]
     found = []
     for cut_class in config.cuts:

@@ -1,7 +1,7 @@
 """What a layout of point sensors gives: its tables, made in less time than by a tune, and their exits on drawn passes.
 
 A plan compares dozens of layouts. So its tables are made on a grid twice as coarse in speed and polished less far than
-those of `sensors tune`, and what they give is simulated, on the same passes for all layouts.
+those of `tune`, and what they give is simulated, on the same passes for all layouts.
 """
 
 from __future__ import annotations

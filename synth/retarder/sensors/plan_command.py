@@ -1,4 +1,4 @@
-"""The command `sensors plan`: where point sensors stand, and how many of them a wanted rms takes."""
+"""The command `sensors`: where point sensors stand, and how many of them a wanted rms takes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 LIMITS_OF_USE = (
     "The rms is that of the model with the parameters of this page. Assumed ones are guesses.",
     "Sensors may stand at multiples of half a metre. What hinders them on the track is not known here.",
-    "Every sensor is taken to work. What a failed one costs is told by 'sensors tune'.",
+    "Every sensor is taken to work. What a failed one costs is told by 'tune'.",
     "Nothing proves that the layouts found are the best of all.",
 )
 
@@ -94,7 +94,7 @@ def show(found: LayoutResults) -> Iterator[Chapter]:
 
 
 COMMAND = Command(
-    name="sensors plan",
+    name="sensors",
     read=parse_config,
     options=PlanOptions,
     resolve=resolve,

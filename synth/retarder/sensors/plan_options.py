@@ -1,4 +1,4 @@
-"""Options of the command `sensors plan`."""
+"""Options of the command `sensors`."""
 
 from __future__ import annotations
 

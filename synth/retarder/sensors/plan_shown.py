@@ -45,7 +45,7 @@ def first(found: LayoutResults) -> Sentence:
     """What to do with the plan."""
     shown = found.shown
     name, number = file_of(shown), shown.deciding + 1
-    text = f"Make tables for {number} sensors, in this directory: retarder-synth sensors tune {name}."
+    text = f"Make tables for {number} sensors, in this directory: retarder-synth tune {name}."
     if found.chosen is None:
         text = (
             f"Of these numbers {number} sensors have an rms of {shown.errors.rms.value:.4f} m/s, which is more than is "
@@ -75,7 +75,7 @@ def how(found: LayoutResults) -> Sentence:
     return Sentence(
         f"Root of the mean square error at the exit over all classes and targets, simulated: {found.radar.rms.n} "
         "passes of every table, the same for all layouts, with 95 % intervals. Places and number were chosen on "
-        f"{CHOOSING_PASSES} other passes. The tables are polished less far than those of 'sensors tune', whose rms "
+        f"{CHOOSING_PASSES} other passes. The tables are polished less far than those of 'tune', whose rms "
         f"is lower as a rule. Sensors decide on: {axles.replace('_', ' ')}.",
         {"decides_on": axles, "wanted_rms_m_s": found.wanted_rms_m_s, "choosing_passes": CHOOSING_PASSES},
     )
@@ -133,7 +133,7 @@ def links(found: LayoutResults) -> Iterator[File]:
     for name, layout, file in layouts(found):
         number, told = layout.deciding + 1, layout.errors.rms
         place = (
-            f"{number} sensors, {name}, of retarder-synth sensors plan: rms {told.value:.4f} m/s, 95 % interval "
+            f"{number} sensors, {name}, of retarder-synth sensors: rms {told.value:.4f} m/s, 95 % interval "
             f"{told.low95:.4f} to {told.high95:.4f}"
         )
         sensors = {**found.source.tree.get("sensors", {}), "path_m": list(found.places_of(layout))}

@@ -72,9 +72,9 @@ def sensor_class(
     return SensorClass(label, served, sensors, chains, sensor_passes(served, sensors, passes), origin)
 
 
-def sensor_passes(plant: Plant, sensors: PointSensors, passes: RandomPasses) -> SensorPasses:
-    """Make `passes` ready for `plant`, whose regulator has all stages of the position, as its tables have."""
-    loop = close_passage_loop(plant, sensors, plant.position.top_stage + 1)
+def sensor_passes(plant: Plant, sensors: PointSensors, passes: RandomPasses, stages: int | None = None) -> SensorPasses:
+    """Make `passes` ready for `plant`, whose regulator has so many `stages`; unless told all of the position."""
+    loop = close_passage_loop(plant, sensors, stages or plant.position.top_stage + 1)
     return SensorPasses(loop, passes, loop.draws(passes))
 
 

@@ -1,4 +1,4 @@
-"""The command `sensors tune`: tables that decide where axles pass point sensors, and their proof."""
+"""The command `tune` with point sensors: tables that decide where axles pass them, and their proof."""
 
 from __future__ import annotations
 
@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 from synth.frame.command import Asked, Command, Head, Work
 from synth.frame.exhibits import Chapter, Sentence
 from synth.frame.input_error import InputError
-from synth.frame.settings.settings_file import BUILT_IN
 from synth.retarder.asked_tune import AskedTune, asked_tune, drawing, limits, steps, tuned
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY, NOT_CERTIFIED
 from synth.retarder.sensors.passage_epochs import PassageEpochs
-from synth.retarder.sensors.tune_options import SensorsTuneOptions
+from synth.retarder.tune_options import TUNE, TuneOptions
 
 if TYPE_CHECKING:
     from synth.frame.exhibits import File
@@ -37,21 +36,12 @@ LIMITS_OF_USE = (
 )
 
 
-def read(text: str, place: str) -> ResolvedConfig:
-    """The configuration in `text`; the one that `init --sensors` prints where there is no file."""
-    from synth.retarder.configuration.point_sensors.template import built_in_sensors
-
-    return built_in_sensors() if place == BUILT_IN else parse_config(text, place)
-
-
-def resolve(asked: Asked[ResolvedConfig, SensorsTuneOptions]) -> AskedTune[SensorCase, PassageTable]:
-    """Refuse a configuration without sensors, what they cannot keep, and what does not fit into memory."""
+def resolve(asked: Asked[ResolvedConfig, TuneOptions]) -> AskedTune[SensorCase, PassageTable]:
+    """Refuse what sensors cannot keep, what is for a radar, and what does not fit into memory."""
     config, place = asked.settings, asked.place
-    if config.sensors is None:
-        raise InputError(
-            f"{place}: the section [sensors] is missing; 'retarder-synth init --sensors' prints one to start from, and "
-            "'retarder-synth tune' makes tables for the radar"
-        )
+    assert config.sensors is not None  # else it is another command
+    if asked.options.pareto:
+        raise InputError(f"{place}: it has point sensors; --pareto is for tables for a radar: leave one of the two out")
     if config.criterion.requirement is not None:
         raise InputError(
             f"{place}: criterion.p_overspeed and criterion.worst_friction_* can be kept only by tables for a radar; "
@@ -116,9 +106,9 @@ def show(found: FoundBook[SensorCase]) -> Iterator[Chapter]:
 
 
 COMMAND = Command(
-    name="sensors tune",
-    read=read,
-    options=SensorsTuneOptions,
+    name=TUNE,
+    read=parse_config,
+    options=TuneOptions,
     resolve=resolve,
     head=head,
     steps=steps,

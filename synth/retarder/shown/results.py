@@ -42,7 +42,7 @@ HOW_TO_READ: Final = (
     "see the same passes, and may act from the same place."
 )
 PERMISSIONS: Final = (
-    "'retarder-synth permissions' tells what commands at any time and other permissions of the hardware would give."
+    "'retarder-synth hardware' tells what commands at any time and other permissions of the hardware would give."
 )
 
 

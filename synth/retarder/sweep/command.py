@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.processors import available
-from synth.frame.terminal.telling import say
 from synth.retarder.configured import sensors_left_aside
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY, NOT_CERTIFIED
 from synth.retarder.sweep.options import SweepOptions
@@ -67,24 +66,24 @@ def compute(asked: AskedSweep, work: Work) -> tuple[BookFigures, ...]:
     directory = HeldSweep(work.directory.path, work.directory)
     task = task_of(asked.settings, directory, work.progress)
     work.progress.begin(len(task.plan.units) - len(task.missing))
-    return run_sweep(task, directory, engine_for(task, asked.options), work.progress)
+    return run_sweep(task, directory, engine_for(task, asked.options, work.progress.note), work.progress)
 
 
-def engine_for(task: Task, options: SweepOptions) -> Engine:
-    """The cluster that was named, or processes on this machine as far as memory allows."""
+def engine_for(task: Task, options: SweepOptions, tell: Callable[[str], None]) -> Engine:
+    """The cluster that was named, or processes on this machine as far as memory allows, which `tell` is told."""
     from synth.retarder.sweep.run import fitting_workers
     from synth.retarder.sweep.unit_answer import answer
 
     if options.scheduler is not None:
         from synth.frame.workers.dask_cluster import connect
 
-        return connect(options.scheduler, answer)
+        return connect(options.scheduler, answer, tell)
     from synth.frame.workers.local_workers import LocalWorkers
 
     asked = options.workers or available()
     fit = fitting_workers(task, asked)
     if fit < min(asked, len(task.missing)):
-        say(f"warning: memory allows for {fit} of {asked} workers")
+        tell(f"warning: memory allows for {fit} of {asked} workers")
     return LocalWorkers(fit, answer)
 
 

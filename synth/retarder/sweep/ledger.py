@@ -79,11 +79,12 @@ class LedgerWriter:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
+        self._file = path.open("ab+", buffering=0)
         with faults_naming(path):
-            size = os.fstat(self._descriptor).st_size
-            if size and os.pread(self._descriptor, 1, size - 1) != b"\n":
-                os.write(self._descriptor, b"\n")
+            if self._file.tell():
+                self._file.seek(-1, os.SEEK_END)
+                if self._file.read(1) != b"\n":
+                    self._file.write(b"\n")
 
     def __enter__(self) -> LedgerWriter:
         return self
@@ -91,13 +92,13 @@ class LedgerWriter:
     def __exit__(
         self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
     ) -> None:
-        os.close(self._descriptor)
+        self._file.close()
 
     def write(self, kind: str, facts: Mapping[str, Any]) -> None:
         """Append one event with the time; on the disk when this returns. Raises `OSError` that names the ledger."""
         event = {"event": kind, "time_s": round(time.time(), 3), **facts}
         line = canonical_json({**event, CHECKSUM_KEY: document_checksum(event)}) + b"\n"
         with faults_naming(self._path):
-            if os.write(self._descriptor, line) != len(line):
+            if self._file.write(line) != len(line):
                 raise OSError(errno.ENOSPC, "the disk took only a part of a line")
-            os.fsync(self._descriptor)
+            os.fsync(self._file.fileno())

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import resource
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
 
+from synth.frame.address_space import address_space_limit_bytes
 from synth.frame.creation_time import creation_time
 from synth.frame.input_error import InputError
 from synth.frame.workers.engine import Engine, Watcher
@@ -67,9 +67,9 @@ def fitting_workers(task: Task, asked: int) -> int:
 
 def require_address_space(largest: Unit) -> None:
     """`InputError` if the limit of a process's address space is too low for a worker: OpenBLAS may hang then."""
-    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    limit = address_space_limit_bytes()
     needed = largest.memory_bytes + MAPPED_BYTES
-    if limit != resource.RLIM_INFINITY and limit < needed:
+    if limit is not None and limit < needed:
         raise InputError(
             f"ulimit -v is {limit // 1024} kB, but the worker for {largest.order.name} may map "
             f"{needed // 1024} kB: raise that limit"

@@ -12,12 +12,10 @@ from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter, File, Sentence
 from synth.frame.input_error import InputError
 from synth.frame.processors import available
-from synth.frame.settings.settings_file import BUILT_IN
-from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY
-from synth.retarder.tables_configuration import configuration_for
+from synth.retarder.tables_configuration import configuration_for, given_config
 from synth.retarder.validation.options import ValidateOptions
 
 if TYPE_CHECKING:
@@ -62,28 +60,24 @@ class FoundPasses:
     logged: int
 
 
-def read(text: str, place: str) -> ResolvedConfig | None:
-    """The configuration in `text`; None without a file: the tables tell which built-in one is theirs."""
-    return None if place == BUILT_IN else parse_config(text, place)
-
-
 def resolve(asked: Asked[ResolvedConfig | None, ValidateOptions]) -> AskedPasses:
     """The tables; refused where one fits no class of the configuration, or its passes cannot be logged."""
-    from synth.retarder.forms.passage_file import read_passages
-    from synth.retarder.forms.table_file import holds_tables, is_infeasible, summary_beside, tables_at
+    from synth.retarder.forms.table_file import is_infeasible, summary_beside
+    from synth.retarder.forms.tables_at import tables_at
 
     path, options = asked.options.source, asked.options
-    passages = read_passages(path)
-    lines = () if passages and not holds_tables(path) else tables_at(path)
-    config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, passages)
-    if passages and options.log is not None:
+    found = tables_at(path)
+    tables = found.of_stages
+    if not tables:
+        raise InputError(f"{path}: its tables are aim tables, which regulate nothing; 'aim' simulates what it makes")
+    config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, path, tables)
+    if found.passages and options.log is not None:
         raise InputError(f"{path}: its tables are for point sensors, whose passes are not logged; leave out --log")
     if options.log is None and options.model_fields_set & {"log_passes", "gauge_std_kpa"}:
         raise InputError("--log-passes and --gauge-std are about a log; name its file in DIR by --log NAME.csv")
     from synth.retarder.served_class import served_class
     from synth.retarder.validation.revalidation import Rehearsal
 
-    tables: tuple[StageTable, ...] = (*lines, *passages)
     for table in tables:
         served_class(table, config, source)
     summary = summary_beside(path)
@@ -92,7 +86,7 @@ def resolve(asked: Asked[ResolvedConfig | None, ValidateOptions]) -> AskedPasses
         tables,
         tuple(is_infeasible(each, summary) for each in tables),
         Rehearsal(config, source, options.passes or config.validation.passes, seed, available()),
-        None if options.log is None else AskedLog(lines, options.log, options.log_passes, options.gauge_std_kpa),
+        None if options.log is None else AskedLog(found.lines, options.log, options.log_passes, options.gauge_std_kpa),
     )
 
 
@@ -159,7 +153,7 @@ def show(found: FoundPasses) -> Iterator[Chapter]:
 
 COMMAND = Command(
     name="validate",
-    read=read,
+    read=given_config,
     options=ValidateOptions,
     resolve=resolve,
     head=head,

@@ -19,7 +19,9 @@ class ValidateOptions(Options):
     """Options of the command line. `gauge_std_kpa` None: there is no gauge."""
 
     source: Path = word_option(BY_PLACE, "TABLE|BOOK|DIR", NEEDED, "A table, a book, or a folder of tables.")
-    config: Path | None = word_option("--config", "C", None, "Configuration with the plant; built-in unless given.")
+    config: Path | None = word_option(
+        "--config", "C", None, "Configuration with the plant; that of the tables, or built-in, unless given."
+    )
     passes: int | None = number_option(
         "--passes", "N", None, 1000, 100_000_000, "Passes of each table; as configured unless given."
     )

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import psutil
 from numpy.typing import NDArray
 
 from plant_models import Plant
@@ -94,9 +94,5 @@ def require_memory(label: str, plant: Plant, grids: Sequence[Resolution], worker
 
 
 def available_memory_bytes() -> int:
-    """Memory that a process can still get: what Linux says is available, elsewhere all physical memory."""
-    try:
-        with open("/proc/meminfo", encoding="ascii") as lines:
-            return next(1024 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable"))
-    except (OSError, StopIteration):
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    """Memory that a process can still get without swapping."""
+    return int(psutil.virtual_memory().available)

@@ -18,7 +18,7 @@ DEFAULT_WHEEL_SENSOR: Final = "ds-2"
 
 
 class PointSensorSettings(Section):
-    """Point sensors ('sensors tune'); they stand in place of [sensor] and [regulator] approach_m."""
+    """Point sensors; they stand in place of [sensor] and [regulator] approach_m."""
 
     type: str = named_type(DEFAULT_WHEEL_SENSOR, WHEEL_SENSORS, "type of the sensors")
     path_m: Numbers = Field(

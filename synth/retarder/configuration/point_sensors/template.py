@@ -34,7 +34,7 @@ LONGEST_CAR_M: Final = 14.5
 
 
 def built_in_sensors() -> ResolvedConfig:
-    """What `sensors tune` takes where no configuration is given."""
+    """What `init point-sensors` prints."""
     return parse_config(default_sensors_toml(), BUILT_IN_SENSORS)
 
 
@@ -51,22 +51,22 @@ def default_sensors_toml(position_name: str = DUMPER_POSITION) -> str:
         cut=EMPTY_CUTS if position_name == DUMPER_POSITION else DEFAULT_CUTS,
     )
     config = resolve(settings, "retarder-synth init")
-    return template(settings, "Configuration with point sensors", "sensors tune", known_of(config), entry.notes)
+    return template(settings, "Configuration with point sensors", "tune", known_of(config), entry.notes)
 
 
 def filled_sensors_toml(path: Path) -> str:
-    """The configuration at `path`, as `sensors plan` leaves one, with every default and comment.
+    """The configuration at `path`, as `sensors` leaves one, with every default and comment.
 
     `InputError` for any fault, where it has no sensors, and where it names own types, which lie beside it.
     """
     source = config_source(path)
     settings, config = valid_settings(source.tree, source.place), source.resolved()
     if settings.sensors is None:
-        raise InputError(f"{path}: there is no section [sensors]; 'retarder-synth sensors plan' leaves such files")
+        raise InputError(f"{path}: there is no section [sensors]; 'retarder-synth sensors' leaves such files")
     if source.library.own:
         raise InputError(f"{path}: it names types of your own; copy the file with its folder of types instead")
     known, notes = known_of(config), config.retarder.notes
-    return template(settings, "Configuration with point sensors", "sensors tune", known, notes)
+    return template(settings, "Configuration with point sensors", "tune", known, notes)
 
 
 def usual_places(entry: PositionEntry) -> tuple[float, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -28,6 +29,9 @@ ALMOST_STANDS_M = 0.1
 
 SAME_PLACE_M = 0.02
 """A cut that almost stands takes long for so little; times are compared where it goes farther meanwhile."""
+
+EARLY_M = 1.0
+"""The layered simulator looks for contacts at places so far apart, or nearer."""
 
 COMPARED = (Kind.NOT_SEPARATED, Kind.MISROUTED, Kind.CONTACT, Kind.FOULED, Kind.TRACK_CONTACT)
 
@@ -69,9 +73,25 @@ def behind(run: SlowRun, touched: set[int]) -> frozenset[int]:
 
 
 def judged(run: SlowRun) -> frozenset[int]:
-    """Cuts of which both models speak alike: the layered one does not follow a cut further that touched another on its
-    track, so none behind such a cut there."""
-    return frozenset(range(len(run.tracks))) - behind(run, {event.cut for event in run.of(Kind.TRACK_CONTACT)})
+    """Cuts of which both models speak alike: not of those on a track where one comes up behind a cut that is in contact
+    since before, because the layered model does not push that one; nor where a cut that is pushed comes up with one
+    ahead, which it does not look for."""
+    behind_contact = behind(run, {event.cut for event in run.of(Kind.CONTACT)})
+    touched = run.of(Kind.TRACK_CONTACT)
+    lost = {run.tracks[event.cut] for event in touched if event.cut in behind_contact}
+    for one, other in itertools.combinations(touched, 2):
+        if run.tracks[one.cut] == run.tracks[other.cut] and (one.cut < other.cut) != (one.time_s < other.time_s):
+            lost.add(run.tracks[one.cut])
+    return frozenset(cut for cut, track in enumerate(run.tracks) if track not in lost)
+
+
+def touched_early(both: BothTrains, memory: TrainMemory, train: int) -> set[int]:
+    """Routes on which a cut touched the one ahead with its tail in the last position: the layered model lets them
+    couple when it is out of it."""
+    route = memory.route[train]
+    rows = train * both.cuts.cuts + np.arange(both.cuts.cuts)
+    out = both.routes.release_m[route] + both.cuts.last_axle_m[rows]
+    return set(route[memory.touch_m[train] < out + EARLY_M].tolist())
 
 
 def counted(outcome: Outcome, run: SlowRun) -> Outcome:
@@ -99,7 +119,8 @@ def agreement(both: BothTrains, memory: TrainMemory, run: SlowRun, train: int) -
     slow = counted({each for each in run.outcome() if Kind(each[0]) in COMPARED}, run)
     alone = {("layered", *each) for each in fast - slow} | {("slow", *each) for each in slow - fast}
     tracks = both.routes.tracks[memory.route[train]].tolist()
-    free = [cut for cut in cuts if not run.in_contact[cut]]
+    early = touched_early(both, memory, train)
+    free = [cut for cut in cuts if not run.in_contact[cut] and memory.route[train, cut] not in early]
     coupled = {event.cut: event.value for event in run.of(Kind.COUPLED)}
     heads = [abs(memory.end_m[train, cut] - run.heads_m[cut]) for cut in free]
     speeds = [abs(memory.end_speed_m_s[train, cut] - coupled.get(cut, 0.0)) for cut in free]

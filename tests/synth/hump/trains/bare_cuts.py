@@ -63,6 +63,15 @@ class EvenFall:
     fall: float
     resisted: Floats
 
+    def coupled(self, members: Ints) -> EvenFall:
+        """All weigh the same, so their resistances are averaged."""
+        there = members >= 0
+        return EvenFall(self.fall, (self.resisted[np.maximum(members, 0)] * there).sum(axis=1) / there.sum(axis=1))
+
+    def inertia_t(self, rows: Ints) -> Floats:
+        """Alike."""
+        return np.full(len(rows), 80.0)
+
     def roll_on(
         self,
         rows: Ints,

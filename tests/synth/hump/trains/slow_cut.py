@@ -89,6 +89,13 @@ class MovingCut:
         self.leader, self.mode, self.on_track, self.lag_m = ahead, Mode.TOWED, False, lag_m
         self.t, self.x, self.v = time_s, ahead.place_at(time_s) - lag_m, ahead.v
 
+    def rewind(self, time_s: float) -> None:
+        """Go back to a time of the step that is being made."""
+        leg = max(bisect_right(self.legs, (time_s, inf, inf, inf)) - 1, 0)
+        t, _, v, a = self.legs[leg]
+        self.mode, self.x, self.v = Mode.ROLLING, self.place_at(min(time_s, self.t)), v + a * (time_s - t)
+        self.t, self.legs = time_s, self.legs[: leg + 1]
+
     def reroute(self, order: int, route: Route, way: SlowWay, *, entered: bool) -> None:
         """Go another way from the element `order` on; `entered`: its first mark has just been passed."""
 

@@ -14,12 +14,13 @@ from tests.synth.hump.trains.slow_cut import SAME_S, Mode, MovingCut, Push, firs
 from tests.synth.hump.trains.slow_fit import require_fit
 from tests.synth.hump.trains.slow_marks import MarkAt
 from tests.synth.hump.trains.slow_record import SlowRecord
-from tests.synth.hump.trains.slow_train import Kind, Mark, Passage, SlowRun, SlowTrain
+from tests.synth.hump.trains.slow_train import Kind, Mark, Passage, SlowRun, SlowTrain, coupled
 from tests.synth.hump.trains.slow_way import SlowWay
 
 STEP_S = 0.02
 LONGEST_S = 7200.0
 SAME_M = 1e-9
+ENDS = (Kind.COUPLED, Kind.GAP, Kind.STOPPED)
 
 
 def humped_slowly(graph: HumpGraph, train: SlowTrain, step_s: float = STEP_S) -> SlowRun:
@@ -84,6 +85,10 @@ class SlowHumping(SlowRecord):
     def advance(self, i: int, moving: MovingCut, until: float) -> None:
         """Let cut `i` make its part of the step."""
         moving.legs = [(moving.t, moving.x, moving.v, 0.0)]
+        self.go_on(i, moving, until)
+
+    def go_on(self, i: int, moving: MovingCut, until: float) -> None:
+        """The rest of its part."""
         while moving.mode not in (Mode.TOWED, Mode.STANDING) and moving.t < until - SAME_S:
             t, x, limit_m = moving.t, moving.x, self.limit(i)
             arrived = moving.go(until, limit_m)
@@ -133,9 +138,26 @@ class SlowHumping(SlowRecord):
             self.margins_s.append(abs(time_s - ahead.t))
             if time_s >= ahead.t:
                 return False
+        at_m_s = moving.v  # within a step, that at its end: the step is short
         moving.towed(ahead, time_s, ahead.body.length_m)
         self.tell(time_s, Kind.TRACK_CONTACT, moving.route.elements[-1].number, i, moving.x)
+        self.roll_on(ahead, moving, at_m_s)
         return True
+
+    def roll_on(self, ahead: MovingCut, behind: MovingCut, behind_m_s: float) -> None:
+        """The cut `behind` has touched the one `ahead` on their track; both roll on with their common momentum."""
+        while ahead.leader is not None:
+            ahead = ahead.leader
+        first, until = self.cuts.index(ahead), max(ahead.t, behind.t)
+        if not ahead.on_track:
+            return
+        ahead.rewind(behind.t)
+        self.events = [e for e in self.events if e.cut != first or e.time_s < behind.t or e.kind not in ENDS]
+        whole = coupled(ahead.way.body, behind.body)
+        weighs = [way.body.mass_t / way.gravity for way in (ahead.way, behind.way)]
+        ahead.v = (weighs[0] * ahead.v + weighs[1] * behind_m_s) / sum(weighs)
+        ahead.way = SlowWay(whole, ahead.route, self.train)
+        self.go_on(first, ahead, until)
 
     def couple(self, i: int) -> None:
         """Cut `i` has come to standing cars."""

@@ -63,6 +63,29 @@ class SlowBody:
         return self.last_axle_m - self.first_axle_m
 
 
+def coupled(ahead: SlowBody, behind: SlowBody) -> SlowBody:
+    """Both as one: forces add up; one wind blows against both, the mean by what each takes of it."""
+    part = behind.mass_t / (ahead.mass_t + behind.mass_t)
+
+    def mean(one: float, other: float) -> float:
+        return one + part * (other - one)
+
+    air = mean(ahead.air_n_per_kn, behind.air_n_per_kn)
+    from_behind = part * behind.air_n_per_kn / air if air > 0.0 else part
+    bends = None
+    if ahead.bend_heads is not None and behind.bend_heads is not None:
+        bends = {
+            track: tuple(
+                (mean(one[0], other[0]), mean(one[1], other[1]))
+                for one, other in zip(heads, behind.bend_heads[track], strict=True)
+            )
+            for track, heads in ahead.bend_heads.items()
+        }
+    wind = ahead.wind_m_s + from_behind * (behind.wind_m_s - ahead.wind_m_s)
+    w0 = mean(ahead.w0_n_per_kn, behind.w0_n_per_kn)
+    return SlowBody((*ahead.cars, *behind.cars), w0, wind, air, bends)
+
+
 @dataclass(frozen=True)
 class SlowCut:
     """A cut for `track`, let go at `crest_s` with `hump_speed_m_s`; `exit_speeds_m_s`: the command of each position of

@@ -10,6 +10,7 @@ from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10
 from plant_models.rolling.weather import Weather
 from synth.hump.trains.hump_routes import Mark
 from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.trains.train_trace import body_of
 from tests.effort import every, sized
 from tests.plant_models.rolling.populations import MIX, population
 from tests.synth.hump.trains.agreement import agreement, judged
@@ -20,6 +21,10 @@ from tests.synth.hump.trains.slow_train import Kind
 TRACKS = (1, 2, 3, 9, 17)
 TRAINS, CUTS = sized(10, 15), 6
 NEAR_S = 0.03
+NEAR_M, NEAR_M_S = 0.2, 0.01
+PUSHED = sized(3, 12)
+"""Trains with cuts that push one another, which are compared."""
+
 """A decision that is nearer to its limit may be another with the steps of the layered simulator."""
 
 
@@ -81,6 +86,8 @@ def compared_trains(both: BothTrains, memory: TrainMemory, trains: list[int]) ->
         found = agreement(both, memory, run, train)
         assert not found.differing, train
         assert found.times_s < NEAR_S, train
+        assert found.heads_m < NEAR_M, train
+        assert found.couplings_m_s < NEAR_M_S, train
         compared += 1
     return compared
 
@@ -114,12 +121,11 @@ def test_a_position_stays_as_it_is_through_a_cut_in_contact() -> None:
         assert memory.command_m_s[train, cut, position] == slow.commands[cut, element]
 
 
-def test_cuts_touch_on_their_track_though_the_second_would_roll_longer() -> None:
-    """The cut ahead stands before the one behind would, had they not met while both rolled."""
+def test_cuts_that_touch_on_their_track_roll_on_as_one() -> None:
+    """Both roll on as one: they stand, and couple, alike; some bodies of two, and of three."""
     both, memory = many_trains(8, ORDINARY)
-    touching = []
-    for train, cut in np.argwhere(memory.caught_on_track).tolist():
-        ahead = np.flatnonzero(memory.route[train, :cut] == memory.route[train, cut])[-1]
-        if memory.end_time_s[train, cut] > memory.still_s[train, ahead]:
-            touching.append(train)
-    assert compared_trains(both, memory, touching) >= 2
+    bodies = [(lane, body_of(memory, lane, cut)) for lane, cut in np.argwhere(memory.caught_on_track).tolist()]
+    trains = [lane for lane, body in bodies if len(body) == 2][:PUSHED] + [
+        lane for lane, body in bodies if len(body) > 2
+    ]
+    assert compared_trains(both, memory, trains[: PUSHED + 2]) >= PUSHED - 1

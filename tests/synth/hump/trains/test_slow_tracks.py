@@ -55,10 +55,14 @@ def test_contact_on_the_track_while_the_cut_ahead_rolls(interval_s: float, time_
 def test_contact_on_the_track_with_a_cut_that_gets_slower() -> None:
     slow = stopping(bare_cut(LEFT_TRACK, 0.0, 2.0), 200.0)
     found = run(slow, bare_cut(LEFT_TRACK, 100.0, 4.0))
-    assert found.outcome() == {("contact on the track", 601, 1), ("gap", 601, 0)}
+    assert found.outcome() == {("contact on the track", 601, 1), ("coupled", 601, 0)}
     # 7 + 4 (t − 100) is the head, −7 + 2 t − 0.005 t² the tail ahead of it
-    assert found.of(Kind.TRACK_CONTACT)[0].time_s == pytest.approx(100.0 * (sqrt(4.0 + 7.72) - 2.0), abs=1e-5)
-    assert found.heads_m == pytest.approx((207.0, 193.0), abs=1e-6)
+    time_s = 100.0 * (sqrt(4.0 + 7.72) - 2.0)
+    assert found.of(Kind.TRACK_CONTACT)[0].time_s == pytest.approx(time_s, abs=1e-5)
+    # both weigh the same: the mean of both speeds, then half the deceleration of the first
+    speed, head = 0.5 * (4.0 + 2.0 - 0.01 * time_s), 7.0 + 2.0 * time_s - 0.005 * time_s**2
+    assert found.of(Kind.COUPLED)[0].value == pytest.approx(sqrt(speed**2 - 0.01 * (300.0 - head)), abs=1e-3)
+    assert found.heads_m == pytest.approx((300.0, 286.0), abs=1e-6)
 
 
 @pytest.mark.parametrize(("free_to_m", "kind"), [(145.014, Kind.COUPLED), (145.018, Kind.TRACK_CONTACT)])

@@ -43,6 +43,14 @@ def test_a_train_is_the_same_in_any_batch_and_with_any_threads(day: Day) -> None
     assert_same(joined([trial.batch(0, 13), trial.batch(13, 1), trial.batch(14, 36)]), whole)
 
 
+def test_trains_alone_are_those_of_a_batch_where_cuts_touch_and_push_one_another() -> None:
+    trial = Day(cuts=8, tracks={1: 1.0, 2: 1.0}, program=ConstantSpeed(2.8)).on("medium")
+    whole = trial.batch(0, 16)
+    assert_same(joined([trial.batch(number, 1) for number in range(16)]), whole)
+    assert whole.caught_on_track.any()
+    assert whole.contact.any()
+
+
 def balanced(found: TrainOutcomes) -> None:
     """Each cut ends in one way, and nothing that is told is infinite."""
     assert (found.caught + found.caught_in_last + found.stopped + found.judged == found.cuts).all()

@@ -1,14 +1,12 @@
-"""`retarder-synth plot`: pictures of exported tables; nothing is solved."""
+"""The pictures that `retarder-synth inspect` draws of tables; nothing is solved."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from synth.frame.terminal.telling import say
+from synth.frame.terminal.manner import Manner
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,34 +20,6 @@ if TYPE_CHECKING:
 Drawn = TypeVar("Drawn")
 
 
-def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
-    """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
-    from synth.frame.results_directory import results_directory
-    from synth.frame.terminal.interrupt import interruptible
-    from synth.retarder.forms.aim_file import read_aims
-    from synth.retarder.forms.any_tables import any_tables
-    from synth.retarder.forms.table_file import file_stem, files_at, holds_tables
-    from synth.retarder.tables_configuration import configuration_for
-    from tuning_tables.passages.passage_table import PassageTable
-
-    aims = [file.table for file in read_aims(source)]
-    tables = any_tables(source) if not aims or holds_tables(source) else []
-    config, place = configuration_for(config_path, [table for table in tables if isinstance(table, PassageTable)])
-    around = Surroundings(config, place, config_path is not None)
-    from synth.frame.picture.figure_file import figure_files
-
-    written: list[str] = []
-    reads = [*files_at(source), *filter(None, [config_path])]
-    with results_directory(output, "plot", reads) as directory, interruptible(directory, "pictures"):
-        for name, figure in aim_figures(aims).items():
-            written += map(str, directory.write_all(figure_files(figure, name)))
-        for table in tables:
-            for name, figure in figures_of(table, around).items():
-                written += map(str, directory.write_all(figure_files(figure, f"{file_stem(table)}-{name}")))
-    print(json.dumps({"files": written}, indent=1, ensure_ascii=False) if as_json else "\n".join(written))
-    return 0
-
-
 @dataclass(frozen=True)
 class Surroundings:
     """The configuration that passes are simulated by, what messages call it, and whether the user `asked` for it."""
@@ -57,6 +27,7 @@ class Surroundings:
     config: ResolvedConfig
     place: str
     asked: bool
+    manner: Manner
 
     def passes(self, simulate: Callable[[], Drawn]) -> Drawn | None:
         """What `simulate` gives; None, with a word why, where no class fits and no configuration was asked for."""
@@ -68,7 +39,7 @@ class Surroundings:
         except InputError as fault:
             if self.asked:
                 raise
-            say(f"no passes are drawn: {fault}")
+            self.manner.warn(f"no passes are drawn: {fault}")
             return None
 
 
@@ -118,7 +89,7 @@ def passage_figures(table: PassageTable, around: Surroundings) -> Mapping[str, F
     def simulate() -> tuple[PassageTrace, ...]:
         served = served_class(table, around.config, around.place)
         few = stratified_passes(around.config.validation.seed, 0, len(TRACE_FACTORS))
-        passes = sensor_passes(served.plant, served.sensors, few)
+        passes = sensor_passes(served.plant, served.sensors, few, len(table.pressure_kpa))
         return tuple(passes.trace(of_table(table, tracking=True), i, factor) for i, factor in enumerate(TRACE_FACTORS))
 
     traces = around.passes(simulate)
