@@ -16,8 +16,12 @@ PLC_NAMES: Final = ("st", "plcopen", "twincat", "scl")
 """The forms of Structured Text."""
 CODE_NAMES: Final = ("c", *PLC_NAMES)
 """The forms of code."""
+FMU: Final = "fmu"
+"""The form of units of the Functional Mock-up Interface."""
+CONTROLLER_NAMES: Final = (*CODE_NAMES, FMU)
+"""The forms that hold a controller: all tables together, with the rule."""
 OPTIONS: Mapping[str, tuple[str, ...]] = {
-    "--prefix": CODE_NAMES,
+    "--prefix": CONTROLLER_NAMES,
     "--self-test": CODE_NAMES,
     "--split": ("st",),
     "--correction": CODE_NAMES,

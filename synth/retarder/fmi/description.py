@@ -1,0 +1,114 @@
+"""The two documents of a unit: modelDescription.xml and sources/buildDescription.xml (FMI 3.0.1, sections 2.4, 2.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+from synth.retarder.fmi.variables import UNITS, Causality, Kind, Variable, shown
+
+VERSION: Final = "3.0"
+NAME: Final = {"fmiVersion": VERSION}
+
+
+@dataclass(frozen=True)
+class Head:
+    """What a unit says of itself.
+
+    `identifier`: a name in C; `token`: of this unit alone; `period_s`: length of a step, 0 where a step may have any.
+    """
+
+    identifier: str
+    name: str
+    meaning: str
+    tool: str
+    token: str
+    period_s: float
+
+
+def model_description(head: Head, variables: Sequence[Variable]) -> bytes:
+    """The text of modelDescription.xml."""
+    root = Element(
+        "fmiModelDescription",
+        {
+            **NAME,
+            "modelName": head.name,
+            "instantiationToken": head.token,
+            "description": head.meaning,
+            "generationTool": head.tool,
+        },
+    )
+    SubElement(
+        root,
+        "CoSimulation",
+        {
+            "modelIdentifier": head.identifier,
+            "canGetAndSetFMUState": "true",
+            "canHandleVariableCommunicationStepSize": "false" if head.period_s else "true",
+            **({"fixedInternalStepSize": shown(head.period_s)} if head.period_s else {}),
+        },
+    )
+    units = SubElement(root, "UnitDefinitions")
+    used = {each.unit for each in variables}
+    for name, base in UNITS.items():
+        if name in used:
+            SubElement(SubElement(units, "Unit", name=name), "BaseUnit", base)
+    category = {"name": "logStatusError", "description": "Why a call was refused"}
+    SubElement(SubElement(root, "LogCategories"), "Category", category)
+    if head.period_s:
+        SubElement(root, "DefaultExperiment", startTime="0.0", stepSize=shown(head.period_s))
+    listed = SubElement(root, "ModelVariables")
+    for reference, variable in enumerate(variables):
+        add_variable(listed, reference, variable)
+    structure = SubElement(root, "ModelStructure")
+    for name in ("Output", "InitialUnknown"):
+        for reference, variable in enumerate(variables):
+            if variable.causality is Causality.OUTPUT:
+                SubElement(structure, name, valueReference=str(reference))
+    return text_of(root)
+
+
+def add_variable(listed: Element, reference: int, variable: Variable) -> None:
+    """The element of a variable; outputs have no start, as they are calculated."""
+    given = variable.causality in (Causality.PARAMETER, Causality.INPUT)
+    is_fixed = variable.causality is Causality.PARAMETER
+    attributes = {
+        "name": variable.name,
+        "valueReference": str(reference),
+        "description": variable.meaning,
+        "causality": variable.causality.value,
+        "variability": "fixed" if is_fixed else variable.kind.variability,
+    }
+    if variable.causality is Causality.OUTPUT:
+        attributes["initial"] = "calculated"
+    if variable.unit is not None:
+        attributes["unit"] = variable.unit
+    if given:
+        limits = {"min": variable.low, "max": variable.high}
+        whole = variable.kind is Kind.INT32
+        attributes |= {key: shown(int(x) if whole else float(x)) for key, x in limits.items() if x is not None}
+        attributes["start"] = " ".join(map(shown, variable.start))
+    element = SubElement(listed, variable.kind.element, attributes)
+    if variable.is_array:
+        SubElement(element, "Dimension", start=str(len(variable.start)))
+
+
+def build_description(head: Head, sources: Sequence[str]) -> bytes:
+    """The text of buildDescription.xml: C99, with the library of mathematics."""
+    root = Element("fmiBuildDescription", NAME)
+    build = SubElement(root, "BuildConfiguration", modelIdentifier=head.identifier, description=head.meaning)
+    files = SubElement(build, "SourceFileSet", language="C99")
+    for name in sources:
+        SubElement(files, "SourceFile", name=name)
+    SubElement(build, "Library", name="m")
+    return text_of(root)
+
+
+def text_of(root: Element) -> bytes:
+    """A document, indented, in UTF-8."""
+    ElementTree.indent(root)
+    text: str = ElementTree.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()

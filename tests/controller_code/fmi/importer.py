@@ -1,0 +1,105 @@
+"""An importer of units of FMI 3.0 as small as can be: it reads modelDescription.xml and calls the library by ctypes."""
+
+from __future__ import annotations
+
+import ctypes
+import io
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final
+from xml.etree import ElementTree
+
+OK: Final = 0
+TYPES: Final[dict[str, Any]] = {"Float64": ctypes.c_double, "Int32": ctypes.c_int32, "Boolean": ctypes.c_bool}
+LOG: Final = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
+Value = float | int | bool
+
+
+class RefusedCall(Exception):
+    """A call did not answer fmi3OK; the message is what the unit logged last."""
+
+
+class Imported:
+    """A unit that is loaded from an archive; `faults` are the sentences that it has logged."""
+
+    def __init__(self, archive: bytes, folder: Path) -> None:
+        with zipfile.ZipFile(io.BytesIO(archive)) as packed:
+            packed.extractall(folder)
+        root = ElementTree.parse(folder / "modelDescription.xml").getroot()
+        self.variables = {
+            each.attrib["name"]: (each.tag, int(each.attrib["valueReference"]), sizes(each))
+            for each in root.find("ModelVariables") or ()
+        }
+        simulation = root.find("CoSimulation")
+        assert simulation is not None
+        self.step_s = float(simulation.get("fixedInternalStepSize", "nan"))
+        library = folder / "binaries" / "x86_64-linux" / f"{simulation.attrib['modelIdentifier']}.so"
+        self.library = ctypes.CDLL(str(library))
+        self.library.fmi3InstantiateCoSimulation.restype = ctypes.c_void_p
+        self.library.fmi3GetVersion.restype = ctypes.c_char_p
+        self.faults: list[str] = []
+        self._log = LOG(lambda _env, _status, _category, message: self.faults.append(message.decode()))
+        self._token = root.attrib["instantiationToken"].encode()
+        self.instance = self.instantiate(self._token)
+
+    def instantiate(self, token: bytes) -> ctypes.c_void_p:
+        """An instance for `token`; a null pointer where the unit refuses."""
+        none, no = ctypes.c_void_p(None), ctypes.c_bool(False)
+        found = self.library.fmi3InstantiateCoSimulation(
+            b"one", token, b"", no, no, no, no, none, ctypes.c_size_t(0), none, self._log, none
+        )
+        return ctypes.c_void_p(found)
+
+    def __enter__(self) -> Imported:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, fault: BaseException | None, at: TracebackType | None) -> None:
+        self.library.fmi3FreeInstance(self.instance)
+
+    def call(self, name: str, *given: Any) -> None:
+        """Call a function of the instance; `RefusedCall` unless it answers fmi3OK."""
+        if getattr(self.library, name)(self.instance, *given) != OK:
+            raise RefusedCall(self.faults[-1] if self.faults else name)
+
+    def set(self, **values: Value | Sequence[Value]) -> None:
+        """Set variables by name."""
+        for name, value in values.items():
+            kind, reference, count = self.variables[name]
+            numbers = list(value) if isinstance(value, Sequence) else [value]
+            array = (TYPES[kind] * count)(*numbers)
+            one = (ctypes.c_uint32 * 1)(reference)
+            self.call(f"fmi3Set{kind}", one, ctypes.c_size_t(1), array, ctypes.c_size_t(count))
+
+    def get(self, name: str) -> Any:
+        """The value of a variable, a list where it is an array."""
+        kind, reference, count = self.variables[name]
+        array = (TYPES[kind] * count)()
+        one = (ctypes.c_uint32 * 1)(reference)
+        self.call(f"fmi3Get{kind}", one, ctypes.c_size_t(1), array, ctypes.c_size_t(count))
+        return array[0] if count == 1 else list(array)
+
+    def begin(self, **parameters: Value | Sequence[Value]) -> None:
+        """Reset, set parameters, and initialise."""
+        self.call("fmi3Reset")
+        self.set(**parameters)
+        no, zero = ctypes.c_bool(False), ctypes.c_double(0.0)
+        self.call("fmi3EnterInitializationMode", no, zero, zero, no, zero)
+        self.call("fmi3ExitInitializationMode")
+
+    def step(self, from_s: float, step_s: float) -> float:
+        """One step of co-simulation; the time reached."""
+        flags, reached = [ctypes.c_bool() for _ in range(3)], ctypes.c_double()
+        self.call(
+            "fmi3DoStep", ctypes.c_double(from_s), ctypes.c_double(step_s), ctypes.c_bool(True),
+            *map(ctypes.byref, flags), ctypes.byref(reached),
+        )  # fmt: skip
+        assert not any(flag.value for flag in flags)
+        return reached.value
+
+
+def sizes(variable: ElementTree.Element) -> int:
+    """How many values a variable has."""
+    dimension = variable.find("Dimension")
+    return 1 if dimension is None else int(dimension.attrib["start"])
