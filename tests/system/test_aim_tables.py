@@ -72,7 +72,7 @@ def test_plot_draws_the_speeds_and_no_loop_is_closed(command: Command, aims: Pat
     assert pictures == {f"aim-commands-by-{what}.svg" for what in ("cars", "resistance")}
     assert all((tmp_path / "plots" / name).stat().st_size > 5000 for name in pictures)
     for words, rest in (
-        (("inspect", "--loops"), "leave --loops out"),
+        (("loop",), "give those of a tune"),
         (("validate",), "'aim' simulates what it makes"),
     ):
         assert refused(command, *words, aims, "-o", tmp_path / words[0]) == (
@@ -177,7 +177,7 @@ def test_damage_and_faults_of_use_are_told_in_one_sentence(command: Command, aim
     (tmp_path / "empty").mkdir()
     assert refused(command, "export", tmp_path / "empty", "--format", "c")[0] == 2
     for source in (aims, aims / "tables" / "b.json"):
-        assert refused(command, "inspect", "--loops", source, "-o", tmp_path / "x")[0] == 2
+        assert refused(command, "loop", source, "-o", tmp_path / "x")[0] == 2
     assert not (tmp_path / "x").exists()
 
 

@@ -194,7 +194,7 @@ def test_a_plant_on_which_it_cannot_be_simulated_is_refused(folder: Path, capsys
 
 def test_a_loop_of_python_control_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = next((folder / "one" / "tables").glob("*.json"))
-    asked = ["inspect", str(table), "--loops", "--config", str(folder / "one.toml"), "-o", str(folder / "loop")]
+    asked = ["loop", str(table), "--config", str(folder / "one.toml"), "-o", str(folder / "loop")]
     assert main(asked) == 2
     assert "the table decides at any time" in capsys.readouterr().err
 

@@ -66,9 +66,7 @@ def test_tables_for_point_sensors_are_refused(command: Command, tmp_path: Path) 
     file.write_bytes(to_json(table_of()))
     ran = command("explore", file, "-o", tmp_path / "page")
     assert ran.code == 2
-    assert (
-        ran.sentence == f"{file}: its tables are for point sensors, which the page does not play; give those of a radar"
-    )
+    assert ran.sentence == f"{file}: its tables are for point sensors; explore takes tables for a radar"
 
 
 def test_a_table_at_any_time_on_a_drive_that_is_not_modelled_so_is_refused(

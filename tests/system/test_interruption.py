@@ -102,7 +102,7 @@ def test_ctrl_c_ends_at_once_with_one_line(one_class: Path, tmp_path: Path) -> N
     tune = start(one_class, tmp_path)
     while not (tmp_path / "tables").exists():
         time.sleep(0.01)
-    time.sleep(1.0)
+    time.sleep(0.05)
     tune.send_signal(signal.SIGINT)
     told = time.monotonic()
     _, said = tune.communicate(timeout=60)
@@ -131,12 +131,12 @@ def test_ctrl_c_at_a_terminal_is_told_in_one_line(tmp_path: Path) -> None:
 
 
 DRAW_FOR_EVER = """
-from synth.retarder.shown.pictures import exits_chart
+from synth.retarder.shown.pictures import case_chart
 from synth.frame.picture.studio import Studio
 from tests.synth.case_factory import make_case
 if __name__ == "__main__":
     with Studio(2) as studio:
-        for drawn in [studio.drawing(exits_chart([make_case()])) for _ in range(500)]:
+        for drawn in [studio.drawing(case_chart(make_case())) for _ in range(500)]:
             drawn.result()
 """
 

@@ -210,7 +210,7 @@ def test_plot_draws_switching_speeds_and_passes_where_the_plant_is_known(
     assert unknown.code == 0
     assert "no passes are drawn" in unknown.sentence
     assert set(results_in(tmp_path / "one")) == {
-        f"{TABLE}-switching-speeds.svg",
+        f"{TABLE}-switching-speeds.svg", "report.html",
     }  # fmt: skip
 
 
