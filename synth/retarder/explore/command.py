@@ -44,10 +44,10 @@ def resolve(asked: Asked[ResolvedConfig | None, ExploreOptions]) -> ExplorePage:
     tables = tables_at(path).only_lines("explore")
     config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, path, tables)
     played = tuple(played_tables(tables, path, config, source))
-    made = {table.generator.config_sha256 for table in tables}
-    other = f"tables were made from another configuration than {source}; the plant may differ"
+    made, named = {table.generator.config_sha256 for table in tables}, Path(source).name  # no file holds a path
+    other = f"tables were made from another configuration than {named}; the plant may differ"
     warnings = () if made == {config.sha256} else (other,)
-    told = " · ".join((f"retarder-synth {__version__}", f"plant: {source}", "one file, which loads nothing", *warnings))
+    told = " · ".join((f"retarder-synth {__version__}", f"plant: {named}", "one file, which loads nothing", *warnings))
     content = explore_page(config.title, told, played).encode()
     if len(content) > LARGEST_PAGE_BYTES:
         raise InputError(
