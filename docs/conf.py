@@ -6,6 +6,7 @@ the site is built or while it is read.
 
 from __future__ import annotations
 
+import re
 import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
@@ -30,6 +31,8 @@ myst_heading_anchors = 4
 suppress_warnings = ["misc.highlighting_failure"]  # examples of files leave out what repeats, with an ellipsis
 
 autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+default_role = "code"  # single backticks of docstrings
 autodoc_member_order = "bysource"
 napoleon_google_docstring = False
 
@@ -52,13 +55,9 @@ html_css_files = ["site.css"]
 html_extra_path = ["gallery/report.html"]
 html_show_sourcelink = False
 
-MADE = {
-    "<!-- commands -->\n": lambda: commands_text(".."),
-    "<!-- api synth -->\n": lambda: api_text("synth"),
-    "<!-- api tuning_tables -->\n": lambda: api_text("tuning_tables"),
-    "<!-- api plant_models -->\n": lambda: api_text("plant_models"),
-}
-"""What stands in a page where it has this mark."""
+API = re.compile(r"<!-- api (\S+) -->\n")
+COMMANDS = "<!-- commands -->\n"
+"""Marks in pages: the public names of a package, and all commands, stand in their place."""
 
 
 def setup(app: Any) -> None:
@@ -68,6 +67,5 @@ def setup(app: Any) -> None:
 
 def fill_marks(_: Any, __: str, source: list[str]) -> None:
     """Replace the marks of one page."""
-    for mark, made in MADE.items():
-        if mark in source[0]:
-            source[0] = source[0].replace(mark, made())
+    text = API.sub(lambda mark: api_text(mark[1]), source[0])
+    source[0] = text.replace(COMMANDS, commands_text("..")) if COMMANDS in text else text
