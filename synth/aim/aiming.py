@@ -23,7 +23,7 @@ LIMITS_OF_USE = (
     "Resistance, wind and bends are drawn once for each cut and stay for its whole way; the wind is one along the "
     "track, and a gust or a lee is not modelled.",
     "Standing cars are taken not to move, and the free distance to be known. A cut that stops short shortens the free "
-    "distance of all that follow it: gaps are told, their consequences are not.",
+    "distance of all that follow it: gaps are computed, their consequences are not.",
     "The tool is not certified and claims no safety integrity. Before a table commands a position, check it with an "
     "independent program against the hashes below, and on the track.",
 )
@@ -88,7 +88,7 @@ def show(found: FoundAim) -> Iterator[Chapter]:
     from synth.aim.shown import asked, cells, charts, files, gaps
     from synth.aim.shown_commands import cards, command_charts
 
-    yield Chapter("What the position is told", (*command_charts(found.book), *cards(found.book)))
+    yield Chapter("What the position is commanded", (*command_charts(found.book), *cards(found.book)))
     yield Chapter("Results", (*asked(found.book, found.verdict), *gaps(found.book, found.verdict)))
     yield Chapter("Pictures", tuple(charts(found.book)))
     yield Chapter("Cell by cell", (*cells(found.book), *files(found.book)))

@@ -256,8 +256,8 @@ def chances_of(config: ResolvedAim, member: WeightCategory) -> Chart:
     return Chart(
         file_stem("aim-chances", member.latin),
         f"Chance of over-speed and gap, category {member.name}",
-        f"Category {member.name}: share of cuts that couple too fast and mean gap where all cuts are told one exit "
-        "speed, and one against the other. Below its curve leads only what tells more of a single cut.",
+        f"Category {member.name}: share of cuts that couple too fast and mean gap where all cuts are commanded one "
+        "exit speed, and one against the other. Below its curve leads only what tells more of a single cut.",
         lambda: _pictures().chances(aim_curves(config.scene, order, config.cars[0])),
     )
 

@@ -14,21 +14,21 @@ MOST_LEFT = 0.7
 """Of what was unknown before: a number of which more than this is still unknown, is not identified."""
 
 CLOSE = 0.9
-"""Correlation of the errors of two numbers from which on they are told together better than apart."""
+"""Correlation of the errors of two numbers from which on they are identified together better than apart."""
 
 ALWAYS = (
-    "Force slope and mean friction act by their product: the slope is told for a mean friction of 1.",
-    "Grade and mean running resistance act by their difference: resistance is told for the grade of the configuration.",
-    "Computing delay and valve delays act by their sums: valve delays are told for the configured computing delay.",
+    "Force slope and mean friction act by their product: the slope is identified for a mean friction of 1.",
+    "Grade and mean running resistance act by their difference: resistance is identified for the configured grade.",
+    "Computing delay and valve delays act by their sums: valve delays are those for the configured computing delay.",
 )
 """What no log of passes can part, however long."""
 
 WITHOUT_GAUGE = (
-    "Without a pressure gauge delays, time constants and dead band are seen only by the motion: they are told together "
-    "much better than one by one."
+    "Without a pressure gauge delays, time constants and dead band are seen only by the motion: they are identified "
+    "together much better than one by one."
 )
 
-SPEED_AS_PATH = "The path was summed up from the measured speed: what the sensor shows too much cannot be told."
+SPEED_AS_PATH = "The path was summed up from the measured speed: what the sensor shows too much cannot be identified."
 
 
 @dataclass(frozen=True)

@@ -57,7 +57,7 @@ class Identified:
     def __repr__(self) -> str:
         told = sum(finding.identified for finding in self.findings)
         holds = "the model does not hold" if self.wrong else "no test says that the model does not hold"
-        return f"Identified({told} of {len(self.findings)} numbers told by {len(self.passes)} passes; {holds})"
+        return f"Identified({told} of {len(self.findings)} numbers identified from {len(self.passes)} passes; {holds})"
 
     @property
     def wrong(self) -> tuple[ResidualTest, ...]:

@@ -68,7 +68,7 @@ def compute(asked: AskedNumbers, work: Work) -> FoundNumbers:
     from synth.logs.identify import identify
 
     found = guarded(identify, asked.asked.passes, asked.asked.config, available())
-    work.progress.done(f"{len(found.findings)} numbers told by {found.origin}")
+    work.progress.done(f"{len(found.findings)} numbers estimated, {found.origin}")
     return FoundNumbers(found, identified(asked.source, found.estimate, found.origin))
 
 

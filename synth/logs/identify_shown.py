@@ -34,12 +34,12 @@ NUMBERS: Final = (
     Column("before", "before", form=four_figures),
     Column("value", "identified", form=four_figures),
     Column("unit", "unit", words=True, spare=1),
-    Column("told", "told", words=True, spare=2),
+    Column("identified", "decided", words=True, spare=2),
     Column("left", "left of what was unknown", detail=True),
 )
 TOGETHER: Final = (
     Column("key", "number", words=True, once=True),
-    Column("with", "told together with", words=True),
+    Column("with", "identified together with", words=True),
     Column("correlation", "correlation of the errors", form="{:+.3f}".format),
 )
 TESTS: Final = (
@@ -74,7 +74,7 @@ def numbers(found: Identified) -> Iterator[Exhibit]:
     n = len(found.passes)
     yield Table("numbers", "Numbers", NUMBERS, [number_row(each, n) for each in found.findings], brief=True)
     yield from pictures(found)
-    yield Table("told_together", "Numbers that are told together", TOGETHER, list(together_rows(found.findings)))
+    yield Table("told_together", "Numbers that are identified together", TOGETHER, list(together_rows(found.findings)))
     yield Sentence(" ".join(found.reasons), {"not_to_be_told": found.reasons})
 
 
@@ -83,8 +83,8 @@ def told_sentence(found: Identified) -> str:
     told = [finding for finding in found.findings if finding.identified]
     moved = [finding for finding in told if not finding.within]
     return (
-        f"{len(found.passes)} passes tell {len(told)} of {len(found.findings)} numbers; of {len(moved)} what was taken "
-        "before is outside the 95 % interval."
+        f"{len(found.passes)} passes identify {len(told)} of {len(found.findings)} numbers; of {len(moved)} what was "
+        "taken before is outside the 95 % interval."
     )
 
 
@@ -124,7 +124,7 @@ def number_row(finding: Finding, n: int) -> Row:
         "before": finding.before,
         "value": Interval(finding.value, *finding.interval, n),
         "unit": finding.unit or "1",
-        "told": "yes" if finding.identified else STAYS,
+        "identified": "yes" if finding.identified else STAYS,
         "left": finding.left,
     }
 
@@ -142,7 +142,7 @@ def pictures(found: Identified) -> Iterator[Exhibit]:
         "identify-numbers",
         "What was taken before, and what the passes say",
         "Distance from what was taken before, in standard deviations of what was known (grey band: one of them), "
-        "with 95 % intervals. Hollow: the passes do not tell the number, and it stays as it was.",
+        "with 95 % intervals. Hollow: the passes do not identify the number, and it stays as it was.",
         lambda: _pictures().numbers(found),
     )
     if found.passes.log.has_gauge:
@@ -156,7 +156,7 @@ def pictures(found: Identified) -> Iterator[Exhibit]:
     yield Chart(
         "identify-friction",
         "Friction of the cuts, and innovations of the readings",
-        "Left: friction of each cut as its own pass tells it, and the identified law of what passes tell. "
+        "Left: friction of each cut as its own pass shows it, and the identified law. "
         "Right: innovations of the readings over what is expected, and the normal law that they follow if all "
         "is right.",
         lambda: _pictures().friction(found),
@@ -215,7 +215,7 @@ def verdict(test: ResidualTest, is_wrong: bool) -> str:
 
 def files(identified: ConfigSource) -> Iterator[Exhibit]:
     """The configuration with the numbers, and the own types that it names."""
-    yield Sentence(f"{CONFIG} is the configuration with the numbers that are told, each with its origin.")
+    yield Sentence(f"{CONFIG} is the configuration with the numbers that are identified, each with its origin.")
     for name, content in identified.files(CONFIG).items():
         yield File(name, content)
 

@@ -18,7 +18,7 @@ def chances(curves: AimCurves) -> Figure:
         11.0,
         4.6,
         f"What an exit speed gives: category {curves.category.name}, {counted(curves.cars, 'car')}",
-        f"All cuts told the same speed; {curves.cuts} cuts that no table was made with",
+        f"All cuts commanded the same speed; {curves.cuts} cuts that no table was made with",
     )
     place(figure, left=0.65, right=0.2, bottom=1.15, top=0.85, w=0.28)
     by_speed, gap_by_speed, by_gap = figure.subplots(1, 3)

@@ -37,7 +37,7 @@ def at_limit(found: FoundCapacity) -> Iterator[Exhibit]:
         Column("cars_per_hour", f"cars an hour at {allowed} catch-ups", form=whole),
         Column("hump_speed_m_s", "mean hump speed there", "m/s", decimals(2), spare=1),
         Column("more_cars_per_hour", "more than the first", "cars/h", decimals(0)),
-        Column("why", "not told because", words=True, spare=2),
+        Column("why", "no figure because", words=True, spare=2),
     )
     yield Table("capacity", "Cars an hour at the allowed share of catch-ups", columns, list(limit_rows(found)))
     yield Chart(

@@ -78,7 +78,7 @@ def limits(found: FoundPermissions) -> Iterator[Limit]:
     """Whether all that was asked for is told."""
     parts = [part for case in found.told.cases for part in case.missing]
     parts += [case.sentence for case in found.told.failed]
-    yield Limit(f"not told: {'; '.join(parts)}" if parts else "every permission is told in every case", not parts)
+    yield Limit(f"not decided: {'; '.join(parts)}" if parts else "every permission is decided in every case", not parts)
 
 
 def show(found: FoundPermissions) -> Iterator[Chapter]:

@@ -67,7 +67,7 @@ class CasePermissions:
         and what cannot be told."""
         found = self.of(Permission.ANY_TIME)
         words = [] if found is None else [f"rms with commands at any time × {found.ratio:.2f}"]
-        return "; ".join([*words, *(f"{each.permission.value} cannot be told" for each in self.failed)])
+        return "; ".join([*words, *(f"{each.permission.value} cannot be decided" for each in self.failed)])
 
     @property
     def missing(self) -> tuple[str, ...]:

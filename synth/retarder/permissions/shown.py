@@ -82,7 +82,9 @@ def missing(told: AllPermissions) -> Iterator[Exhibit]:
     ]  # fmt: skip
     rows += [{"label": each.label, "target_speed_m_s": each.target_m_s, "reason": each.reason} for each in told.failed]
     if rows:
-        yield Table("missing", "What cannot be told; without a permission: the case has no table", MISSING, rows, True)
+        yield Table(
+            "missing", "What cannot be decided; without a permission: the case has no table", MISSING, rows, True
+        )
 
 
 def ratios(case: CasePermissions) -> Row:

@@ -35,7 +35,7 @@ CASES: Final = (
 )  # fmt: skip
 
 HOW_TO_READ: Final = (
-    "Regret: rms of the table over that of a controller of its kind that is told the friction of each cut, with lines "
+    "Regret: rms of the table over that of a controller of its kind that knows the friction of each cut, with lines "
     "polished for it: a reference, no lower bound. Best baseline: the classical law of least rms, tuned for the case. "
     "Unavoidable: rms of what cuts leave too fast by under the hardest braking, and too slow by without any; where it "
     "is above the limit, no regulator of the position keeps that limit, and the case is infeasible. All controllers "
@@ -47,8 +47,8 @@ PERMISSIONS: Final = (
 
 
 NO_REGRET: Final = (
-    "No regret is told where the regulator that is told the friction is beaten by one that is not: it is no reference "
-    "there."
+    "No regret is stated where the regulator that knows the friction is beaten by one that does not: it is no "
+    "reference there."
 )
 
 
