@@ -44,7 +44,7 @@ class SourcedValue:
     def fixed(self) -> bool:
         """The sensible range holds no more than the value itself."""
         numbers = flat_numbers(self.value)
-        return self.range == (min(numbers), max(numbers))
+        return bool(numbers) and self.range == (min(numbers), max(numbers))
 
     @property
     def span(self) -> str:

@@ -11,6 +11,7 @@ import pytest
 from plant_models import PlantError
 from plant_models.library import load_car, load_position, position_names, sources, sources_cited_in
 from plant_models.library.source import CITATION, sources_from_toml
+from plant_models.library.sourced_value import SourcedValue
 from synth.retarder.configuration.config_template import default_config_toml
 
 ROOT = Path(__file__).parents[2]
@@ -77,6 +78,11 @@ def test_a_range_that_leaves_nothing_open_is_called_fixed() -> None:
         for comment in re.findall(r"^#.*$", default_config_toml(name), re.MULTILINE):
             same = re.search(r"; (\S+) to (\S+);", comment)
             assert same is None or same[1] != same[2], comment
+
+
+def test_a_list_without_numbers_has_its_range() -> None:
+    value = SourcedValue("switches_m", (), "m", (1.0, 3000.0), "the user", "H")
+    assert (value.fixed, value.span, value.in_range) == (False, "1 to 3000", True)
 
 
 def test_a_faulty_list_of_sources_is_refused_by_name() -> None:

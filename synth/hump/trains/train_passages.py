@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.hump.trains.hump_routes import HumpRoutes, Mark
+from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 
@@ -65,7 +65,8 @@ def train_passages(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory, l
 def with_contacts(memory: TrainMemory, lane: int) -> Floats:
     """Times (cuts, elements, marks) of a train. The simulation finds a contact at the next joint; there the cut comes
     no sooner than the last axle of the one that it touched; its first axle, where the last one never comes. It never
-    comes there behind a cut that stands ahead of the joint with all its axles."""
+    comes there behind a cut that stands ahead of the joint with all its axles. Its axles pass what lies behind no
+    sooner than this joint: a cut that touched rolls as if alone, and the one ahead may be held up on its track."""
     times: Floats = memory.time_s[lane].copy()
     for cut in range(len(times)):
         at = int(memory.contact_at[lane, cut])
@@ -75,6 +76,8 @@ def with_contacts(memory: TrainMemory, lane: int) -> Floats:
             ahead = times[leader, at, Mark.FIRST_IN : Mark.LAST_IN + 1]
             came = ahead[np.isfinite(ahead)]
             joint += max(0.0, came[-1] - joint[0]) if len(came) else np.inf
+            behind = times[cut, at:]
+            np.maximum(behind, np.where(OF_FIRST_AXLE, joint[0], joint[-1]), out=behind)  # NaN for never stays
     return times
 
 

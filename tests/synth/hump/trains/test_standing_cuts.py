@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -113,3 +115,14 @@ def test_cuts_that_stand_are_told_and_figures_come_before_the_train_that_is_show
         made += chapters
     names = {each.name for each in exhibits_of(made) if not isinstance(each, Sentence | Tiles)}
     assert {TRAINS, "shares", "means", "positions"} <= names
+
+
+def test_behind_the_joint_of_a_contact_no_axle_passes_sooner() -> None:
+    """The cut ahead is held up on its track: its last axle comes to the joint after the one behind would have left."""
+    times = np.array([[[10.0, 90.0, 20.0, 95.0, 25.0, 96.0]], [[30.0, 34.0, 40.0, 44.0, np.nan, 50.0]]])
+    memory = SimpleNamespace(time_s=times[None], contact_at=np.array([[0, 0]]), behind=np.array([[-1, 0]]))
+    found = with_contacts(cast(TrainMemory, memory), 0)
+    assert found[0].tolist() == times[0].tolist()
+    assert found[1, 0, :4].tolist() == [90.0, 94.0, 90.0, 94.0]
+    assert np.isnan(found[1, 0, 4])
+    assert found[1, 0, 5] == 94.0
