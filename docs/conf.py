@@ -53,7 +53,6 @@ html_theme = "furo"
 html_title = f"{project} {version}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-html_extra_path = ["gallery/report.html"]
 html_show_sourcelink = False
 
 API = re.compile(r"<!-- api (\S+) -->\n")
