@@ -8,10 +8,15 @@ from dataclasses import replace
 from plant_models import Approach, Plant, TrackProfile
 from synth.retarder.estimation.estimator_design import estimator_of
 from synth.retarder.explore.explore_page import PlayedTable
+from synth.retarder.sensors.passage_table import plausible_motion
+from synth.retarder.served_class import sensors_of
 from tests.controller_code.sample_book import FOUR_AXLES, table_of, with_slopes
 from tests.synth.conftest import pilot_plant
+from tests.tuning_tables.passages.made_tables import table_of as passages_of
 from tuning_tables import Approach as TableApproach
 from tuning_tables import ControllerTable, Decisions, ValidRange
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.sensor_layout import DecidesOn
 
 STAGES = 5
 LIMITS_T = (22.0, 28.0)
@@ -50,6 +55,22 @@ def any_time_table() -> ControllerTable:
 def blind_table() -> ControllerTable:
     """Decides at every sample without a gauge."""
     return replace(measured_table(), decisions=Decisions.AT_ANY_TIME)
+
+
+HEARD_ROWS = ((4.5, 6.0), (4.0, 5.25), (3.0, 4.5))
+"""Of three stages; at every passage."""
+
+
+def heard_table(decides_on: DecidesOn = DecidesOn.EVERY_AXLE) -> PassageTable:
+    """Decides at passages over point sensors."""
+    places = (-APPROACH_M, 1.0, 5.5, 10.0, 14.5, 19.0, 23.5)
+    table = passages_of(decides_on, places, pilot_plant(22.0).cut.axle_offsets_m, HEARD_ROWS)
+    return replace(table, plausible=plausible_motion(sensed_plant(table), sensors_of(table.sensors)))
+
+
+def sensed_plant(table: PassageTable) -> Plant:
+    """The same plant, whose regulator acts from the first sensor of the table on."""
+    return replace(plant_of(measured_table()), approach=Approach(table.approach.length_m, 1))
 
 
 TABLES: Mapping[str, Callable[[], ControllerTable]] = {
