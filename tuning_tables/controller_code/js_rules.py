@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from tuning_tables.controller_code import line_code, passage_code
-from tuning_tables.controller_code.code import Rule, Values, programs_of
+from tuning_tables.controller_code.code import Rule, programs_of
 from tuning_tables.language.javascript import indented, js_functions, js_maker, js_values
 from tuning_tables.language.records import Record, SizedRecord
 from tuning_tables.passages.held_passages import held_by
@@ -36,37 +36,35 @@ PASSAGES: Final = JsObject("PassageRule", passage_code.RULES, {"table": HELD_PAS
 @dataclass(frozen=True)
 class JsRules:
     """`text`: a script with one object, `Rule` or `PassageRule`. `tables`: what its `table` is given, JSON, a table
-    each. `alarms`: the bits of what `Rule.alarms` answers, each with its meaning."""
+    each. `room`: the lengths of the axes of their arrays, which are flat. `alarms`: the bits of what `Rule.alarms`
+    answers, each with its meaning."""
 
     text: str
     tables: tuple[Mapping[str, Any], ...]
+    room: Mapping[str, int]
     alarms: tuple[tuple[int, str], ...] = ()
 
 
 def js_rules(tables: Sequence[ControllerTable]) -> JsRules:
     """The rules for `tables`, one or more of any classes. Category and family are 0: nothing chooses between them."""
-    records = sized(LINES, line_code.room_of(tables))
-    record = records[LINE_TABLE.name]
-    held = held_as(record, [line_code.values_of(each.held, record) for each in tables])
-    return JsRules(rule_script(LINES, records), held, tuple((bit, meaning) for _, bit, meaning in line_code.NAMED))
+    room = line_code.room_of(tables)
+    records, record = sized(LINES, room), LINE_TABLE.sized(room)
+    held = tuple(js_values(record, line_code.values_of(each.held, record)) for each in tables)
+    alarms = tuple((bit, meaning) for _, bit, meaning in line_code.NAMED)
+    return JsRules(rule_script(LINES, records), held, room, alarms)
 
 
 def js_passage_rules(tables: Sequence[PassageTable]) -> JsRules:
     """The same for tables for point sensors."""
-    records = sized(PASSAGES, passage_code.room_of(tables))
-    record = records[HELD_PASSAGES.name]
-    held = held_as(record, [passage_code.values_of(held_by(each), record) for each in tables])
-    return JsRules(rule_script(PASSAGES, records), held)
+    room = passage_code.room_of(tables)
+    records, record = sized(PASSAGES, room), HELD_PASSAGES.sized(room)
+    held = tuple(js_values(record, passage_code.values_of(held_by(each), record)) for each in tables)
+    return JsRules(rule_script(PASSAGES, records), held, room)
 
 
 def sized(script: JsObject, room: Mapping[str, int]) -> Mapping[str, SizedRecord]:
     """The records of a script with this room, by their names."""
     return {record.name: record.sized(room) for record in script.made.values()}
-
-
-def held_as(record: SizedRecord, values: Sequence[Values]) -> tuple[Mapping[str, Any], ...]:
-    """Tables of this room as JSON."""
-    return tuple(js_values(record, each) for each in values)
 
 
 def rule_script(script: JsObject, records: Mapping[str, SizedRecord]) -> str:
