@@ -102,7 +102,11 @@ def density(sample: ExitSample, target_m_s: float) -> dict[str, Any]:
     place = np.floor((sample.exit_speed_m_s[left] - target_m_s) / BIN_M_S).astype(np.int64)
     first = int(place.min(initial=0))
     shares = np.bincount(place - first, weights=sample.weight[left]) / sample.weight.sum()
-    return {"from_m_s": round(first * BIN_M_S, 2), "width_m_s": BIN_M_S, "shares": [float(f"{share:.3g}") for share in shares]}
+    return {
+        "from_m_s": round(first * BIN_M_S, 2),
+        "width_m_s": BIN_M_S,
+        "shares": [float(f"{share:.3g}") for share in shares],
+    }
 
 
 def rule_data(law: TunedBaseline) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -17,30 +17,24 @@ from synth.retarder.explore.options import ExploreOptions
 from synth.retarder.tables_configuration import configuration_for, given_config
 
 if TYPE_CHECKING:
-    from synth.retarder.served_class import ServedClass
+    from synth.retarder.explore.explore_page import PlayedTable
     from tuning_tables.table_kinds import StageTable
 
 LARGEST_PAGE_BYTES: Final = 3_000_000
 """A page goes by mail, and a telephone opens it."""
 
 
-@dataclass(frozen=True)
-class Unplayed:
-    """A table, the class of the configuration that it brakes, and whether the tune that made it calls it infeasible."""
-
-    table: StageTable
-    served: ServedClass
-    infeasible: bool
+BESIDE_BYTES: Final = 30_000
+"""More than what stands beside a table takes in a page."""
 
 
 @dataclass(frozen=True)
 class Asking:
-    """The tables at `path`, with the configuration that their plants are from, called `source`."""
+    """Tables to be played, with the configuration that their plants are from, called `source`."""
 
-    path: Path
     config: ResolvedConfig
     source: str
-    tables: tuple[Unplayed, ...]
+    tables: tuple[PlayedTable, ...]
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -59,34 +53,52 @@ class ExplorePage:
 
 
 def resolve(asked: Asked[ResolvedConfig | None, ExploreOptions]) -> Asking:
-    """Tables without a plant and aim tables are refused."""
+    """The tables; refused are those without a plant, aim tables, and more than a page may hold."""
     from synth.retarder.forms.tables_at import tables_at
 
     path = asked.options.source
     tables = tables_at(path).only_of_stages("explore")
     config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, path, tables)
-    unplayed = tuple(unplayed_tables(tables, path, config, source))
-    return Asking(path, config, Path(source).name, unplayed)  # no file holds a path
+    played = tuple(played_tables(tables, path, config, source))
+    asking = Asking(config, Path(source).name, played)  # no file holds a path
+    size = len(page_of(asking)) + BESIDE_BYTES * len(tables)
+    if size > LARGEST_PAGE_BYTES:
+        raise InputError(
+            f"{path}: a page of its {len(tables)} tables could have {size / 1e6:.1f} MB; "
+            f"{LARGEST_PAGE_BYTES / 1e6:g} MB are allowed: give one table, or a folder of fewer"
+        )
+    return asking
 
 
-def unplayed_tables(
+def played_tables(
     tables: tuple[StageTable, ...], path: Path, config: ResolvedConfig, source: str
-) -> Iterator[Unplayed]:
+) -> Iterator[PlayedTable]:
     """The tables with the plants of their classes; `InputError` where the configuration has none for one.
 
     `PlantError` for a table at any time whose drive or delays are modelled for commands at rest alone.
     """
+    from synth.retarder.explore.explore_page import PlayedTable
     from synth.retarder.forms.table_file import is_infeasible, summary_beside
     from synth.retarder.served_class import served_class
     from tuning_tables import ControllerTable
     from tuning_tables.decisions import Decisions
 
-    summary = summary_beside(path)
+    summary, limits_t = summary_beside(path), {each.label: each.mass_limits_t for each in config.cuts}
     for table in tables:
         served = served_class(table, config, source)
         if isinstance(table, ControllerTable) and table.decisions is Decisions.AT_ANY_TIME:
             served.plant.drive_at_any_time()  # refused here: the scripts know no other drive
-        yield Unplayed(table, served, is_infeasible(table, summary))
+        yield PlayedTable(table, served, limits_t[served.label], is_infeasible(table, summary))
+
+
+def page_of(asking: Asking) -> bytes:
+    """The page of the tables, with what stands beside them as far as that is known."""
+    from synth.frame.version import __version__
+    from synth.retarder.explore.explore_page import explore_page
+
+    plant = f"plant: {asking.source}"
+    told = " · ".join((f"retarder-synth {__version__}", plant, "one file, which loads nothing", *asking.warnings))
+    return explore_page(asking.config.title, told, asking.tables).encode()
 
 
 def head(asking: Asking) -> Head:
@@ -95,25 +107,15 @@ def head(asking: Asking) -> Head:
 
 
 def compute(asking: Asking, work: Work) -> ExplorePage:
-    """Each table and the best rule on the passes of its case, then the page of all; `InputError` if that is too large."""
-    from synth.frame.version import __version__
+    """Each table and the best rule on the passes of its case, then the page of all."""
     from synth.retarder.explore.beside import beside
-    from synth.retarder.explore.explore_page import PAGE, PlayedTable, explore_page
+    from synth.retarder.explore.explore_page import PAGE
 
-    config, played = asking.config, []
-    limits_t = {each.label: each.mass_limits_t for each in config.cuts}
+    played = []
     for each in asking.tables:
-        found = beside(each.table, each.served, config)
-        played.append(PlayedTable(each.table, each.served, limits_t[each.served.label], each.infeasible, found))
-        work.progress.done(played[-1].title)
-    plant = f"plant: {asking.source}"
-    told = " · ".join((f"retarder-synth {__version__}", plant, "one file, which loads nothing", *asking.warnings))
-    content = explore_page(config.title, told, played).encode()
-    if len(content) > LARGEST_PAGE_BYTES:
-        raise InputError(
-            f"{asking.path}: a page of its {len(played)} tables would have {len(content) / 1e6:.1f} MB; "
-            f"{LARGEST_PAGE_BYTES / 1e6:g} MB are allowed: give one table, or a folder of fewer"
-        )
+        played.append(replace(each, beside=beside(each.table, each.served, asking.config)))
+        work.progress.done(each.title)
+    content = page_of(replace(asking, tables=tuple(played)))
     return ExplorePage(len(played), File(PAGE, content, "Play with the tables"))
 
 

@@ -23,14 +23,15 @@
     return { table, own, rule: told.rule && Laws.byLines(plant, told.rule.lines) };
   }
 
-  // What plays cuts under a regulator with the sliders as they are.
+  // What plays cuts under a regulator with the sliders as they are; of a cut that is explained it keeps everything.
   function playerOf(plant, regulator) {
     const { mass: massT, noise: noiseMS, timer, delay } = set.values, { run } = Controls.isRadar(plant) ? Passes : Passages;
     const drive = Drive.drive(plant, regulator.atAnyTime, delay), setting = { massT, noiseMS, noiseS: timer * 1e-3, drive };
-    return (cut) => {
+    return (cut, isExplained) => {
       const questions = [], points = [], pressures = [];
       const exit = run(plant, regulator, setting, cut, (time, s, v, _kpa, _stage, question) => {
         points.push([s, v]);
+        if (!isExplained) return;
         if (question) questions.push({ time, v, question });
         if (drive.pressureAt) pressures.push([time, drive.pressureAt(time)]);
         else if (question) pressures.push([time, question.pressureKpa]);
@@ -47,7 +48,7 @@
     const { table, own, rule } = choice.regulators;
     const cut = { ...Draws.cut(plant, values.seed, ONE_PASS), entryMS: values.entry, factor: values.factor,
       resistance: values.resistance };
-    const pass = playerOf(plant, own)(cut), rulePass = rule && playerOf(plant, rule)(cut);
+    const pass = playerOf(plant, own)(cut, true), rulePass = rule && playerOf(plant, rule)(cut, true);
     shown = { plant, room, table, told, pass, rulePass, targetMS: told.target_m_s };
     const first = pass.questions.findIndex(({ question }) => question.wanted !== question.before);
     if (set.cursor === null) set.cursor = Math.max(0, first);
@@ -93,7 +94,8 @@
       played.push({ regulator: rule, name: told.rule.name, colour: "rule", simulated: told.rule.simulated, of });
     }
     for (const each of played) {
-      each.passes = cuts.map(playerOf(plant, each.regulator));
+      const play = playerOf(plant, each.regulator);
+      each.passes = cuts.map((cut) => play(cut, false));
       each.exits = each.passes.map(({ exit }) => exit);
     }
     at("count").textContent = count;
@@ -121,7 +123,7 @@
       nearer: rule && Figures.nearer(own, rule, targetMS),
       overspeedMS,
     };
-    const titles = [`${own.length} cuts here`, `${n} simulated passes`].flatMap((title) => played.map(({ name }) => `${name}, ${title}`));
+    const titles = [`${own.length} cuts here`, `${n} simulated`].flatMap((title) => played.map(({ name }) => `${name}, ${title}`));
     FigureTable.show(at("figure-head"), at("figures"), titles, FigureTable.rows(figures, { unit: set.unit, number, withUnit }));
   }
 

@@ -32,16 +32,17 @@ SCRIPTS: Final = (
 
 @dataclass(frozen=True)
 class PlayedTable:
-    """A table, the class that it brakes, and what it stands beside; cuts weigh from low to high.
+    """A table and the class that it brakes, whose cuts weigh from low to high.
 
-    `infeasible`: the tune that made the table calls its case so.
+    `infeasible`: the tune that made the table calls its case so. `beside`: what the page shows beside it; None: not
+    simulated yet.
     """
 
     table: StageTable
     served: ServedClass
     mass_limits_t: tuple[float, float]
     infeasible: bool
-    beside: Beside
+    beside: Beside | None = None
 
     @property
     def sensors(self) -> PointSensors | None:
@@ -62,18 +63,19 @@ class PlayedTable:
 
 def explore_page(title: str, meta: str, tables: Sequence[PlayedTable]) -> str:
     """One HTML document; `meta`: a line below the title. The same tables give the same text."""
-    scripts, alarms, classes = [], (), []
-    for rules_of, kind in ((js_rules, ControllerTable), (js_passage_rules, PassageTable)):
-        played = [each for each in tables if isinstance(each.table, kind)]
-        if not played:
-            continue
-        rules = rules_of([each.table for each in played])
-        scripts.append(rules.text)
-        alarms += rules.alarms
-        classes += class_data(played, rules)
+    lines = [(each, each.table) for each in tables if isinstance(each.table, ControllerTable)]
+    passages = [(each, each.table) for each in tables if isinstance(each.table, PassageTable)]
+    rules, classes = [], list[dict[str, Any]]()
+    if lines:
+        rules.append(js_rules([table for _, table in lines]))
+        classes += class_data([each for each, _ in lines], rules[-1])
+    if passages:
+        rules.append(js_passage_rules([table for _, table in passages]))
+        classes += class_data([each for each, _ in passages], rules[-1])
+    alarms = [each for rule in rules for each in rule.alarms]
     data = {"classes": classes, "overspeed_m_s": OVERSPEED_M_S, "alarms": alarms}
     content = (element("h1", title), element("p", meta, class_="meta"), Markup(part(PAGE)))
-    scripts += [SPEED_UNITS, *(part(name) for name in SCRIPTS)]
+    scripts = [*(rule.text for rule in rules), SPEED_UNITS, *(part(name) for name in SCRIPTS)]
     return scripted_document(f"{title}: play with its tables", part("explore.css"), content, data, scripts)
 
 
@@ -84,7 +86,11 @@ def class_data(tables: Sequence[PlayedTable], rules: JsRules) -> Iterator[dict[s
         together = list(played)
         first = together[0]
         plant = plant_data(first.served.plant, first.mass_limits_t, stages, first.sensors)
-        yield {"plant": plant, "room": dict(rules.room), "tables": [{**table_data(each), "held": held[id(each)]} for each in together]}
+        yield {
+            "plant": plant,
+            "room": dict(rules.room),
+            "tables": [{**table_data(each), "held": held[id(each)]} for each in together],
+        }
 
 
 def table_data(played: PlayedTable) -> dict[str, Any]:
@@ -95,7 +101,7 @@ def table_data(played: PlayedTable) -> dict[str, Any]:
         "title": played.title,
         "target_m_s": table.target_speed_m_s,
         "predicted_m_s": table.predicted.rms_m_s,
-        **beside_data(played.beside, table.target_speed_m_s),
+        **(beside_data(played.beside, table.target_speed_m_s) if played.beside else {}),
     }
 
 

@@ -1,12 +1,17 @@
 "use strict";
 // Why a regulator with point sensors commands what it commands at a pair of pulses, in sentences.
 const PassageWords = (() => {
+  const MOST_M_S = 1e6;  // a controller holds a greater number where a stage is never left so
+
+  const isGated = (table, passage) => passage < table.before_entrance && table.entrance_stage < table.stages - 1;
+
   // Switching speeds of a stage at a passage at which is decided: [speed, stage wanted beyond it], from slow to fast.
   function switching(table, room, passage, stage) {
     const first = (passage * room.stages + stage) * room.thresholds, found = [];
-    for (let threshold = 0; threshold < table.stages - 1; threshold++) {
+    const highest = isGated(table, passage) ? table.entrance_stage : table.stages - 1;
+    for (let threshold = 0; threshold < Math.max(stage, highest); threshold++) {
       const speed = table.switching_m_s[first + threshold];
-      if (Math.abs(speed) < table.greatest_m_s * 10) found.push([speed, threshold < stage ? threshold : threshold + 1]);
+      if (Math.abs(speed) <= MOST_M_S) found.push([speed, threshold < stage ? threshold : threshold + 1]);
     }
     return found;
   }
@@ -14,7 +19,8 @@ const PassageWords = (() => {
   function switchingTold(table, room, { deciding, before }, withUnit) {
     const told = switching(table, room, deciding, before).map(([speed, wanted]) =>
       `stage ${wanted} ${wanted < before ? "below" : "above"} ${withUnit(speed)}`);
-    return `Stage ${before} is in force. At this passage the table wants ${told.join(", ") || "no other stage"}.`;
+    const gate = isGated(table, deciding) ? `, but before the entrance none above stage ${table.entrance_stage}` : "";
+    return `Stage ${before} is in force. At this passage the table wants ${told.join(", ") || "no other stage"}${gate}.`;
   }
 
   // As `Words.why`; `room`: the lengths of the axes of the table's arrays.

@@ -67,8 +67,8 @@ const Pictures = (() => {
     if (table.breaks > 0) {
       chart.dots(questions.map(({ question }) => [question.s, question.known * factor]), "estimate", { radius: 2 });
     }
-    if (rulePass) chart.line(scaled(rulePass, factor), "rule", { width: 2, dash: RULE_DASH });
     chart.line(scaled(pass, factor), "ink", { width: 2 });
+    if (rulePass) chart.line(scaled(rulePass, factor), "rule", { width: 2, dash: RULE_DASH });
     if (now) chart.dots([[now.s, questions[cursor].v * factor]], "ink", { radius: 5 });
   }
 
@@ -85,8 +85,8 @@ const Pictures = (() => {
     }
     wanted.push([pass.exit.time, wanted.at(-1)[1]]);
     chart.line(wanted, "upper", { width: 2, dash: [7, 3] });
-    if (rulePass) chart.line(rulePass.pressures, "rule", { width: 2, dash: RULE_DASH });
     chart.line(pass.pressures, "ink", { width: 2 });
+    if (rulePass) chart.line(rulePass.pressures, "rule", { width: 2, dash: RULE_DASH });
     for (const [stage, kpa] of plant.stage_kpa.entries()) chart.wordBehind(`stage ${stage}`, kpa, "soft");
     if (questions[cursor]) chart.upright(questions[cursor].time, "soft", [2, 3]);
   }

@@ -1,4 +1,4 @@
-"""A plant as plain data for the page: its path cells, its drive, its radar or point sensors, and the laws that cuts are drawn from."""
+"""A plant as plain data for the page: path cells, drive, radar or point sensors, and the laws of its cuts."""
 
 from __future__ import annotations
 

@@ -33,11 +33,11 @@ from tests.synth.explore.braked import (
     sensed_plant,
 )
 from tests.synth.explore.scripts_of_page import told_by
-from tuning_tables import ControllerTable, Decisions
+from tuning_tables import Decisions
 from tuning_tables.controller_code.js_rules import JsRules, js_passage_rules, js_rules
 from tuning_tables.passages.sensor_layout import DecidesOn
 
-PASSES = 1000
+PASSES, FEW = 1000, 150
 SCRIPTS = ("motion.js", "drive.js", "laws.js", "passes.js", "passages.js")
 ASKING = """
 const { plant, table, lines, cuts, massT, noise, delayTimes } = given;
@@ -140,7 +140,7 @@ def test_a_baseline_is_that_of_python_event_by_event(decisions: Decisions, lead_
     controller = played_controller(replace(law, decisions=decisions))
     given = {"plant": plant_data(plant, LIMITS_T, STAGES), "lines": lines_data(controller)}
     setting = {"massT": plant.cut.mass_t, "noise": plant.sensor.noise_m_s, "delayTimes": 1.0}
-    compared(None, given | setting, loop, controller, PASSES)
+    compared(None, given | setting, loop, controller, PASSES if lead_s else FEW)
 
 
 @needs_javascript
@@ -151,12 +151,18 @@ def test_a_pass_over_point_sensors_is_that_of_python_event_by_event(decides_on: 
     loop = close_passage_loop(plant, sensors, len(table.pressure_kpa))
     given = {"plant": plant_data(plant, LIMITS_T, loop.stages, sensors), "table": rules.tables[0]}
     setting = {"massT": plant.cut.mass_t, "noise": sensors.timer_noise_s, "delayTimes": 1.0}
-    compared(rules, given | setting, loop, of_table(table, tracking=True), PASSES)
+    compared(
+        rules,
+        given | setting,
+        loop,
+        of_table(table, tracking=True),
+        PASSES if decides_on is DecidesOn.EVERY_AXLE else FEW,
+    )
 
 
 def sized_passes(case: str) -> int:
     """The thousand passes for the two kinds of commands, fewer for their variants."""
-    return PASSES if case in ("estimated", "any time") else 150
+    return PASSES if case in ("estimated", "any time") else FEW
 
 
 def compared(
