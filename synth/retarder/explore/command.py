@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 LARGEST_PAGE_BYTES: Final = 3_000_000
 """A page goes by mail, and a telephone opens it."""
 
-
 BESIDE_BYTES: Final = 30_000
 """More than what stands beside a table takes in a page."""
 

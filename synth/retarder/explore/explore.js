@@ -13,7 +13,10 @@
   const plantOf = () => choices[set.choice].of.plant;
   const number = (m_s, digits = 2) => (m_s * SpeedUnits.FACTORS[set.unit]).toFixed(digits);
   const withUnit = (m_s, digits = 2) => `${number(m_s, digits)} ${set.unit}`;
-  const signed = (m_s, digits) => `${m_s < 0 ? "−" : "+"}${number(Math.abs(m_s), digits)}`;
+  function signed(m_s) {
+    const size = number(Math.abs(m_s));
+    return `${Number(size) === 0 ? "" : m_s < 0 ? "−" : "+"}${size}`;
+  }
 
   // --- passes
   // The regulators of a table: its own, and that of the rule beside it, null where there is none.

@@ -82,10 +82,10 @@ def explore_page(title: str, meta: str, tables: Sequence[PlayedTable]) -> str:
 def class_data(tables: Sequence[PlayedTable], rules: JsRules) -> Iterator[dict[str, Any]]:
     """What the page must know of each class, with those of its tables that follow each other."""
     held = {id(each): values for each, values in zip(tables, rules.tables, strict=True)}
-    for (_, stages), played in groupby(tables, key=lambda each: (each.served.label, each.stages)):
+    for _, played in groupby(tables, key=lambda each: (each.served.label, each.stages, each.sensors)):
         together = list(played)
         first = together[0]
-        plant = plant_data(first.served.plant, first.mass_limits_t, stages, first.sensors)
+        plant = plant_data(first.served.plant, first.mass_limits_t, first.stages, first.sensors)
         yield {
             "plant": plant,
             "room": dict(rules.room),
