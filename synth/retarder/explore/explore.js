@@ -132,7 +132,7 @@
 
   // --- the state and its link
   function writeLink() {
-    const others = { unit: set.unit, at: set.cursor };
+    const others = { unit: set.unit, at: set.cursor, cuts: at("passes").value };
     const link = Controls.link(plantOf(), choices[set.choice].told.id, set.values, others);
     try { history.replaceState(null, "", link); } catch { return; }  // a browser may refuse it for a file
   }
@@ -142,6 +142,8 @@
     set.choice = Math.max(0, found);
     set.values = Controls.valuesAsked(plantOf(), words);
     set.unit = SpeedUnits.known(words.get("unit")) ? words.get("unit") : SpeedUnits.remembered();
+    const cuts = [...at("passes").options].findIndex(({ value }) => value === words.get("cuts"));
+    at("passes").selectedIndex = Math.max(0, cuts);
     const moment = Number(words.get("at") ?? NaN);
     set.cursor = Number.isInteger(moment) && moment >= 0 && words.has("at") ? moment : null;
   }

@@ -82,7 +82,7 @@ out.heard.link = location.hash;
 choose("table", at("table").options[0].value);
 choose("passes", "1000");
 await pause(1500);
-out.many = [...at("figure-head").cells].map((cell) => cell.textContent)[1];
+out.many = [at("figure-head").cells[1].textContent, location.hash];
 const told = document.createElement("pre");
 told.id = "probe";
 told.textContent = JSON.stringify(out);
@@ -206,7 +206,9 @@ def test_figures_of_table_and_rule_stand_beside_those_of_simulated_passes(seen: 
     assert f"the {law.name} is the better one" in seen["rule"]["about"]
     assert seen["differs"].startswith("Mass, noise or delays are not those of the configuration")
     assert seen["reset"][1] == ""
-    assert seen["many"] == "this table, 1000 cuts here"
+    title, link = seen["many"]
+    assert title == "this table, 1000 cuts here"
+    assert link.endswith("cuts=1000")
 
 
 def test_a_table_for_point_sensors_is_played_alone(seen: dict[str, Any]) -> None:
