@@ -74,6 +74,7 @@ def answered(script: str, tables: list[Any], questions: list[Any], engine: Engin
     return found
 
 
+@pytest.mark.requirement("CODE-03")
 @needs_javascript
 @pytest.mark.parametrize("book_of", [sample_book, estimating_book, approaching_book, surface_book, park_book])
 def test_golden_questions_are_answered_alike_in_every_bit(book_of: Callable[[], TableBook]) -> None:
