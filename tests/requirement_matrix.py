@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from scripts.documentation.requirements import ROOT, requirements
+from scripts.documentation.requirements import ROOT, proofs, requirements
 from tests.effort import IS_LONG
 
 MARK = "requirement"
@@ -21,8 +21,14 @@ class RequirementMatrix:
     """The plugin of a run that keeps outcomes; tests that other processes run tell their ids as properties."""
 
     def __init__(self, path: Path) -> None:
+        if path.is_dir():
+            raise pytest.UsageError(f"--matrix {path}: this is a directory; name a file")
+        path.parent.mkdir(parents=True, exist_ok=True)
         self.path = path
         self.outcomes: dict[str, dict[str, Counter[str]]] = {name: {} for name in requirements()}
+        for proof in proofs():
+            for name in proof.ids:
+                self.outcomes[name][f"{proof.file}::{proof.test}"] = Counter()
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Have each report of a marked test tell its ids."""
@@ -34,12 +40,11 @@ class RequirementMatrix:
         if report.when == "call" or not report.passed:
             test = report.nodeid.partition("[")[0]
             for name in (value for key, value in report.user_properties if key == MARK):
-                self.outcomes[str(name)].setdefault(test, Counter())[report.outcome] += 1
+                self.outcomes[str(name)][test][report.outcome] += 1
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write the matrix, in the process that hears of all tests."""
         if not hasattr(session.config, "workerinput"):
-            self.path.parent.mkdir(parents=True, exist_ok=True)
             self.path.write_text("\n".join(self.lines()) + "\n", encoding="utf-8")
 
     def lines(self) -> Iterator[str]:
@@ -54,15 +59,15 @@ class RequirementMatrix:
         yield f"{len(verdicts)} requirements: {', '.join(f'{n} {word}' for word, n in sorted(counted.items()))}.\n"
         yield "| requirement | | test | passed | failed | skipped |\n|---|---|---|---|---|---|"
         for name, found in self.outcomes.items():
-            for test, counts in sorted(found.items()) or [("none", Counter[str]())]:
+            for test, counts in found.items():
                 cells = " | ".join(str(counts[outcome]) for outcome in ("passed", "failed", "skipped"))
                 yield f"| {name} | {verdicts[name]} | `{test}` | {cells} |"
 
 
 def verdict(found: dict[str, Counter[str]]) -> str:
-    """Proved: tests passed and none failed; not run: no test came to an end."""
+    """Passed: tests did and none failed; not run: none came to an end."""
     total = sum(found.values(), Counter[str]())
-    return "failed" if total["failed"] else "proved" if total["passed"] else "not run"
+    return "failed" if total["failed"] else "passed" if total["passed"] else "not run"
 
 
 def commit() -> str:

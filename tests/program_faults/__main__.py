@@ -1,7 +1,7 @@
 """Plant faults in copies of the program, one by one, and see what finds each: `python -m tests.program_faults -o DIR`.
 
 In each copy a small tune is made with every export; then its tests, `verify`, the self-test of its C code (gcc) and
-`qualify` are asked. The first row has no fault: there nothing may be found. Hours; `--only 3` takes one fault.
+`qualify` are asked. The first row has no fault: there nothing may be found. It takes hours; `--only 3` asks about one fault.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked.output.mkdir(parents=True, exist_ok=True)
     finders = {name: find for name, find in FINDERS.items() if not asked.finder or name in asked.finder}
     print("| fault | " + " | ".join(["tune", *finders]) + " |\n|---|" + "---|" * (len(finders) + 1), flush=True)
-    for number in asked.only if asked.only is not None else [None, *range(len(FAULTS))]:
+    for number in [None, *(asked.only or range(len(FAULTS)))]:
         fault = None if number is None else FAULTS[number]
         found = found_by(fault, finders, asked.output / ("none" if number is None else f"{number:02}"))
         told = "none" if fault is None else f"{number} {fault.part}: `{fault.right}` → `{fault.wrong}`"
