@@ -1,7 +1,7 @@
 """Plant faults in copies of the program, one by one, and see what finds each: `python -m tests.program_faults -o DIR`.
 
 In each copy a small tune is made with every export; then its tests, `verify`, the self-test of its C code (gcc) and
-`qualify` are asked. The first row has no fault: there nothing may be found. It takes hours; `--only 3` asks about one fault.
+`qualify` are asked. The first row has no fault: there nothing may be found. Hours; `--only 3` asks about one fault.
 """
 
 from __future__ import annotations
