@@ -58,10 +58,10 @@ def marked(file: str, module: ast.Module) -> Iterator[Proof]:
 
 def with_proofs(page: str) -> str:
     """The text of the page with the tests below each requirement."""
-    of: dict[str, list[Proof]] = {}
+    of: dict[str, list[Proof]] = {name: [] for name in requirements()}
     for proof in proofs():
         for name in proof.ids:
-            of.setdefault(name, []).append(proof)
+            of[name].append(proof)
 
     def shown(stated: re.Match[str]) -> str:
         tests = (f"  - `{each.file}`: {each.test.removeprefix('test_').replace('_', ' ')}\n" for each in of[stated[1]])
