@@ -51,6 +51,7 @@ def no_estimator(document: Document) -> None:
     document["estimator"] = document["predicted"]["passes"] = None
 
 
+@pytest.mark.requirement("VERIFY-04")
 @pytest.mark.parametrize(
     ("change", "words"),
     [

@@ -105,6 +105,7 @@ def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
     return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
 
 
+@pytest.mark.requirement("CODE-01")
 @pytest.mark.parametrize("build", WAYS, ids=str)
 def test_c_answers_as_python_to_the_last_bit(
     build: Build,
@@ -222,6 +223,7 @@ def to_mutate(self_test: SelfTestSize) -> Mapping[str, bytes]:
     return {**aim_c_files(aims, RETARDER, self_test), "main.c": PROGRAM.encode("ascii")}
 
 
+@pytest.mark.requirement("CODE-06")
 @pytest.mark.parametrize(
     ("before", "after", "fault"), MUTANTS, ids=[f"{each[1][:30]}-{n}" for n, each in enumerate(MUTANTS)]
 )
@@ -234,6 +236,7 @@ def test_the_self_test_finds_a_wrong_controller(
         assert said.stdout.startswith(f"fault {fault} at") if fault else said.stdout == "fault 0 at 0\n"
 
 
+@pytest.mark.requirement("CODE-07")
 def test_a_damaged_table_is_found_and_leads_nowhere(tmp_path: Path, tool: Tool) -> None:
     """Every changed byte of a block; sizes that would lead out of the table; speeds that are none."""
     tool("gcc")

@@ -150,6 +150,7 @@ def test_python_and_its_compiled_text_agree() -> None:
         )
 
 
+@pytest.mark.requirement("CORR-06")
 @pytest.mark.parametrize("build", WAYS, ids=str)
 def test_c_learns_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
     for name in build.missing():

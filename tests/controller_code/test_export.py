@@ -41,6 +41,7 @@ ANALYZED = ("light-2.0", "light-3.3", "odd")
 FLOAT_H = ("-DFLT_RADIX=2", "-DFLT_MANT_DIG=24", "-DFLT_MAX_EXP=128", "-DFLT_MAX=3.40282347e+38F")
 
 
+@pytest.mark.requirement("CODE-05")
 @pytest.mark.parametrize(
     ("compiler", "switches"),
     [("gcc", ()), ("clang", ()), ("clang", ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage",
@@ -84,6 +85,7 @@ def test_cppcheck_has_nothing_to_say(book: TableBook, tmp_path: Path, tool: Tool
     assert said == ""
 
 
+@pytest.mark.requirement("CODE-05")
 def test_nothing_but_itself_is_linked(book: TableBook, tmp_path: Path, tool: Tool) -> None:
     write_sources(book, tmp_path)
     for name in SOURCES:
@@ -97,6 +99,7 @@ def test_nothing_but_itself_is_linked(book: TableBook, tmp_path: Path, tool: Too
     assert not {kind for kind, _ in kinds} & set("dDbBC")  # no variable data at all
 
 
+@pytest.mark.requirement("CODE-08")
 def test_files_of_two_exports_are_not_compiled_together(book: TableBook, tmp_path: Path, tool: Tool) -> None:
     write_sources(book, tmp_path)
     other = c_files(TableBook(book.tables[1:]))
@@ -131,6 +134,7 @@ def test_cxx_takes_the_headers_and_since_17_the_code(
             compile_with([*compiler, str(tmp_path / "retarder_table.c")])
 
 
+@pytest.mark.requirement("CODE-07")
 def test_every_changed_byte_of_a_table_is_found(book: TableBook, built: Built) -> None:
     controller = built(book)
     right = held_words(book, 0)
@@ -142,6 +146,7 @@ def test_every_changed_byte_of_a_table_is_found(book: TableBook, built: Built) -
     assert not controller.intact(damaged.view(np.uint32)).any()
 
 
+@pytest.mark.requirement("FILE-05")
 def test_json_book_and_c_hold_the_same_bits(book: TableBook, tmp_path: Path, built: Built) -> None:
     write_book(book.tables, tmp_path / "book.h5")
     way_round = TableBook(tuple(from_json(to_json(table)) for table in read_book(tmp_path / "book.h5")))

@@ -89,6 +89,7 @@ def held(code: ControllerCode) -> list[Any]:
     return [js_values(code.table, each.values) for each in code.tables]
 
 
+@pytest.mark.requirement("CODE-03")
 @needs_javascript
 @pytest.mark.parametrize("book_of", [sample_book, estimating_book, approaching_book, surface_book, park_book])
 def test_golden_questions_are_answered_alike_in_every_bit(book_of: Callable[[], TableBook]) -> None:

@@ -144,6 +144,7 @@ def blocks(book: PassageBook) -> list[npt.NDArray[np.uint32]]:
     return [np.append(each, np.uint32(crc32_of(each))) for each in words]
 
 
+@pytest.mark.requirement("CODE-01")
 @pytest.mark.parametrize("build", every(3, WAYS), ids=str)
 def test_c_does_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
     for name in build.missing():

@@ -89,6 +89,7 @@ MUTANTS = (
 )
 
 
+@pytest.mark.requirement("CODE-06")
 @pytest.mark.parametrize(("before", "after", "fault"), every(3, MUTANTS), ids=[f"{n}" for n in range(len(MUTANTS))])
 def test_the_self_test_finds_a_wrong_controller(
     before: str, after: str, fault: int, tmp_path: Path, to_change: ToChange

@@ -52,6 +52,7 @@ def test_export_of_controller_code_is_what_tune_leaves(command: Command, tuned: 
     assert set(results_in(tmp_path / "st")) == names
 
 
+@pytest.mark.requirement("CORR-06")
 def test_export_gives_the_correction_beside_unchanged_tables(command: Command, tuned: Path, tmp_path: Path) -> None:
     for form, options, new in (
         ("c", (), {"retarder_correction.c", "retarder_correction.h", "retarder_correction_self_test.c",

@@ -137,6 +137,7 @@ def test_keys_and_their_order_follow_from_the_declaration(sample: AnyTable) -> N
         assert validator.is_valid(document_of(sample)) == (kind == kind_of(type(sample)))
 
 
+@pytest.mark.requirement("FILE-03")
 def test_every_key_is_required_and_no_other_is_known(sample: AnyTable) -> None:
     document = document_of(sample)
     objects: list[JsonPath] = [(), *(path for path in places(document) if isinstance(value_at(document, path), dict))]
@@ -155,6 +156,7 @@ def test_every_key_is_required_and_no_other_is_known(sample: AnyTable) -> None:
             read_back(sealed(changed), sample)
 
 
+@pytest.mark.requirement("FILE-03")
 @pytest.mark.parametrize("wrong", every(2, WRONG), ids=repr)
 def test_no_value_of_another_type_gets_through(sample: AnyTable, wrong: object) -> None:
     document = document_of(sample)
@@ -191,6 +193,7 @@ def too_far(leaf: Leaf) -> list[object]:
     return []
 
 
+@pytest.mark.requirement("FILE-03")
 def test_each_declared_limit_is_kept_and_the_fault_is_named(sample: AnyTable) -> None:
     document, tried = document_of(sample), 0
     for path, leaf in leaves_of(type(sample)):
@@ -240,6 +243,7 @@ def test_what_the_schema_refuses_the_reader_refuses_too(sample: AnyTable, wrong:
     assert refused >= 20
 
 
+@pytest.mark.requirement("FILE-04")
 @pytest.mark.parametrize(
     ("change", "error", "words"),
     [

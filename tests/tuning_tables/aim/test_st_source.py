@@ -36,6 +36,7 @@ def loaded(program: Program, number: int) -> Frame:
     return table
 
 
+@pytest.mark.requirement("CODE-02")
 @pytest.mark.parametrize("compiler", ASKED_UNDER, ids=name_of)
 def test_hard_questions_are_answered_as_by_python_to_the_last_bit(compiler: Compiler) -> None:
     aims = sample_set()

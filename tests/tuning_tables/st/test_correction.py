@@ -45,6 +45,7 @@ def answers_of(program: Program, questions: npt.NDArray[np.void]) -> npt.NDArray
     return np.stack([np.broadcast_to(each, error.shape).astype(np.float32) for each in found], axis=1)
 
 
+@pytest.mark.requirement("CORR-06")
 @pytest.mark.parametrize("compiler", ASKED_UNDER, ids=name_of)
 def test_every_question_is_answered_as_by_python(compiler: Compiler) -> None:
     with np.errstate(invalid="ignore"):  # a signalling NaN is widened

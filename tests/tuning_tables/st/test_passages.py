@@ -93,6 +93,7 @@ def differences(found: Rows, answers: Rows) -> int:
     return int(np.count_nonzero(wrong | (found["tracker"] != answers["tracker"]).any(axis=1)))
 
 
+@pytest.mark.requirement("CODE-02")
 @pytest.mark.parametrize("book", [BOOK, every_axle_book()], ids=["first axle", "every axle"])
 @pytest.mark.parametrize("compiler", ASKED_UNDER, ids=name_of)
 def test_every_question_is_answered_as_by_python(compiler: Compiler, book: PassageBook) -> None:
