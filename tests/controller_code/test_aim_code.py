@@ -13,21 +13,18 @@ import numpy.typing as npt
 import pytest
 
 from scripts.studies.in_the_loop.builds import Build
-from scripts.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
+from scripts.studies.in_the_loop.controller_process import compile_with
 from tests.controller_code.conftest import ToChange, Tool
-from tests.controller_code.sample_book import sample_book
-from tests.controller_code.test_export import FLOAT_H, PEDANTIC
 from tests.controller_code.ways import WAYS
 from tests.effort import QUESTIONS
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
-from tests.tuning_tables.aim.made_tables import category_table, measured_table, random_table, reported_of
+from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
 from tuning_tables.aim import AimTables
 from tuning_tables.aim.c_source import aim_c_files
 from tuning_tables.aim.golden_aims import few_golden_aims, golden_aims
-from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.aim_code import aim_code
 from tuning_tables.controller_code.code import crc32_of, words_of
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
 SOURCES = ("aim_table.c", "aim_self_test.c")
@@ -133,43 +130,6 @@ def test_the_questions_reach_much(asked: npt.NDArray[np.void], right: npt.NDArra
     assert np.count_nonzero(asked["cars"] < 1) > 0.005 * QUESTIONS
 
 
-@pytest.mark.parametrize("compiler", ["gcc", "clang"])
-@pytest.mark.parametrize("measured", [True, False])
-def test_compilers_have_nothing_to_say(compiler: str, measured: bool, tmp_path: Path, tool: Tool) -> None:
-    written(aim_c_files(sample_set() if measured else AimTables((category_table(),))), tmp_path)
-    for name in SOURCES:
-        said = compile_with([tool(compiler), *PEDANTIC, str(tmp_path / name), "-o", str(tmp_path / "o")])
-        assert said == ""
-
-
-@pytest.mark.long
-def test_analysers_have_nothing_to_say(aims: AimTables, tmp_path: Path, tool: Tool) -> None:
-    written(aim_c_files(aims), tmp_path)
-    weak = ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage", "-Wno-unknown-warning-option",
-            "-Wno-declaration-after-statement")  # fmt: skip
-    for name in SOURCES:
-        for command in ([tool("gcc"), *PEDANTIC, "-fanalyzer"], [tool("clang"), *PEDANTIC, *weak]):
-            assert compile_with([*command, str(tmp_path / name), "-o", str(tmp_path / "o")]) == ""
-    files = [str(tmp_path / name) for name in (*SOURCES, "main.c")]
-    checks = ["--enable=all", "--inconclusive", "--std=c99", "--quiet", "--error-exitcode=3"]
-    assert compile_with([tool("cppcheck"), *checks, "--suppress=missingIncludeSystem", *FLOAT_H, *files]) == ""
-
-
-def test_nothing_but_itself_is_linked_and_nothing_is_variable(aims: AimTables, tmp_path: Path, tool: Tool) -> None:
-    written(aim_c_files(aims), tmp_path)
-    for name in SOURCES:
-        compile_with([tool("gcc"), *CONTRACT, "-Os", "-c", str(tmp_path / name), "-o", str(tmp_path / f"{name}.o")])
-    listed = compile_with(["nm", *(str(tmp_path / f"{name}.o") for name in SOURCES)])
-    kinds = {(line.split()[-2], line.split()[-1]) for line in listed.splitlines() if len(line.split()) >= 2}
-    defined = {name for kind, name in kinds if kind in "TRDBC"}
-    assert {name for kind, name in kinds if kind == "U"} - defined <= {"memcpy", "memset"}
-    assert not {kind for kind, _ in kinds} & set("dDbBC")
-    assert {name for kind, name in kinds if kind in "TR"} == {
-        "aim_table_count", "aim_tables", "aim_select", "aim_exit_speed", "aim_table_intact", "aim_crc32",
-        "aim_self_test",
-    }  # fmt: skip
-
-
 MUTANTS = (
     ("0x1.666666p+0f", "0x1.666668p+0f", 2),  # the last bit of a speed
     ("distance > table->distance_m[below]", "1", 4),
@@ -259,46 +219,6 @@ def test_a_damaged_table_is_found_and_leads_nowhere(tmp_path: Path, tool: Tool) 
     assert {line[0] for line in lines[1:]} == {"0"}
     assert {line[2] for line in lines[1:]} == {"0", "1"}  # never a speed out of the bounds
     assert set(lines[-11:]) == {"0 0"}
-
-
-def test_files_of_two_exports_are_not_compiled_together(tmp_path: Path, tool: Tool) -> None:
-    written(aim_c_files(AimTables((category_table(),))), tmp_path)
-    (tmp_path / "aim_table.h").write_bytes(aim_c_files(AimTables((category_table(0.7),)))["aim_table.h"])
-    for name in SOURCES:
-        with pytest.raises(BuildError, match=r"aim_table\.h is of another export"):
-            compile_with([tool("gcc"), *CONTRACT, "-c", str(tmp_path / name), "-o", str(tmp_path / "o")])
-
-
-def test_aim_tables_of_two_positions_and_controller_tables_fit_into_one_program(tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
-    files = {
-        **c_files(sample_book(), ExportPrefix("PARK")),
-        **aim_c_files(AimTables((category_table(),)), ExportPrefix("PARK")),
-    }
-    files |= aim_c_files(AimTables((random_table(3, True),)), ExportPrefix("Park_2"))
-    main = '#include "park_self_test.h"\n#include "park_aim_self_test.h"\n#include "park_2_aim_self_test.h"\n'
-    main += "int main(void) { return park_self_test(0) + park_aim_self_test(0) + park_2_aim_self_test(0)"
-    main += " + (PARK_AIM_CATEGORY_ST != PARK_CATEGORY_ST) + (park_2_aim_select(1, 0) >= 0); }\n"
-    written({**files, "all.c": main.encode()}, tmp_path)
-    sources = [name for name in files if name.endswith(".c")]
-    assert sorted(sources)[:2] == ["park_2_aim_self_test.c", "park_2_aim_table.c"]
-    compile_with(
-        ["gcc", *CONTRACT[:-1], *(str(tmp_path / name) for name in (*sources, "all.c")), "-o", str(tmp_path / "all")]
-    )
-    assert subprocess.run([tmp_path / "all"], check=False).returncode == 0
-
-
-@pytest.mark.parametrize("standard", ["c++98", "c++17"])
-def test_cxx_takes_the_headers_and_since_17_the_code(
-    standard: str, aims: AimTables, tmp_path: Path, tool: Tool
-) -> None:
-    written(aim_c_files(aims), tmp_path)
-    (tmp_path / "caller.cpp").write_text('#include "aim_self_test.h"\nint main() { return aim_self_test(0); }\n')
-    compiler = [tool("clang"), "-x", "c++", f"-std={standard}", "-pedantic-errors", "-c", "-o", str(tmp_path / "o")]
-    compile_with([*compiler, str(tmp_path / "caller.cpp")])
-    if standard == "c++17":
-        for name in SOURCES:
-            compile_with([*compiler, "-ffp-contract=off", str(tmp_path / name)])
 
 
 def test_equal_sets_give_equal_bytes_and_golden_aims_are_few(aims: AimTables) -> None:
