@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -13,7 +12,7 @@ import numpy.typing as npt
 import pytest
 
 from scripts.studies.in_the_loop.builds import Build
-from scripts.studies.in_the_loop.controller_process import compile_with
+from tests.controller_code.built_program import built, told
 from tests.controller_code.conftest import ToChange, Tool
 from tests.controller_code.ways import WAYS
 from tests.effort import QUESTIONS
@@ -27,7 +26,6 @@ from tuning_tables.controller_code.code import crc32_of, words_of
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
-SOURCES = ("aim_table.c", "aim_self_test.c")
 PROGRAM = r"""
 #include <stdio.h>
 #include <string.h>
@@ -80,28 +78,6 @@ def right(aims: AimTables, asked: npt.NDArray[np.void]) -> npt.NDArray[np.float3
     return answers(aims, asked)
 
 
-def written(files: Mapping[str, bytes], folder: Path) -> None:
-    for name, content in files.items():
-        (folder / name).write_bytes(content)
-    (folder / "main.c").write_text(PROGRAM)
-
-
-def built(files: Mapping[str, bytes], folder: Path, build: Build) -> list[str]:
-    """The command that runs a program with the exported files in it."""
-    written(files, folder)
-    objects = []
-    for name in SOURCES:
-        objects.append(str(folder / f"{name}.o"))
-        compile_with([build.compiler, *build.contract, *build.flags, "-c", str(folder / name), "-o", objects[-1]])
-    program = str(folder / "program")
-    compile_with([build.compiler, *build.flags, *build.link, str(folder / "main.c"), *objects, "-o", program])
-    return [*build.emulator, program]
-
-
-def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
-    return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
-
-
 @pytest.mark.parametrize("build", WAYS, ids=str)
 def test_c_answers_as_python_to_the_last_bit(
     build: Build,
@@ -113,7 +89,7 @@ def test_c_answers_as_python_to_the_last_bit(
 ) -> None:
     for name in build.missing():
         tool(name)
-    command = built(aim_c_files(aims), tmp_path, build)
+    command = built(aim_c_files(aims), PROGRAM, tmp_path, build)
     found = np.frombuffer(
         told(command, given=asked.astype(asked.dtype.newbyteorder(build.order)).tobytes()), f"{build.order}f4"
     )
@@ -188,7 +164,7 @@ def to_mutate(self_test: SelfTestSize) -> Mapping[str, bytes]:
 def test_the_self_test_finds_a_wrong_controller(
     before: str, after: str, fault: int | None, tmp_path: Path, to_change: ToChange
 ) -> None:
-    export = to_change([to_mutate(size) for size in (FULL, SMALL)], SOURCES[0])
+    export = to_change([to_mutate(size) for size in (FULL, SMALL)], "aim_table.c")
     for said in export.self_tests(before, after, tmp_path):
         assert said.returncode == 0
         assert said.stdout.startswith(f"fault {fault} at") if fault else said.stdout == "fault 0 at 0\n"
@@ -198,7 +174,7 @@ def test_a_damaged_table_is_found_and_leads_nowhere(tmp_path: Path, tool: Tool) 
     """Every changed byte of a block; sizes that would lead out of the table; speeds that are none."""
     tool("gcc")
     aims = AimTables((category_table(), measured_table()))
-    command = built(aim_c_files(aims), tmp_path, Build("gcc", ("-O1", "-g", "-fsanitize=address,undefined")))
+    command = built(aim_c_files(aims), PROGRAM, tmp_path, Build("gcc", ("-O1", "-g", "-fsanitize=address,undefined")))
     code = aim_code(aims, FULL)
     words = words_of(code.table, code.tables[1].values)
     sound = np.append(words, np.uint32(crc32_of(words)))

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -13,8 +12,8 @@ import pytest
 from numba import njit
 
 from scripts.studies.in_the_loop.builds import Build
-from scripts.studies.in_the_loop.controller_process import compile_with
 from synth.kernels.compiled_rules import compiled_rule
+from tests.controller_code.built_program import built, told
 from tests.controller_code.conftest import ToChange, Tool
 from tests.controller_code.ways import WAYS
 from tests.effort import QUESTIONS
@@ -22,7 +21,6 @@ from tuning_tables.c_correction import correction_c_files
 from tuning_tables.correction import Correction
 from tuning_tables.programs.correct import corrected_speed, learn_exit, usable_exit
 
-SOURCES = ("retarder_correction.c", "retarder_correction_self_test.c")
 CORRECTION = Correction(0.15, 0.06)
 QUESTION = np.dtype([("state", "u4", 3), ("error", "u4"), ("speed", "u4"), ("credible", "i4"), ("pass", "i4", 6)])
 PROGRAM = r"""
@@ -109,29 +107,6 @@ def right() -> npt.NDArray[np.float32]:
     return answers
 
 
-@cache
-def exported() -> Mapping[str, bytes]:
-    """The exported files and the program around them."""
-    return {**correction_c_files(CORRECTION), "main.c": PROGRAM.encode("ascii")}
-
-
-def built(folder: Path, build: Build) -> list[str]:
-    """The command that runs a program with the exported files in it."""
-    for name, content in exported().items():
-        (folder / name).write_bytes(content)
-    objects = []
-    for name in SOURCES:
-        objects.append(str(folder / f"{name}.o"))
-        compile_with([build.compiler, *build.contract, *build.flags, "-c", str(folder / name), "-o", objects[-1]])
-    program = str(folder / "program")
-    compile_with([build.compiler, *build.flags, *build.link, str(folder / "main.c"), *objects, "-o", program])
-    return [*build.emulator, program]
-
-
-def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
-    return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
-
-
 def test_python_and_its_compiled_text_agree() -> None:
     found, answers = asked(), right()
     for i in range(2000):
@@ -149,7 +124,7 @@ def test_python_and_its_compiled_text_agree() -> None:
 def test_c_learns_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
     for name in build.missing():
         tool(name)
-    command = built(tmp_path, build)
+    command = built(correction_c_files(CORRECTION), PROGRAM, tmp_path, build)
     given = asked().view("i4").astype(f"{build.order}i4").tobytes()
     found = np.frombuffer(told(command, given=given), f"{build.order}f4").astype(np.float32).reshape(-1, 5)
     # Which of its many bit patterns a NaN that is handed on has is the processor's business.
@@ -208,6 +183,7 @@ MUTANTS = (
 def test_the_self_test_finds_a_wrong_controller(
     before: str, after: str, fault: int | None, tmp_path: Path, to_change: ToChange
 ) -> None:
-    (said,) = to_change([exported()], SOURCES[0]).self_tests(before, after, tmp_path)
+    export = {**correction_c_files(CORRECTION), "main.c": PROGRAM.encode("ascii")}
+    (said,) = to_change([export], "retarder_correction.c").self_tests(before, after, tmp_path)
     assert said.returncode == 0 if fault else said.returncode != 0  # without a record it must not fall
     assert said.stdout.startswith(f"fault {fault} at" if fault else "")

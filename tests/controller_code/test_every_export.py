@@ -13,6 +13,7 @@ from typing import Final
 import pytest
 
 from scripts.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
+from tests.controller_code.built_program import written
 from tests.controller_code.conftest import Tool
 from tests.controller_code.passage_tables import odd_table, passage_table
 from tests.controller_code.sample_book import sample_book, surface_book
@@ -96,13 +97,6 @@ EACH = pytest.mark.parametrize("name", EXPORTS)
 @cache
 def files_of(name: str, prefix: ExportPrefix = PARK) -> Files:
     return EXPORTS[name].made(prefix)
-
-
-def written(files: Files, folder: Path) -> list[str]:
-    """The sources among the files, which are in `folder` then."""
-    for name, content in files.items():
-        (folder / name).write_bytes(content)
-    return [str(folder / name) for name in files if name.endswith(".c")]
 
 
 def header_of(name: str) -> str:

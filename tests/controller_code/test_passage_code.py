@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import subprocess
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -15,6 +14,7 @@ import pytest
 
 from scripts.studies.in_the_loop.builds import Build
 from scripts.studies.in_the_loop.controller_process import compile_with
+from tests.controller_code.built_program import built, told, written
 from tests.controller_code.conftest import Tool
 from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, right
@@ -29,7 +29,6 @@ from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.programs.at_pulse import wanted_stage
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
-SOURCES = ("retarder_passages.c", "retarder_passages_self_test.c")
 BOOK = passage_book()
 TABLES = BOOK.tables
 
@@ -95,30 +94,8 @@ def questions(book: PassageBook = BOOK) -> tuple[Rows, Rows]:
 
 @cache
 def exported(book: PassageBook, self_test: SelfTestSize) -> Mapping[str, bytes]:
-    """The exported files and the program around them."""
-    return {**passage_c_files(book, RETARDER, self_test), "main.c": PROGRAM.encode("ascii")}
-
-
-def write(folder: Path, book: PassageBook = BOOK, self_test: SelfTestSize = FULL) -> None:
-    """Write `exported` into the folder."""
-    for name, content in exported(book, self_test).items():
-        (folder / name).write_bytes(content)
-
-
-def built(folder: Path, build: Build, book: PassageBook = BOOK) -> list[str]:
-    """The command that runs a program with the exported files in it."""
-    write(folder, book)
-    objects = []
-    for name in SOURCES:
-        objects.append(str(folder / f"{name}.o"))
-        compile_with([build.compiler, *build.contract, *build.flags, "-c", str(folder / name), "-o", objects[-1]])
-    program = str(folder / "program")
-    compile_with([build.compiler, *build.flags, *build.link, str(folder / "main.c"), *objects, "-o", program])
-    return [*build.emulator, program]
-
-
-def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
-    return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
+    """The exported files."""
+    return passage_c_files(book, RETARDER, self_test)
 
 
 def differences(command: Sequence[str], build: Build, found: Rows, answers: Rows) -> int:
@@ -139,7 +116,7 @@ def blocks(book: PassageBook) -> list[npt.NDArray[np.uint32]]:
 def test_c_does_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
     for name in build.missing():
         tool(name)
-    command = built(tmp_path, build)
+    command = built(exported(BOOK, FULL), PROGRAM, tmp_path, build)
     assert differences(command, build, *questions()) == 0
     assert told(command, "self-test") == b"fault 0 at 0\n"
     words = np.frombuffer(told(command, "dump"), f"{build.order}u4")
@@ -148,7 +125,7 @@ def test_c_does_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: To
 
 def test_c_does_as_python_on_every_axle(tmp_path: Path, tool: Tool) -> None:
     build, book = Build(tool("gcc"), ("-O2",)), every_axle_book()
-    command = built(tmp_path, build, book=book)
+    command = built(exported(book, FULL), PROGRAM, tmp_path, build)
     assert differences(command, build, *questions(book)) == 0
     assert told(command, "self-test") == b"fault 0 at 0\n"
 
@@ -168,7 +145,7 @@ def test_the_questions_reach_much() -> None:
 
 def test_every_changed_byte_of_a_table_is_found(tmp_path: Path, tool: Tool) -> None:
     tables = (passage_table(stages=3, places_m=(-4.0, 2.0, 9.0)),)
-    command = built(tmp_path, Build(tool("gcc"), ("-O1",)), book=PassageBook(tables))
+    command = built(exported(PassageBook(tables), FULL), PROGRAM, tmp_path, Build(tool("gcc"), ("-O1",)))
     block = blocks(PassageBook(tables))[0].view(np.uint8)
     assert told(command, "intact", given=block.tobytes()) in (b"10", b"11", b"12")
     damaged = np.repeat(block[None, :], 255 * len(block), axis=0)
@@ -192,7 +169,7 @@ def test_golden_stages_as_csv_are_answered_as_they_say() -> None:
 
 
 def test_a_table_and_a_tracker_take_what_the_page_says(tmp_path: Path, tool: Tool) -> None:
-    write(tmp_path)
+    written(exported(BOOK, FULL), tmp_path)
     heard, passages, stages = 7 * 6, 6, 8
     (tmp_path / "size.c").write_text(
         '#include "retarder_passages.h"\n'
