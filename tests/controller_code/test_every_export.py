@@ -105,6 +105,7 @@ def header_of(name: str) -> str:
 
 
 @EACH
+@pytest.mark.requirement("CODE-05")
 @pytest.mark.parametrize(("compiler", "switches"), STRICT, ids=[compiler for compiler, _ in STRICT])
 def test_compilers_have_nothing_to_say(
     name: str, compiler: str, switches: tuple[str, ...], tmp_path: Path, tool: Tool
@@ -128,6 +129,7 @@ def test_analysers_have_nothing_to_say(name: str, tmp_path: Path, tool: Tool) ->
 
 
 @EACH
+@pytest.mark.requirement("CODE-05")
 def test_nothing_but_itself_is_linked_nothing_is_variable_and_all_names_have_the_prefix(
     name: str, tmp_path: Path, tool: Tool
 ) -> None:
@@ -145,6 +147,7 @@ def test_nothing_but_itself_is_linked_nothing_is_variable_and_all_names_have_the
 
 
 @EACH
+@pytest.mark.requirement("CODE-08")
 def test_files_of_two_exports_are_not_compiled_together(name: str, tmp_path: Path, tool: Tool) -> None:
     sources = written(files_of(name), tmp_path)
     other = EXPORTS[name].other(PARK)
