@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from scripts.studies.in_the_loop.held_words import held_record, held_words, places
 from tests.controller_code.conftest import Built
