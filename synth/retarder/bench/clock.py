@@ -1,0 +1,66 @@
+"""When the next sample comes: by the clock, or as soon as the controller has answered."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import Final, Protocol
+
+from synth.retarder.bench.exchange import Answer, Exchange
+
+TOLERANCE: Final = 0.1
+"""Of a period: a sample that comes by more too early or too late is counted."""
+
+
+class Clock(Protocol):
+    """What the position is played by."""
+
+    def next_sample(self, exchange: Exchange) -> Answer:
+        """Wait until the sample is over; what stands then."""
+        ...
+
+
+@dataclass
+class RealTime:
+    """A sample every `period_s` seconds; `cycles_s` are the times that they took.
+
+    After a stop of the machine the clock goes on from there: no samples are made up for.
+    """
+
+    period_s: float
+    cycles_s: list[float] = field(default_factory=list)
+    _due_s: float = 0.0
+    _last_s: float = 0.0
+
+    def next_sample(self, exchange: Exchange) -> Answer:
+        """See `Clock`."""
+        now = time.monotonic()
+        if now - self._due_s > self.period_s:
+            self._due_s = self._last_s = now
+        self._due_s += self.period_s
+        time.sleep(max(0.0, self._due_s - now))
+        over_s = time.monotonic()
+        self.cycles_s.append(over_s - self._last_s)
+        self._last_s = over_s
+        return exchange.answer()
+
+    @property
+    def late(self) -> int:
+        """Cycles that differ from the period by more than `TOLERANCE`."""
+        return sum(abs(each - self.period_s) > TOLERANCE * self.period_s for each in self.cycles_s)
+
+    @property
+    def worst_s(self) -> float:
+        """The cycle that differs most; NaN before the first."""
+        return max(self.cycles_s, key=lambda each: abs(each - self.period_s), default=float("nan"))
+
+
+@dataclass(frozen=True)
+class InStep:
+    """The next sample comes with the answer; without one after `patience_s`."""
+
+    patience_s: float
+
+    def next_sample(self, exchange: Exchange) -> Answer:
+        """See `Clock`."""
+        return exchange.answer(self.patience_s)

@@ -1,0 +1,188 @@
+"""The command `bench`: the simulated position in real time, and the score of the controller that commands it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from synth.frame.command import Asked, Command, Head, Limit, Steps, Unfinished, Work
+from synth.frame.exhibits import Chapter
+from synth.retarder.bench.options import Address, BenchOptions
+from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configured import head_of
+from synth.retarder.exit_figures import MODEL_ONLY
+from synth.retarder.tables_configuration import configuration_for, given_config
+
+if TYPE_CHECKING:
+    from synth.retarder.bench.cases import BenchCase
+    from synth.retarder.bench.clock import Clock
+    from synth.retarder.bench.exchange import Traffic
+    from synth.retarder.bench.run import BenchPass, Patience
+    from synth.retarder.bench.score import Errors
+    from synth.retarder.served_class import ServedClass
+    from tuning_tables import ControllerTable
+
+LIMITS_OF_USE = (
+    MODEL_ONLY,
+    "Intervals (95 %) cover the chance of these cuts only. A cut that no brake could hold comes once in thousands: "
+    "'retarder-synth validate' tells of such cuts.",
+    "The bench is a model at the end of a cable. It is no test of safety.",
+)
+
+
+@dataclass(frozen=True)
+class AskedBench:
+    """The tables with the classes that they are for, and what was typed."""
+
+    config: ResolvedConfig
+    tables: tuple[tuple[ControllerTable, ServedClass], ...]
+    passes: int
+    seed: int
+    in_step: bool
+    addresses: Mapping[str, Address]
+
+
+@dataclass(frozen=True)
+class FoundBench:
+    """What became of the cuts that came, out of `asked`; `cycles` None where there was no clock."""
+
+    title: str
+    period_s: float
+    computing_delay_s: float
+    seed: int
+    asked: int
+    passes: tuple[BenchPass, ...]
+    errors: tuple[Errors, ...]
+    traffic: Traffic
+    cycles: tuple[float, ...] | None
+    prediction_ratio_low: float
+
+
+def resolve(asked: Asked[ResolvedConfig | None, BenchOptions]) -> AskedBench:
+    """The tables; refused where one has no class, a drive takes no command at any moment, or nothing can listen."""
+    from synth.retarder.bench.servers import require_possible
+    from synth.retarder.forms.tables_at import tables_at
+    from synth.retarder.served_class import served_class
+
+    options = asked.options
+    tables = tables_at(options.source).only_lines("bench")
+    config, source = (
+        (asked.settings, asked.place) if asked.settings else configuration_for(None, options.source, tables)
+    )
+    served = tuple((table, served_class(table, config, source)) for table in tables)
+    for _, each in served:
+        each.plant.drive_at_any_time()
+    require_possible(options.addresses)
+    seed = config.validation.seed if options.seed is None else options.seed
+    return AskedBench(config, served, options.passes, seed, options.in_step, options.addresses)
+
+
+def head(asked: AskedBench) -> Head:
+    """What is said of the configuration."""
+    return head_of(asked.config)
+
+
+def steps(asked: AskedBench) -> Steps:
+    """A step for each cut."""
+    return Steps(asked.passes, "braking", "cuts")
+
+
+def compute(asked: AskedBench, work: Work) -> FoundBench:
+    """The run; `Unfinished` where too few cuts came to tell anything of them."""
+    from synth.kernels.cache import guarded
+
+    return guarded(benched, asked, work)
+
+
+def benched(asked: AskedBench, work: Work, patience: Patience | None = None) -> FoundBench:
+    """The same, where kernels are loaded."""
+    from synth.retarder.bench.cases import class_seeds, coming_cuts
+    from synth.retarder.bench.clock import InStep, RealTime
+    from synth.retarder.bench.exchange import Exchange
+    from synth.retarder.bench.live_page import PAGE, live_page
+    from synth.retarder.bench.live_run import LiveRun
+    from synth.retarder.bench.run import Bench, Patience
+    from synth.retarder.bench.servers import listening
+
+    cuts = coming_cuts(asked.seed, len(asked.tables), asked.passes)
+    cases = cases_of(asked, class_seeds(asked.seed, len(asked.tables)))
+    sensor = asked.tables[0][1].plant.sensor
+    exchange = Exchange(max(case.loop.stages for case in cases))
+    live = LiveRun(asked.config.title, len(cuts), exchange)
+    patient = patience or Patience()
+    clock: Clock = InStep(patient.silent_s) if asked.in_step else RealTime(sensor.sample_period_s)
+    pages: Mapping[str, Callable[[], bytes]] = {"/": lambda: live_page(asked.config.title), PAGE: live.document}
+    bench = Bench(exchange, clock, sensor.sample_period_s, patient, work.progress.done)
+    with listening(exchange, asked.addresses, pages):
+        for flag, (host, port) in asked.addresses.items():
+            work.progress.note(f"{flag.removeprefix('--')} at {host}:{port}")
+        work.progress.note("waiting for a controller")
+        passes = bench.run(cases, cuts, live)
+        traffic = exchange.traffic
+    errors = tuple(errors_by_case(cases, passes, asked.seed))
+    if len(passes) < 2:
+        raise Unfinished(f"{len(passes)} of {asked.passes} cuts came, then no controller answered")
+    return FoundBench(
+        asked.config.title,
+        sensor.sample_period_s,
+        sensor.computing_delay_s,
+        asked.seed,
+        asked.passes,
+        passes,
+        errors,
+        traffic,
+        tuple(clock.cycles_s) if isinstance(clock, RealTime) else None,
+        asked.config.acceptance.prediction_ratio_low,
+    )
+
+
+def cases_of(asked: AskedBench, seeds: Sequence[int]) -> list[BenchCase]:
+    """The cuts of each table, as many as can come."""
+    from synth.retarder.bench.cases import bench_case
+    from tuning_tables.table_book import TableBook
+
+    book = TableBook(tuple(table for table, _ in asked.tables))
+    rounds = -(-asked.passes // len(asked.tables))
+    return [
+        bench_case(table, book.number_of(table.cut.category), served, seed, rounds)
+        for (table, served), seed in zip(asked.tables, seeds, strict=True)
+    ]
+
+
+def errors_by_case(cases: Sequence[BenchCase], passes: Sequence[BenchPass], seed: int) -> Iterator[Errors]:
+    """Those of each case that came."""
+    from synth.retarder.bench.score import errors_of
+
+    for at, case in enumerate(cases):
+        own = [each for each in passes if each.case == at]
+        if own:
+            yield errors_of(case, own, seed + 1)
+
+
+def limits(found: FoundBench) -> Iterator[Limit]:
+    """Whether the promise is kept, the controller is as good as its table, and the clock was."""
+    from synth.retarder.bench.shown import limits_of
+
+    return limits_of(found)
+
+
+def show(found: FoundBench) -> Iterator[Chapter]:
+    """What is shown of it."""
+    from synth.retarder.bench.shown import chapters
+
+    return chapters(found)
+
+
+COMMAND = Command(
+    name="bench",
+    read=given_config,
+    options=BenchOptions,
+    resolve=resolve,
+    head=head,
+    steps=steps,
+    compute=compute,
+    show=show,
+    limits=limits,
+    limits_of_use=LIMITS_OF_USE,
+)

@@ -1,0 +1,222 @@
+"""What is shown of a run on the bench: the score, how the controller answered, what was refused, every cut."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+from synth.frame.command import Limit
+from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
+from synth.frame.printed_numbers import counted, decimals
+from synth.retarder.bench.clock import TOLERANCE
+from synth.retarder.bench.command import FoundBench
+from synth.retarder.bench.score import LEAST_PASSES, Score, score_of
+from synth.retarder.bench.wires import c_header
+from synth.retarder.exit_figures import CASE, PREDICTED, RMS, SWITCHINGS, told
+from synth.retarder.judgement import interval_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+HEADER: Final = "bench_wires.h"
+MOST_OFF: Final = 0.01
+"""Share of the cycles that may be too long or too short; with more the score may be the clock's."""
+
+SCORES: Final = (
+    *CASE,
+    Column("cuts", "cuts"),
+    RMS,
+    PREDICTED,
+    Column("by_table_m_s", "the table, these cuts", "m/s", decimals(4)),
+    Column("ratio", "controller / table", form=decimals(3)),
+    Column("relay_m_s", "relay, these cuts", "m/s", decimals(4), spare=2),
+    Column("energy_rule_m_s", "energy rule, these cuts", "m/s", decimals(4), spare=3),
+    SWITCHINGS,
+    Column("switchings_by_table", "the table's", form=decimals(1), spare=9),
+)
+CUTS: Final = (
+    Column("count", "cut"),
+    *(Column(each.key, each.heading, each.unit, words=each.words) for each in CASE),
+    Column("number", "of the row of its table"),
+    Column("exit_speed_m_s", "exit speed", "m/s", decimals(4)),
+    Column("by_table_m_s", "by the table", "m/s", decimals(4)),
+    Column("time_s", "time", "s", decimals(2)),
+    Column("stalled", "stands"),
+    Column("switchings", "commands"),
+    Column("samples", "samples"),
+    Column("unanswered", "unanswered"),
+    Column("moved_alone", "changed, the table would not"),
+    Column("held_alone", "held, the table would not"),
+    Column("response_s", "longest response", "s", decimals(4)),
+    Column("silent_s", "longest silence", "s", decimals(1)),
+)
+
+
+def scores_of(found: FoundBench) -> list[Score]:
+    """That of all cuts first, then, where there are several tables, of each with two cuts or more."""
+    whole = score_of("all cuts", None, found.errors)
+    if len(found.errors) == 1:
+        [only] = found.errors
+        return [score_of(only.case.label, only.case.table.target_speed_m_s, found.errors)]
+    each = (
+        score_of(one.case.label, one.case.table.target_speed_m_s, [one]) for one in found.errors if len(one.passes) > 1
+    )
+    return [whole, *each]
+
+
+def limits_of(found: FoundBench) -> Iterator[Limit]:
+    """See `command.limits`."""
+    score = scores_of(found)[0]
+    n, (rms, ends) = len(found.passes), score.rms_m_s
+    enough = n >= LEAST_PASSES
+    said = f"rms {rms:.4f} {interval_text(ends)} m/s in {counted(n, 'cut')}"
+    yield Limit(f"{said}, promised {score.promised_m_s:.4f}", (ends[0] <= score.promised_m_s) if enough else None)
+    allowed, (low, high) = 1.0 / found.prediction_ratio_low, score.ratio[1]
+    kept = None if not enough else True if high <= allowed else False if low > allowed else None
+    yield Limit(
+        f"on the same cuts {score.ratio[0]:.3f} {interval_text(score.ratio[1], 3)} times the rms of the table, allowed "
+        f"{allowed:.3g}",
+        kept,
+    )
+    if n < found.asked:
+        yield Limit(f"{n} of {found.asked} cuts came, then the controller was silent for good", None)
+    if found.cycles:
+        off, count = off_of(found), len(found.cycles)
+        yield Limit(f"the cycle of the bench was kept within {TOLERANCE:.0%} in {count - off} of {count} samples",
+                    True if off <= MOST_OFF * count else None)  # fmt: skip
+
+
+def off_of(found: FoundBench) -> int:
+    """Cycles that were too long or too short."""
+    return sum(abs(each - found.period_s) > TOLERANCE * found.period_s for each in found.cycles or ())
+
+
+def chapters(found: FoundBench) -> Iterator[Chapter]:
+    """The score, then the controller, then the cuts."""
+    scores = scores_of(found)
+    yield Chapter("Score", tuple(score_exhibits(found, scores)))
+    yield Chapter("Controller", tuple(controller(found)))
+    chart = Chart("cuts", "Exit errors, cut by cut", "Of the controller, and of the table on the same cut.",
+                  partial(drawn, found))  # fmt: skip
+    rows = [row_of(found, count) for count in range(len(found.passes))]
+    header = File(HEADER, c_header().encode("ascii"), "Registers for a client in C")
+    yield Chapter("Cuts", (chart, Table("cuts", "Every cut", CUTS, rows, long=True), header))
+
+
+def score_exhibits(found: FoundBench, scores: Sequence[Score]) -> Iterator[Exhibit]:
+    """A row for each table, and what the columns mean."""
+    whole, unanswered = scores[0], sum(each.unanswered for each in found.passes)
+    samples = sum(each.samples for each in found.passes)
+    yield Tiles(
+        (
+            Tile(f"{whole.rms_m_s[0]:.3f} m/s", f"rms of the exit error; promised {whole.promised_m_s:.3f} m/s"),
+            Tile(f"{whole.ratio[0]:.2f}", "times the rms of the table on the same cuts"),
+            Tile(f"{unanswered} of {samples}", "samples were not answered in time", unanswered == 0 or None),
+        )
+    )
+    yield from (Sentence(each, to_do=True) for each in to_do(found, unanswered))
+    yield Table("scores", found.title, SCORES, [score_row(each) for each in scores], True)
+    yield Sentence(
+        f"Cuts as they come, seed {found.seed}. Promised: the rms that the tables predict. These cuts: the table, and "
+        "rules tuned on other cuts, in the simulator. Brackets: 95 % intervals, each cut on its own.",
+        {"seed": found.seed},
+        brief=True,
+    )
+
+
+def to_do(found: FoundBench, unanswered: int) -> Iterator[str]:
+    """What the run calls for."""
+    if unanswered:
+        yield "Find out why samples stayed without an answer: the stage before stood, and the score has it in it."
+    if found.traffic.impossible:
+        yield "Mend the controller: it commanded a stage that the position does not have."
+    if found.cycles and off_of(found) > MOST_OFF * len(found.cycles):
+        yield "Run the bench on a machine with less to do: its own cycle was not kept."
+
+
+def score_row(score: Score) -> Row:
+    """One table, or all."""
+    n = len(score.passes)
+    rules = {f"{name.replace(' ', '_')}_m_s": told(*figure, n) for name, figure in score.by_rules_m_s.items()}
+    return {
+        "label": score.label,
+        "target_speed_m_s": score.target_m_s,
+        "cuts": n,
+        "rms_m_s": told(*score.rms_m_s, n),
+        "predicted_rms_m_s": score.promised_m_s,
+        "by_table_m_s": told(*score.by_table_m_s, n),
+        "ratio": told(*score.ratio, n),
+        "switchings": told(score.switchings.value, score.switchings.ci95, n),
+        "switchings_by_table": score.switchings_by_table,
+        **rules,
+    }
+
+
+def controller(found: FoundBench) -> Iterator[Sentence]:
+    """How it answered, whether it did as its table, what was refused; and the bench's own clock."""
+
+    def total(figure: Callable[..., int]) -> int:
+        return sum(map(figure, found.passes))
+
+    samples, traffic = total(lambda each: each.samples), found.traffic
+    unanswered, response_s = total(lambda each: each.unanswered), max(each.response_s for each in found.passes)
+    silent_s = max(each.silent_s for each in found.passes)
+    yield Sentence(
+        f"{unanswered} of {samples} samples with a cut were not answered before the next one; the stage before stood. "
+        f"Longest response {1e3 * response_s:.1f} ms, longest silence {silent_s:.1f} s. A command counts from "
+        f"{1e3 * found.computing_delay_s:g} ms after its sample, as in the simulator, if it came before the next one.",
+        {"samples": samples, "unanswered": unanswered, "response_s": response_s, "silent_s": silent_s},
+        brief=True,
+    )
+    moved, held = total(lambda each: each.moved_alone), total(lambda each: each.held_alone)
+    yield Sentence(
+        f"In {moved} samples the stage was changed where the table would have held it, in {held} it was held where the "
+        "table would have changed it.",
+        {"moved_alone": moved, "held_alone": held},
+        brief=True,
+    )
+    last = f" The last refusal: {traffic.last_refusal}." if traffic.refused else ""
+    yield Sentence(
+        f"{counted(traffic.requests, 'request')} in {counted(traffic.connections, 'connection')}; {traffic.refused} "
+        f"refused, of these {traffic.impossible} of a stage that the position does not have.{last}",
+        vars(traffic),
+        brief=True,
+    )
+    if found.cycles:
+        off = off_of(found)
+        worst_s = max(found.cycles, key=lambda each: abs(each - found.period_s))
+        yield Sentence(
+            f"{len(found.cycles)} cycles of {1e3 * found.period_s:g} ms; {off} differed by more than {TOLERANCE:.0%}, "
+            f"the worst took {1e3 * worst_s:.1f} ms.",
+            {"cycles": len(found.cycles), "cycles_off": off, "worst_cycle_s": worst_s},
+            brief=True,
+        )
+
+
+def row_of(found: FoundBench, count: int) -> Row:
+    """One cut."""
+    one = found.passes[count]
+    case = next(each.case for each in found.errors if one in each.passes)
+    counts = {key: value for key, value in vars(one).items() if key not in ("case", "end")}
+    return {
+        "count": count + 1,
+        "label": case.label,
+        "target_speed_m_s": case.table.target_speed_m_s,
+        "exit_speed_m_s": one.end.exit_speed_m_s,
+        "by_table_m_s": float(case.by_table.exit_speed_m_s[one.number]),
+        "time_s": one.end.time_s,
+        "stalled": one.end.stalled,
+        **counts,
+    }
+
+
+def drawn(found: FoundBench) -> Figure:
+    """Drawn by a module that needs matplotlib."""
+    from synth.retarder.pictures.bench_cuts import bench_cuts
+
+    rows = [row_of(found, count) for count in range(len(found.passes))]
+    errors, by_table = (
+        [row[key] - row["target_speed_m_s"] for row in rows] for key in ("exit_speed_m_s", "by_table_m_s")
+    )
+    return bench_cuts(errors, by_table)
