@@ -134,7 +134,7 @@ int main(int count, char **words)
         stop("give HOST PORT [OFFSET_M_S]");
     }
     offset_m_s = count > 3 ? strtof(words[3], NULL) : 0.0f;
-    const struct timespec nap = {0, 1000000};
+    const struct timespec nap = {0, 2000000};
     int sample = -1, pass = -1;
     connect_to(words[1], words[2]);
     for (;;) {

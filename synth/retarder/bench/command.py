@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,10 +16,10 @@ from synth.retarder.exit_figures import MODEL_ONLY
 from synth.retarder.tables_configuration import configuration_for, given_config
 
 if TYPE_CHECKING:
+    from synth.retarder.bench.bench_pass import BenchPass
     from synth.retarder.bench.cases import BenchCase
     from synth.retarder.bench.clock import Clock
-    from synth.retarder.bench.exchange import Traffic
-    from synth.retarder.bench.run import BenchPass, Patience
+    from synth.retarder.bench.found_bench import FoundBench
     from synth.retarder.bench.score import Errors
     from synth.retarder.served_class import ServedClass
     from tuning_tables import ControllerTable
@@ -41,22 +42,6 @@ class AskedBench:
     seed: int
     in_step: bool
     addresses: Mapping[str, Address]
-
-
-@dataclass(frozen=True)
-class FoundBench:
-    """What became of the cuts that came, out of `asked`; `cycles` None where there was no clock."""
-
-    title: str
-    period_s: float
-    computing_delay_s: float
-    seed: int
-    asked: int
-    passes: tuple[BenchPass, ...]
-    errors: tuple[Errors, ...]
-    traffic: Traffic
-    cycles: tuple[float, ...] | None
-    prediction_ratio_low: float
 
 
 def resolve(asked: Asked[ResolvedConfig | None, BenchOptions]) -> AskedBench:
@@ -95,11 +80,12 @@ def compute(asked: AskedBench, work: Work) -> FoundBench:
     return guarded(benched, asked, work)
 
 
-def benched(asked: AskedBench, work: Work, patience: Patience | None = None) -> FoundBench:
+def benched(asked: AskedBench, work: Work) -> FoundBench:
     """The same, where kernels are loaded."""
     from synth.retarder.bench.cases import class_seeds, coming_cuts
-    from synth.retarder.bench.clock import InStep, RealTime
+    from synth.retarder.bench.clock import InStep, RealTime, before_all_others
     from synth.retarder.bench.exchange import Exchange
+    from synth.retarder.bench.found_bench import FoundBench
     from synth.retarder.bench.live_page import PAGE, live_page
     from synth.retarder.bench.live_run import LiveRun
     from synth.retarder.bench.run import Bench, Patience
@@ -108,19 +94,18 @@ def benched(asked: AskedBench, work: Work, patience: Patience | None = None) -> 
     cuts = coming_cuts(asked.seed, len(asked.tables), asked.passes)
     cases = cases_of(asked, class_seeds(asked.seed, len(asked.tables)))
     sensor = asked.tables[0][1].plant.sensor
-    exchange = Exchange(max(case.loop.stages for case in cases))
+    patience, exchange = Patience(), Exchange(max(case.loop.stages for case in cases))
     live = LiveRun(asked.config.title, len(cuts), exchange)
-    patient = patience or Patience()
-    clock: Clock = InStep(patient.silent_s) if asked.in_step else RealTime(sensor.sample_period_s)
+    clock: Clock = InStep(patience.silent_s) if asked.in_step else RealTime(sensor.sample_period_s)
     pages: Mapping[str, Callable[[], bytes]] = {"/": lambda: live_page(asked.config.title), PAGE: live.document}
-    bench = Bench(exchange, clock, sensor.sample_period_s, patient, work.progress.done)
-    with listening(exchange, asked.addresses, pages):
+    bench = Bench(exchange, clock, sensor.sample_period_s, patience, work.progress.done)
+    first = nullcontext(False) if asked.in_step else before_all_others()
+    with first as is_first, listening(exchange, asked.addresses, pages):
         for flag, (host, port) in asked.addresses.items():
             work.progress.note(f"{flag.removeprefix('--')} at {host}:{port}")
         work.progress.note("waiting for a controller")
         passes = bench.run(cases, cuts, live)
         traffic = exchange.traffic
-    errors = tuple(errors_by_case(cases, passes, asked.seed))
     if len(passes) < 2:
         raise Unfinished(f"{len(passes)} of {asked.passes} cuts came, then no controller answered")
     return FoundBench(
@@ -130,9 +115,10 @@ def benched(asked: AskedBench, work: Work, patience: Patience | None = None) -> 
         asked.seed,
         asked.passes,
         passes,
-        errors,
+        tuple(errors_by_case(cases, passes, asked.seed)),
         traffic,
         tuple(clock.cycles_s) if isinstance(clock, RealTime) else None,
+        is_first,
         asked.config.acceptance.prediction_ratio_low,
     )
 

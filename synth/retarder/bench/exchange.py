@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from synth.retarder.bench.wires import COUNTS
+from synth.retarder.bench.wires import COUNTS, TOLD
 
 Values = Mapping[str, float]
 
@@ -42,7 +42,7 @@ class Exchange:
     def __init__(self, stages: int) -> None:
         self._stages = stages
         self._changed = threading.Condition()
-        self._values: Values = {}
+        self._values: Values = dict.fromkeys((each.name for each in TOLD), 0.0)
         self._told_s = 0.0
         self._stage = 0
         self._response_s: float | None = None

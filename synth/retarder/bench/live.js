@@ -1,7 +1,7 @@
 "use strict";
 const SVG = "http://www.w3.org/2000/svg";
 const ASK_EVERY_MS = 250;
-const LEFT = 60, RIGHT = 880;
+const LEFT = 90, RIGHT = 880;
 const where = JSON.parse(document.getElementById("data").textContent);
 const byId = id => document.getElementById(id);
 

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from synth.retarder.bench.bench_pass import BenchPass
 from synth.retarder.bench.cases import BenchCase
 from synth.retarder.bench.exchange import Exchange
 from synth.simulation.sampled_pass import Reading
 from synth.solver.tabulate import lines_of
-
-if TYPE_CHECKING:
-    from synth.retarder.bench.run import BenchPass
 
 LINE_NODES = 81
 """Of the lines that are drawn."""

@@ -6,12 +6,13 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from synth.retarder.bench.bench_pass import BenchPass
 from synth.retarder.bench.cases import BenchCase
 from synth.retarder.bench.clock import Clock
 from synth.retarder.bench.exchange import Answer, Exchange, next_count
 from synth.retarder.bench.live_run import LiveRun
 from synth.retarder.bench.table_shadow import TableShadow
-from synth.simulation.sampled_pass import PassEnd, Reading, sampled_pass
+from synth.simulation.sampled_pass import Reading, sampled_pass
 
 Tell = Callable[[str], None]
 
@@ -25,27 +26,6 @@ class Patience:
     silent_s: float = 1.0
     first_s: float = 600.0
     end_s: float = 60.0
-
-
-@dataclass(frozen=True)
-class BenchPass:
-    """A cut under the controller; `case`, `number`: which table's, and which of its row.
-
-    `switchings`: commands that changed the stage; `samples`, and of these `unanswered`: the stage before stood;
-    `moved_alone`, `held_alone`: samples at which the controller changed the stage and the table would not, and the
-    other way round; `response_s`: longest time to an answer; `silent_s`: longest time without one.
-    """
-
-    case: int
-    number: int
-    end: PassEnd
-    switchings: int
-    samples: int
-    unanswered: int
-    moved_alone: int
-    held_alone: int
-    response_s: float
-    silent_s: float
 
 
 @dataclass(frozen=True)
@@ -84,7 +64,7 @@ class Bench:
     def __init__(self, exchange: Exchange, clock: Clock, period_s: float, patience: Patience, tell: Tell) -> None:
         self._exchange, self._clock, self._period_s = exchange, clock, period_s
         self._patience, self._say = patience, tell
-        self._sample = -1
+        self._sample = 0
         self._unheard = 0
 
     def run(self, cases: Sequence[BenchCase], cuts: Sequence[tuple[int, int]], live: LiveRun) -> tuple[BenchPass, ...]:
@@ -104,12 +84,12 @@ class Bench:
     def _await_controller(self, case: BenchCase) -> None:
         """Samples without a cut until one is answered."""
         while self._exchange_sample(case, 0, None).response_s is None:
-            if self._silent_s > self._patience.first_s:
+            if self._unheard > self._samples_in(self._patience.first_s):
                 raise Silence(self._silent_s)
 
     def _gap(self, case: BenchCase, count: int) -> None:
         """No cut for a while; the position is in its initial stage, and what is commanded does not count."""
-        for _ in range(math.ceil(self._patience.gap_s / self._period_s)):
+        for _ in range(self._samples_in(self._patience.gap_s)):
             self._exchange_sample(case, count, None)
             self._require_life()
 
@@ -123,7 +103,7 @@ class Bench:
             answer = self._exchange_sample(case, count, reading)
             tally.count(reading.stage, shadow.stage_at(reading), answer)
             tally.silent_s = max(tally.silent_s, self._silent_s)
-            if self._silent_s > self._patience.silent_s >= self._silent_s - self._period_s:
+            if self._unheard == self._samples_in(self._patience.silent_s):
                 self._say(f"cut {count}: the controller is silent; stage {answer.stage} stands")
             self._require_life()
             live.sampled(reading, answer.stage)
@@ -146,8 +126,13 @@ class Bench:
         """Time of the samples since the last answer."""
         return self._unheard * self._period_s
 
+    def _samples_in(self, time_s: float) -> int:
+        """Samples of a time, one at least."""
+        return max(1, round(time_s / self._period_s))
+
     def _require_life(self) -> None:
-        if self._silent_s > self._patience.end_s:
+        """`Silence` where nobody has answered for too long."""
+        if self._unheard > self._samples_in(self._patience.end_s):
             raise Silence(self._silent_s)
 
 

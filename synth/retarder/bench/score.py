@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
+from synth.retarder.bench.bench_pass import BenchPass
 from synth.retarder.bench.cases import BenchCase
-from synth.retarder.bench.run import BenchPass
 from synth.retarder.class_setup import TUNING_PASSES
 from synth.retarder.comparison.baselines import tune_baselines
 from synth.simulation.random_passes import random_passes
@@ -45,7 +46,8 @@ class Score:
     switchings_by_table: float
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Errors:
     """Exit errors of the cuts of one table, (n,) each: of the controller, of the table, of the rules by name."""
 

@@ -42,7 +42,7 @@ def require_possible(addresses: Mapping[str, Address]) -> None:
         try:
             socket.create_server((host, port)).close()
         except (OSError, UnicodeError) as fault:
-            said = getattr(fault, "strerror", None) or fault
+            said = str(getattr(fault, "strerror", None) or fault).partition(" (")[0]
             raise InputError(f"{flag} is {host}:{port}, where nothing can listen ({said}); give another") from None
 
 

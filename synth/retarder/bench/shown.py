@@ -10,7 +10,7 @@ from synth.frame.command import Limit
 from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import counted, decimals
 from synth.retarder.bench.clock import TOLERANCE
-from synth.retarder.bench.command import FoundBench
+from synth.retarder.bench.found_bench import FoundBench
 from synth.retarder.bench.score import LEAST_PASSES, Score, score_of
 from synth.retarder.bench.wires import c_header
 from synth.retarder.exit_figures import CASE, PREDICTED, RMS, SWITCHINGS, told
@@ -188,7 +188,8 @@ def controller(found: FoundBench) -> Iterator[Sentence]:
         worst_s = max(found.cycles, key=lambda each: abs(each - found.period_s))
         yield Sentence(
             f"{len(found.cycles)} cycles of {1e3 * found.period_s:g} ms; {off} differed by more than {TOLERANCE:.0%}, "
-            f"the worst took {1e3 * worst_s:.1f} ms.",
+            f"the worst took {1e3 * worst_s:.1f} ms. The bench ran {'before' if found.is_first else 'among'} all else "
+            "that the machine had to do.",
             {"cycles": len(found.cycles), "cycles_off": off, "worst_cycle_s": worst_s},
             brief=True,
         )
