@@ -2,8 +2,7 @@
 
 Consecutive `REPLICATE_PASSES` passes are one replicate: independent of all others, and alike. So the spread between
 replicates is the error of the mean, whatever the strata within them and however heavy the tail, and a quantile of
-Student's law bounds it. Plain passes are replicates too; where they are too few for that, `together` = 1 makes each of
-them one. How often these intervals hold the truth is tested
+Student's law bounds it. Plain passes are replicates too. How often these intervals hold the truth is tested
 (`retarder-synth study coverage`).
 """
 
@@ -40,22 +39,22 @@ class Mean:
         return self.value - self.half_width, self.value + self.half_width
 
 
-def mean_of(values: NDArray[np.float64], weight: NDArray[np.float64], together: int = REPLICATE_PASSES) -> Mean:
+def mean_of(values: NDArray[np.float64], weight: NDArray[np.float64]) -> Mean:
     """Weighted mean of `values` (n,), its interval from the replicates; `ValueError` for fewer than two of these."""
     value = float(weight @ values / weight.sum())
-    return Mean(value, half_width(weight * (values - value), weight, together))
+    return Mean(value, half_width(weight * (values - value), weight))
 
 
-def half_width(deviations: NDArray[np.float64], weight: NDArray[np.float64], together: int = REPLICATE_PASSES) -> float:
+def half_width(deviations: NDArray[np.float64], weight: NDArray[np.float64]) -> float:
     """Half the 95 % interval of Σ `deviations` / Σ `weight`, where the deviations (n,) sum to 0.
 
-    `together`: passes of a replicate. A last one that is cut short counts as one of its own.
+    A last replicate that is cut short counts as one of its own.
     """
-    starts = np.arange(0, len(deviations), together)
+    starts = np.arange(0, len(deviations), REPLICATE_PASSES)
     count = len(starts)
     if count < LEAST_REPLICATES:
         raise ValueError(
-            f"replicates: {len(deviations)} passes; at least {(LEAST_REPLICATES - 1) * together + 1} are needed"
+            f"replicates: {len(deviations)} passes; at least {(LEAST_REPLICATES - 1) * REPLICATE_PASSES + 1} are needed"
         )
     square = float(np.square(np.add.reduceat(deviations, starts)).sum()) * count / (count - 1)
     return student_quantile(count - 1) * math.sqrt(square) / float(weight.sum())
@@ -68,14 +67,12 @@ def student_quantile(freedom: int) -> float:
     return float(stdtrit(freedom, 1.0 - UPPER_TAIL))
 
 
-def rms_of(
-    errors: NDArray[np.float64], weight: NDArray[np.float64], together: int = REPLICATE_PASSES
-) -> tuple[float, Interval]:
+def rms_of(errors: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[float, Interval]:
     """Root mean square of `errors` (n,), and its 95 % interval.
 
     The interval is that of the logarithm of the mean square (delta method), so its low end is never negative.
     """
-    square = mean_of(errors**2, weight, together)
+    square = mean_of(errors**2, weight)
     rms = math.sqrt(square.value)
     if rms == 0.0:
         return 0.0, (0.0, 0.0)
@@ -120,10 +117,7 @@ def quantiles_of(
 
 
 def rms_quotient(
-    errors: NDArray[np.float64],
-    others: NDArray[np.float64],
-    weight: NDArray[np.float64],
-    together: int = REPLICATE_PASSES,
+    errors: NDArray[np.float64], others: NDArray[np.float64], weight: NDArray[np.float64]
 ) -> tuple[float, Interval]:
     """rms of `errors` / rms of `others`, both (n,) and of the same passes, with its 95 % interval (paired)."""
     a, b = errors**2, others**2
@@ -131,6 +125,6 @@ def rms_quotient(
     if mean_a == 0.0 or mean_b == 0.0:
         raise ValueError("rms quotient: a sample without any error has no quotient")
     total = float(weight.sum())
-    of_log = 0.5 * half_width(weight * (a * (total / mean_a) - b * (total / mean_b)), weight, together)
+    of_log = 0.5 * half_width(weight * (a * (total / mean_a) - b * (total / mean_b)), weight)
     ratio = math.sqrt(mean_a / mean_b)
     return ratio, (ratio * math.exp(-of_log), ratio * math.exp(of_log))

@@ -23,7 +23,7 @@ from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import to_json
 
 EXAMPLE = ROOT / "docs" / "examples" / "bench"
-LEAST = 20
+LEAST = 10
 
 Connected = Callable[[Path, int, float], Any]
 
@@ -75,13 +75,14 @@ def test_the_exported_c_keeps_the_promise_and_a_wrong_controller_does_not(
     assert all_cuts["cuts"] == LEAST == sum(row["cuts"] for row in each)
     assert (tmp_path / "out" / "bench_wires.h").read_text() == c_header()
     assert "0 of " in ran.out
-    low = all_cuts["rms_m_s"]["low95"]
+    low, high = all_cuts["range_m_s"]
+    assert low < all_cuts["predicted_rms_m_s"] < 2 * high
     if offset_m_s:
-        assert low > 10 * all_cuts["predicted_rms_m_s"]
+        assert all_cuts["rms_m_s"] > 5 * high
     else:
-        assert low <= all_cuts["predicted_rms_m_s"]
-        assert all_cuts["ratio"]["value"] == pytest.approx(1.0, abs=1e-9)
-        assert all_cuts["switchings"]["value"] == all_cuts["switchings_by_table"]
+        assert low < all_cuts["rms_m_s"] < high
+        assert all_cuts["ratio"] == pytest.approx(1.0, abs=1e-9)
+        assert all_cuts["switchings"] == all_cuts["switchings_by_table"]
 
 
 def test_the_header_of_the_example_is_that_of_the_wires() -> None:
@@ -98,8 +99,9 @@ def test_addresses_that_cannot_be_are_refused(command: Command, tuned_once: tupl
                 "--modbus is '5020'; it must be HOST:PORT, as 127.0.0.1:5020 for this machine alone",
             ),
             (("--page", f"{HOST}:0"), f"--page is '{HOST}:0'; it must be HOST:PORT"),
+            (("--modbus", "none"), "--modbus none, and no --opc-ua: no controller could come"),
             (("--modbus", at, "--opc-ua", at), "two of them name one address; give each a port of its own"),
-            (("--passes", "19"), "--passes is '19'; it must be a whole number from 20 to 10000"),
+            (("--passes", "9"), "--passes is '9'; it must be a whole number from 10 to 1000"),
         ):
             ran = command("bench", tuned_once[0], *words, "-o", tmp_path / "out")
             assert (ran.code, sentence in ran.sentence) == (2, True), ran.err

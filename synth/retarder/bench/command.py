@@ -13,7 +13,7 @@ from synth.retarder.bench.options import Address, BenchOptions
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import MODEL_ONLY
-from synth.retarder.tables_configuration import configuration_for, given_config
+from synth.retarder.tables_configuration import configuration_for, given_config, made_elsewhere
 
 if TYPE_CHECKING:
     from synth.retarder.bench.bench_pass import BenchPass
@@ -23,20 +23,22 @@ if TYPE_CHECKING:
     from synth.retarder.bench.score import Errors
     from synth.retarder.served_class import ServedClass
     from tuning_tables import ControllerTable
+    from tuning_tables.table_book import TableBook
 
 LIMITS_OF_USE = (
     MODEL_ONLY,
-    "Intervals (95 %) cover the chance of these cuts only. A cut that no brake could hold comes once in thousands: "
-    "'retarder-synth validate' tells of such cuts.",
+    "A few dozen cuts tell nothing of the rare ones that no brake holds: 'retarder-synth validate' does.",
     "The bench is a model at the end of a cable. It is no test of safety.",
 )
 
 
 @dataclass(frozen=True)
 class AskedBench:
-    """The tables with the classes that they are for, and what was typed."""
+    """The book, those of its tables that a controller chooses with the classes that they are for, and what was typed."""
 
     config: ResolvedConfig
+    warnings: tuple[str, ...]
+    book: TableBook
     tables: tuple[tuple[ControllerTable, ServedClass], ...]
     passes: int
     seed: int
@@ -49,23 +51,28 @@ def resolve(asked: Asked[ResolvedConfig | None, BenchOptions]) -> AskedBench:
     from synth.retarder.bench.servers import require_possible
     from synth.retarder.forms.tables_at import tables_at
     from synth.retarder.served_class import served_class
+    from tuning_tables.table_book import TableBook
 
     options = asked.options
     tables = tables_at(options.source).only_lines("bench")
     config, source = (
         (asked.settings, asked.place) if asked.settings else configuration_for(None, options.source, tables)
     )
-    served = tuple((table, served_class(table, config, source)) for table in tables)
-    for _, each in served:
+    book = TableBook(tables)
+    unused = {table.id for table in book.shadowed()}
+    chosen = tuple((table, served_class(table, config, source)) for table in tables if table.id not in unused)
+    for _, each in chosen:
         each.plant.drive_at_any_time()
+    never = (f"no controller chooses {each}, so its cuts do not come" for each in sorted(unused))
+    warnings = (*made_elsewhere(tables, config, source), *never)
     require_possible(options.addresses)
     seed = config.validation.seed if options.seed is None else options.seed
-    return AskedBench(config, served, options.passes, seed, options.in_step, options.addresses)
+    return AskedBench(config, warnings, book, chosen, options.passes, seed, options.in_step, options.addresses)
 
 
 def head(asked: AskedBench) -> Head:
     """What is said of the configuration."""
-    return head_of(asked.config)
+    return head_of(asked.config, asked.warnings)
 
 
 def steps(asked: AskedBench) -> Steps:
@@ -74,7 +81,7 @@ def steps(asked: AskedBench) -> Steps:
 
 
 def compute(asked: AskedBench, work: Work) -> FoundBench:
-    """The run; `Unfinished` where too few cuts came to tell anything of them."""
+    """The run; `Unfinished` where no controller answered."""
     from synth.kernels.cache import guarded
 
     return guarded(benched, asked, work)
@@ -106,8 +113,8 @@ def benched(asked: AskedBench, work: Work) -> FoundBench:
         work.progress.note("waiting for a controller")
         passes = bench.run(cases, cuts, live)
         traffic = exchange.traffic
-    if len(passes) < 2:
-        raise Unfinished(f"{len(passes)} of {asked.passes} cuts came, then no controller answered")
+    if not passes:
+        raise Unfinished("no controller answered, so no cut came")
     return FoundBench(
         asked.config.title,
         sensor.sample_period_s,
@@ -126,12 +133,10 @@ def benched(asked: AskedBench, work: Work) -> FoundBench:
 def cases_of(asked: AskedBench, seeds: Sequence[int]) -> list[BenchCase]:
     """The cuts of each table, as many as can come."""
     from synth.retarder.bench.cases import bench_case
-    from tuning_tables.table_book import TableBook
 
-    book = TableBook(tuple(table for table, _ in asked.tables))
     rounds = -(-asked.passes // len(asked.tables))
     return [
-        bench_case(table, book.number_of(table.cut.category), served, seed, rounds)
+        bench_case(table, asked.book.number_of(table.cut.category), served, seed, rounds)
         for (table, served), seed in zip(asked.tables, seeds, strict=True)
     ]
 

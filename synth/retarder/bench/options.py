@@ -30,7 +30,7 @@ class BenchOptions(Options):
     page: Address | None = word_option(
         "--page", "HOST:PORT", ("127.0.0.1", 8020), "Where a browser sees the run; none: nowhere."
     )
-    passes: int = number_option("--passes", "N", 40, 20, 10_000, "Cuts that come; 40 take about ten minutes.")
+    passes: int = number_option("--passes", "N", 45, 10, 1000, "Cuts that come; 45 take about ten minutes.")
     seed: int | None = number_option(
         "--seed", "N", None, 0, 2**63 - 1, "Of the random numbers; as configured unless given."
     )

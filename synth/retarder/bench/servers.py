@@ -31,6 +31,8 @@ Pages = Mapping[str, Callable[[], bytes]]
 
 def require_possible(addresses: Mapping[str, Address]) -> None:
     """`InputError` where an address cannot be listened at, two are one, or a library is missing."""
+    if not addresses.keys() & LIBRARIES.keys():
+        raise InputError("--modbus none, and no --opc-ua: no controller could come; give one of them an address")
     if len(set(addresses.values())) < len(addresses):
         raise InputError(f"{' and '.join(addresses)}: two of them name one address; give each a port of its own")
     for flag in addresses.keys() & LIBRARIES.keys():

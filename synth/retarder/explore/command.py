@@ -14,7 +14,7 @@ from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import MODEL_ONLY
 from synth.retarder.explore.options import ExploreOptions
-from synth.retarder.tables_configuration import configuration_for, given_config
+from synth.retarder.tables_configuration import configuration_for, given_config, made_elsewhere
 
 if TYPE_CHECKING:
     from synth.retarder.explore.explore_page import PlayedTable
@@ -44,9 +44,8 @@ def resolve(asked: Asked[ResolvedConfig | None, ExploreOptions]) -> ExplorePage:
     tables = tables_at(path).only_lines("explore")
     config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, path, tables)
     played = tuple(played_tables(tables, path, config, source))
-    made, named = {table.generator.config_sha256 for table in tables}, Path(source).name  # no file holds a path
-    other = f"tables were made from another configuration than {named}; the plant may differ"
-    warnings = () if made == {config.sha256} else (other,)
+    named = Path(source).name  # no file holds a path
+    warnings = made_elsewhere(tables, config, named)
     told = " · ".join((f"retarder-synth {__version__}", f"plant: {named}", "one file, which loads nothing", *warnings))
     content = explore_page(config.title, told, played).encode()
     if len(content) > LARGEST_PAGE_BYTES:

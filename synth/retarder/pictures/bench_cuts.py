@@ -16,8 +16,8 @@ def bench_cuts(errors_m_s: Sequence[float], by_table_m_s: Sequence[float]) -> Fi
     axes = figure.subplots()
     counts = range(1, len(errors_m_s) + 1)
     axes.axhline(0.0, color=INK, linewidth=0.6)
-    axes.plot(counts, by_table_m_s, color=INK, marker="x", linestyle="", label="the table, simulated")
     axes.plot(counts, errors_m_s, color=BLUE, marker="o", markersize=4, linestyle="", label="the controller")
+    axes.plot(counts, by_table_m_s, color=INK, marker="x", markersize=7, linestyle="", label="the table, simulated")
     dress(axes, "", "cut", "exit speed − target, m/s")
     legend_below(figure, axes.get_legend_handles_labels()[0], columns=2)
     return figure
