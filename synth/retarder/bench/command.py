@@ -34,7 +34,7 @@ LIMITS_OF_USE = (
 
 @dataclass(frozen=True)
 class AskedBench:
-    """The book, those of its tables that a controller chooses with the classes that they are for, and what was typed."""
+    """The book, the tables that a controller chooses with the classes that they are for, and what was typed."""
 
     config: ResolvedConfig
     warnings: tuple[str, ...]
