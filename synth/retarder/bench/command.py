@@ -105,13 +105,13 @@ def benched(asked: AskedBench, work: Work) -> FoundBench:
     live = LiveRun(asked.config.title, len(cuts), exchange)
     clock: Clock = InStep(patience.silent_s) if asked.in_step else RealTime(sensor.sample_period_s)
     pages: Mapping[str, Callable[[], bytes]] = {"/": lambda: live_page(asked.config.title), PAGE: live.document}
-    bench = Bench(exchange, clock, sensor.sample_period_s, patience, work.progress.done)
+    bench = Bench(exchange, clock, sensor.sample_period_s, patience, work.progress.note)
     first = nullcontext(False) if asked.in_step else before_all_others()
     with first as is_first, listening(exchange, asked.addresses, pages):
         for flag, (host, port) in asked.addresses.items():
             work.progress.note(f"{flag.removeprefix('--')} at {host}:{port}")
         work.progress.note("waiting for a controller")
-        passes = bench.run(cases, cuts, live)
+        passes = bench.run(cases, cuts, live, work.progress.done)
         traffic = exchange.traffic
     if not passes:
         raise Unfinished("no controller answered, so no cut came")

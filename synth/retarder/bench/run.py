@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from synth.retarder.bench.bench_pass import BenchPass
+from synth.retarder.bench.bench_pass import AskedSample, BenchPass
 from synth.retarder.bench.cases import BenchCase
 from synth.retarder.bench.clock import Clock
 from synth.retarder.bench.exchange import Answer, Exchange, next_count
@@ -28,47 +28,26 @@ class Patience:
     end_s: float = 60.0
 
 
-@dataclass(frozen=True)
 class Silence(Exception):
-    """Nobody has answered for so long that the run ends."""
-
-    seconds: float
-
-
-@dataclass
-class Tally:
-    """What is counted in a pass as it goes on; the members of `BenchPass`."""
-
-    switchings: int = 0
-    samples: int = 0
-    unanswered: int = 0
-    moved_alone: int = 0
-    held_alone: int = 0
-    response_s: float = 0.0
-    silent_s: float = 0.0
-
-    def count(self, before: int, by_table: int, answer: Answer) -> None:
-        """A sample: the stage `before`, that of the table, and what stood in the end."""
-        moved = answer.stage != before
-        self.samples += 1
-        self.switchings += moved
-        self.unanswered += answer.response_s is None
-        self.moved_alone += moved and by_table == before
-        self.held_alone += not moved and by_table != before
-        self.response_s = max(self.response_s, answer.response_s or 0.0)
+    """Nobody has answered for so long that the run ends; says for how long."""
 
 
 class Bench:
-    """The position at the end of the cable: `exchange`, played by `clock` with samples `period_s` apart."""
+    """The position at the end of the cable: `exchange`, played by `clock` with samples `period_s` apart.
 
-    def __init__(self, exchange: Exchange, clock: Clock, period_s: float, patience: Patience, tell: Tell) -> None:
+    `note` is told what is remarkable.
+    """
+
+    def __init__(self, exchange: Exchange, clock: Clock, period_s: float, patience: Patience, note: Tell) -> None:
         self._exchange, self._clock, self._period_s = exchange, clock, period_s
-        self._patience, self._say = patience, tell
+        self._patience, self._note = patience, note
         self._sample = 0
         self._unheard = 0
 
-    def run(self, cases: Sequence[BenchCase], cuts: Sequence[tuple[int, int]], live: LiveRun) -> tuple[BenchPass, ...]:
-        """All `cuts`; fewer where the controller falls silent for good, none where it never answers."""
+    def run(
+        self, cases: Sequence[BenchCase], cuts: Sequence[tuple[int, int]], live: LiveRun, done: Tell
+    ) -> tuple[BenchPass, ...]:
+        """All `cuts`, each told to `done`; fewer where the controller falls silent for good, none if it never came."""
         passes: list[BenchPass] = []
         try:
             self._await_controller(cases[cuts[0][0]])
@@ -76,41 +55,39 @@ class Bench:
                 self._gap(cases[case], count)
                 passes.append(self._pass(cases[case], case, number, count, live))
                 live.ended(cases[case], passes[-1])
-                self._say(told_of(cases[case], passes[-1]))
+                done(told_of(cases[case], passes[-1]))
         except Silence as silence:
-            self._say(f"no answer for {silence.seconds:.0f} s: the run ends")
+            self._note(f"{silence}: the run ends")
         return tuple(passes)
 
     def _await_controller(self, case: BenchCase) -> None:
         """Samples without a cut until one is answered."""
         while self._exchange_sample(case, 0, None).response_s is None:
-            if self._unheard > self._samples_in(self._patience.first_s):
-                raise Silence(self._silent_s)
+            self._require_life(self._patience.first_s)
 
     def _gap(self, case: BenchCase, count: int) -> None:
         """No cut for a while; the position is in its initial stage, and what is commanded does not count."""
         for _ in range(self._samples_in(self._patience.gap_s)):
             self._exchange_sample(case, count, None)
-            self._require_life()
+            self._require_life(self._patience.end_s)
 
     def _pass(self, case: BenchCase, at: int, number: int, count: int, live: LiveRun) -> BenchPass:
         """One cut."""
-        shadow, tally = TableShadow(case.table), Tally()
+        shadow, asked = TableShadow(case.table), list[AskedSample]()
         rolling = sampled_pass(case.loop, case.common.draws.part(number, number + 1))
         reading = next(rolling)
         live.begins(case, count)
         while True:
             answer = self._exchange_sample(case, count, reading)
-            tally.count(reading.stage, shadow.stage_at(reading), answer)
-            tally.silent_s = max(tally.silent_s, self._silent_s)
+            asked.append(AskedSample(reading.stage, shadow.stage_at(reading), answer))
             if self._unheard == self._samples_in(self._patience.silent_s):
-                self._say(f"cut {count}: the controller is silent; stage {answer.stage} stands")
-            self._require_life()
+                self._note(f"cut {count}: the controller is silent; stage {answer.stage} stands")
+            self._require_life(self._patience.end_s)
             live.sampled(reading, answer.stage)
             try:
                 reading = rolling.send(answer.stage)
             except StopIteration as ended:
-                return BenchPass(at, number, ended.value, **vars(tally))
+                return BenchPass(at, number, ended.value, tuple(asked))
 
     def _exchange_sample(self, case: BenchCase, count: int, reading: Reading | None) -> Answer:
         """Tell a sample, and wait until it is over."""
@@ -121,19 +98,14 @@ class Bench:
         self._unheard = self._unheard + 1 if answer.response_s is None else 0
         return answer
 
-    @property
-    def _silent_s(self) -> float:
-        """Time of the samples since the last answer."""
-        return self._unheard * self._period_s
-
     def _samples_in(self, time_s: float) -> int:
         """Samples of a time, one at least."""
         return max(1, round(time_s / self._period_s))
 
-    def _require_life(self) -> None:
-        """`Silence` where nobody has answered for too long."""
-        if self._unheard > self._samples_in(self._patience.end_s):
-            raise Silence(self._silent_s)
+    def _require_life(self, patience_s: float) -> None:
+        """`Silence` where nobody has answered for longer."""
+        if self._unheard > self._samples_in(patience_s):
+            raise Silence(f"no answer for {patience_s:g} s")
 
 
 def told(case: BenchCase, reading: Reading | None, stage: int) -> dict[str, float]:

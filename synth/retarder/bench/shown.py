@@ -50,7 +50,7 @@ CUTS: Final = (
     Column("moved_alone", "changed, the table would not"),
     Column("held_alone", "held, the table would not"),
     Column("response_s", "longest response", "s", decimals(4)),
-    Column("silent_s", "longest silence", "s", decimals(1)),
+    Column("silence", "longest silence, samples"),
 )
 
 
@@ -156,7 +156,7 @@ def controller(found: FoundBench) -> Iterator[Sentence]:
 
     samples, traffic = total(lambda each: each.samples), found.traffic
     unanswered, response_s = total(lambda each: each.unanswered), max(each.response_s for each in found.passes)
-    silent_s = max(each.silent_s for each in found.passes)
+    silent_s = found.period_s * max(each.silence for each in found.passes)
     yield Sentence(
         f"{unanswered} of {samples} samples with a cut were not answered before the next one; the stage before stood. "
         f"Longest response {1e3 * response_s:.1f} ms, longest silence {silent_s:.1f} s. A command counts from "
@@ -193,18 +193,16 @@ def controller(found: FoundBench) -> Iterator[Sentence]:
 def row_of(found: FoundBench, count: int) -> Row:
     """One cut."""
     one = found.passes[count]
-    case = next(each.case for each in found.errors if one in each.passes)
-    counts = {key: value for key, value in vars(one).items() if key not in ("case", "end")}
-    return {
+    case = next(each.case for each in found.errors if each.passes[0].case == one.case)
+    target_m_s = case.table.target_speed_m_s
+    here = {
         "count": count + 1,
         "label": case.label,
-        "target_speed_m_s": case.table.target_speed_m_s,
-        "exit_speed_m_s": one.end.exit_speed_m_s,
+        "target_speed_m_s": target_m_s,
         "by_table_m_s": float(case.by_table.exit_speed_m_s[one.number]),
-        "time_s": one.end.time_s,
-        "stalled": one.end.stalled,
-        **counts,
+        **vars(one.end),
     }
+    return {column.key: here[column.key] if column.key in here else getattr(one, column.key) for column in CUTS}
 
 
 def drawn(found: FoundBench) -> Figure:

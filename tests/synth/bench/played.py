@@ -54,7 +54,7 @@ def played(
     live = LiveRun("bench", cuts, exchange)
     bench = Bench(exchange, InStep(0.05), case.loop.sensor.period_s, patience, told.append)
     with listening(exchange, addresses, {"/": lambda: b"<p>page</p>", "/now": live.document}):
-        passes = bench.run([case], coming_cuts(SEED, 1, cuts), live)
+        passes = bench.run([case], coming_cuts(SEED, 1, cuts), live, told.append)
         return passes, exchange.traffic, told
 
 
