@@ -12,7 +12,10 @@ from typing import Final, Protocol
 from synth.retarder.bench.exchange import Answer, Exchange
 
 TOLERANCE: Final = 0.1
-"""Of a period: a sample that comes by more too early or too late is counted."""
+"""Of a period: a cycle that is longer or shorter by more is off."""
+
+MOST_OFF: Final = 0.01
+"""Share of the cycles that may be off; with more the score may be the clock's."""
 
 
 class Clock(Protocol):
@@ -47,15 +50,32 @@ class RealTime:
         self._last_s = over_s
         return exchange.answer()
 
+
+@dataclass(frozen=True)
+class Cycles:
+    """How a clock was kept: the times that samples `period_s` apart `took_s`.
+
+    `is_first`: the bench went before all else that the machine had to do.
+    """
+
+    period_s: float
+    took_s: tuple[float, ...]
+    is_first: bool
+
     @property
-    def late(self) -> int:
-        """Cycles that differ from the period by more than `TOLERANCE`."""
-        return sum(abs(each - self.period_s) > TOLERANCE * self.period_s for each in self.cycles_s)
+    def off(self) -> int:
+        """Those that differ from the period by more than `TOLERANCE`."""
+        return sum(abs(each - self.period_s) > TOLERANCE * self.period_s for each in self.took_s)
+
+    @property
+    def are_kept(self) -> bool:
+        """No more than `MOST_OFF` of them are off."""
+        return self.off <= MOST_OFF * len(self.took_s)
 
     @property
     def worst_s(self) -> float:
-        """The cycle that differs most; NaN before the first."""
-        return max(self.cycles_s, key=lambda each: abs(each - self.period_s), default=float("nan"))
+        """That which differs most."""
+        return max(self.took_s, key=lambda each: abs(each - self.period_s))
 
 
 @dataclass(frozen=True)

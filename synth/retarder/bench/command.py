@@ -64,7 +64,8 @@ def resolve(asked: Asked[ResolvedConfig | None, BenchOptions]) -> AskedBench:
     for _, each in chosen:
         each.plant.drive_at_any_time()
     never = (f"no controller chooses {each}, so its cuts do not come" for each in sorted(unused))
-    warnings = (*made_elsewhere(tables, config, source), *never)
+    wide = (f"{flag} is {at}: whoever reaches it can connect" for flag, at in options.addresses.items() if at.is_wide)
+    warnings = (*made_elsewhere(tables, config, source), *never, *wide)
     require_possible(options.addresses)
     seed = config.validation.seed if options.seed is None else options.seed
     return AskedBench(config, warnings, book, chosen, options.passes, seed, options.in_step, options.addresses)
@@ -90,7 +91,7 @@ def compute(asked: AskedBench, work: Work) -> FoundBench:
 def benched(asked: AskedBench, work: Work) -> FoundBench:
     """The same, where kernels are loaded."""
     from synth.retarder.bench.cases import class_seeds, coming_cuts
-    from synth.retarder.bench.clock import InStep, RealTime, before_all_others
+    from synth.retarder.bench.clock import Cycles, InStep, RealTime, before_all_others
     from synth.retarder.bench.exchange import Exchange
     from synth.retarder.bench.found_bench import FoundBench
     from synth.retarder.bench.live_page import PAGE, live_page
@@ -108,8 +109,8 @@ def benched(asked: AskedBench, work: Work) -> FoundBench:
     bench = Bench(exchange, clock, sensor.sample_period_s, patience, work.progress.note)
     first = nullcontext(False) if asked.in_step else before_all_others()
     with first as is_first, listening(exchange, asked.addresses, pages):
-        for flag, (host, port) in asked.addresses.items():
-            work.progress.note(f"{flag.removeprefix('--')} at {host}:{port}")
+        for flag, address in asked.addresses.items():
+            work.progress.note(f"{flag.removeprefix('--')} at {address}")
         work.progress.note("waiting for a controller")
         passes = bench.run(cases, cuts, live, work.progress.done)
         traffic = exchange.traffic
@@ -124,8 +125,7 @@ def benched(asked: AskedBench, work: Work) -> FoundBench:
         passes,
         tuple(errors_by_case(cases, passes, asked.seed)),
         traffic,
-        tuple(clock.cycles_s) if isinstance(clock, RealTime) else None,
-        is_first,
+        Cycles(clock.period_s, tuple(clock.cycles_s), is_first) if isinstance(clock, RealTime) else None,
         asked.config.acceptance.prediction_ratio_low,
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from synth.retarder.bench.wires import COUNTS, TOLD
 
@@ -20,7 +20,7 @@ class Answer:
     response_s: float | None
 
 
-@dataclass(frozen=True)
+@dataclass
 class Traffic:
     """What was heard so far: requests, those refused and why the last was, commands of a stage that the position does
     not have (refused, too), connections made, and open."""
@@ -46,8 +46,7 @@ class Exchange:
         self._told_s = 0.0
         self._stage = 0
         self._response_s: float | None = None
-        self._requests = self._refused = self._impossible = self._connections = self._open = 0
-        self._last_refusal = ""
+        self._traffic = Traffic()
         self._hearers: list[Callable[[Values], None]] = []
 
     def hear(self, hearer: Callable[[Values], None]) -> None:
@@ -61,11 +60,9 @@ class Exchange:
 
     @property
     def traffic(self) -> Traffic:
-        """What was heard so far."""
+        """What was heard so far, a copy."""
         with self._changed:
-            return Traffic(
-                self._requests, self._refused, self._last_refusal, self._impossible, self._connections, self._open
-            )
+            return replace(self._traffic)
 
     def tell(self, values: Values, stage: int) -> None:
         """A new sample; `stage` stands unless a command comes."""
@@ -88,7 +85,7 @@ class Exchange:
             if is_possible:
                 self._stage = stage
             else:
-                self._impossible += 1
+                self._traffic.impossible += 1
             return is_possible
 
     def answered(self, sample: int) -> None:
@@ -101,18 +98,18 @@ class Exchange:
     def refuse(self, why: str) -> None:
         """A request was refused, that of an impossible stage too."""
         with self._changed:
-            self._refused += 1
-            self._last_refusal = why
+            self._traffic.refused += 1
+            self._traffic.last_refusal = why
 
     def requested(self) -> None:
         """A request came."""
-        self._requests += 1
+        self._traffic.requests += 1
 
     def connected(self, opens: bool) -> None:
         """A client has come, or gone."""
         with self._changed:
-            self._connections += opens
-            self._open += 1 if opens else -1
+            self._traffic.connections += opens
+            self._traffic.connected += 1 if opens else -1
 
 
 def next_count(number: int) -> int:

@@ -25,7 +25,7 @@ class LiveRun:
         self._title, self._passes, self._exchange = title, passes, exchange
         self._cut: dict[str, Any] | None = None
         self._trace: list[tuple[float, float, float | None, float, int]] = []
-        self._ends: list[tuple[float, float, float, int, int, int]] = []
+        self._ends: list[tuple[float, float, float, int, int]] = []
 
     def begins(self, case: BenchCase, count: int) -> None:
         """Cut `count` comes."""
@@ -46,9 +46,10 @@ class LiveRun:
 
     def sampled(self, reading: Reading, stage: int) -> None:
         """The cut has gone on."""
-        measured = None if math.isnan(reading.measured_m_s) else float(reading.measured_m_s)
-        point = (reading.path_m, reading.speed_m_s, measured, reading.pressure_kpa)
-        self._trace.append((*(None if each is None else round(float(each), 3) for each in point), stage))  # type: ignore[arg-type]
+        measured = None if math.isnan(reading.measured_m_s) else round(float(reading.measured_m_s), 3)
+        path, speed, pressure = reading.path_m, reading.speed_m_s, reading.pressure_kpa
+        row = (round(float(path), 3), round(float(speed), 3), measured, round(float(pressure), 1), stage)
+        self._trace.append(row)
 
     def ended(self, case: BenchCase, found: BenchPass) -> None:
         """It has left, or stands."""
@@ -56,13 +57,13 @@ class LiveRun:
         by_table = float(case.by_table.exit_speed_m_s[found.number]) - target
         error = found.end.exit_speed_m_s - target
         promised = case.table.predicted.rms_m_s
-        self._ends.append((error, by_table, promised, found.switchings, found.samples, found.unanswered))
+        self._ends.append((error, by_table, promised, found.samples, found.unanswered))
 
     def document(self) -> bytes:
         """All of it as JSON."""
         ends, traffic = list(self._ends), self._exchange.traffic
-        columns = list(zip(*ends, strict=True)) or [()] * 6
-        errors, by_table, promised, switchings, samples, unanswered = columns
+        columns = list(zip(*ends, strict=True)) or [()] * 5
+        errors, by_table, promised, samples, unanswered = columns
         known = {
             "title": self._title,
             "passes": self._passes,
@@ -70,7 +71,6 @@ class LiveRun:
             "rms_m_s": rms(errors),
             "by_table_m_s": rms(by_table),
             "promised_m_s": rms(promised),
-            "switchings": sum(switchings),
             "samples": sum(samples),
             "unanswered": sum(unanswered),
             "errors_m_s": [round(each, 4) for each in errors],

@@ -10,6 +10,7 @@ from pymodbus.server import ModbusTcpServer
 from pymodbus.simulator import DataType, SimData, SimDevice
 
 from synth.retarder.bench.exchange import Exchange
+from synth.retarder.bench.options import Address
 from synth.retarder.bench.wires import COMMAND_WIRES, COMMANDS_AT, TOLD_WIRES, registers_of
 
 ANY_UNIT: Final = 0
@@ -17,7 +18,7 @@ WITHOUT_VALUES: Final = 0x80
 """Function codes of refusals are those of their requests and this."""
 
 
-def modbus_server(exchange: Exchange, address: tuple[str, int]) -> ModbusTcpServer:
+def modbus_server(exchange: Exchange, address: Address) -> ModbusTcpServer:
     """A server that is not yet listening."""
     read_only = sum(wire.words.registers for wire in TOLD_WIRES)
     stage, answers = (wire.address for wire in COMMAND_WIRES)
@@ -49,7 +50,7 @@ def modbus_server(exchange: Exchange, address: tuple[str, int]) -> ModbusTcpServ
     ]
     return ModbusTcpServer(
         SimDevice(ANY_UNIT, simdata=data, action=on_access),
-        address=address,
+        address=address.pair,
         trace_pdu=on_message,
         trace_connect=exchange.connected,
     )

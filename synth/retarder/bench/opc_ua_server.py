@@ -9,6 +9,7 @@ from asyncua.common.node import Node
 from asyncua.server.server import Server
 
 from synth.retarder.bench.exchange import Exchange, Values
+from synth.retarder.bench.options import Address
 from synth.retarder.bench.wires import ANSWERS, COMMAND_WIRES, OPC_UA_FOLDER, OPC_UA_NAMESPACE, STAGE, TOLD_WIRES, Wire
 
 
@@ -26,12 +27,11 @@ class OpcUaServer:
             )
 
 
-async def opc_ua_server(exchange: Exchange, address: tuple[str, int]) -> OpcUaServer:
+async def opc_ua_server(exchange: Exchange, address: Address) -> OpcUaServer:
     """A server that is not yet listening."""
-    host, port = address
     server = Server()
     await server.init()
-    server.set_endpoint(f"opc.tcp://{host}:{port}/")
+    server.set_endpoint(f"opc.tcp://{address}/")
     server.set_server_name("retarder-synth bench")
     server.set_security_policy([ua.SecurityPolicyType.NoSecurity])
     space = await server.register_namespace(OPC_UA_NAMESPACE)

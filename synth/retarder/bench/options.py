@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -12,8 +13,29 @@ from synth.frame.settings.options import BY_PLACE, NEEDED, Options, flag_option,
 NONE: Final = "none"
 MOST_PORT: Final = 65_535
 
-Address = tuple[str, int]
-"""Host and port."""
+LOCAL: Final = ("127.0.0.1", "localhost")
+"""Hosts at which only this machine can connect."""
+
+
+@dataclass(frozen=True)
+class Address:
+    """Where something is offered."""
+
+    host: str
+    port: int
+
+    def __str__(self) -> str:
+        return f"{self.host}:{self.port}"
+
+    @property
+    def pair(self) -> tuple[str, int]:
+        """Host and port."""
+        return self.host, self.port
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether other machines can connect there."""
+        return self.host not in LOCAL
 
 
 class BenchOptions(Options):
@@ -24,11 +46,11 @@ class BenchOptions(Options):
         "--config", "C", None, "Configuration with the plant; that of the tables, or built-in, unless given."
     )
     modbus: Address | None = word_option(
-        "--modbus", "HOST:PORT", ("127.0.0.1", 5020), "Where Modbus TCP is spoken; none: nowhere."
+        "--modbus", "HOST:PORT", Address("127.0.0.1", 5020), "Where Modbus TCP is spoken; none: nowhere."
     )
     opc_ua: Address | None = word_option("--opc-ua", "HOST:PORT", None, "Where OPC UA is spoken, too.")
     page: Address | None = word_option(
-        "--page", "HOST:PORT", ("127.0.0.1", 8020), "Where a browser sees the run; none: nowhere."
+        "--page", "HOST:PORT", Address("127.0.0.1", 8020), "Where a browser sees the run; none: nowhere."
     )
     passes: int = number_option("--passes", "N", 45, 10, 1000, "Cuts that come; 45 take about ten minutes.")
     seed: int | None = number_option(
@@ -47,7 +69,7 @@ class BenchOptions(Options):
         host, _, port = word.rpartition(":")
         if not host or not port.isascii() or not port.isdecimal() or not 1 <= int(port) <= MOST_PORT:
             raise ValueError(f"HOST:PORT, as 127.0.0.1:5020 for this machine alone, or {NONE}")
-        return host, int(port)
+        return Address(host, int(port))
 
     @property
     def addresses(self) -> dict[str, Address]:

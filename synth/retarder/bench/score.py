@@ -48,17 +48,17 @@ class Errors:
 
 @dataclass(frozen=True)
 class Score:
-    """What became of n cuts, of one table or of all; errors of the exit speed in m/s, `target_m_s` None for all.
+    """What became of n cuts, of one table or of all; errors of the exit speed in m/s, `target_speed_m_s` None for all.
 
-    `predicted_m_s`: rms that the tables predict of all cuts; `range_m_s`: within which the rms of 95 of 100 groups of n
-    cuts lies under the tables. All else is of these very cuts.
+    `predicted_rms_m_s`: rms that the tables predict of all cuts; `range_m_s`: within which the rms of 95 of 100 groups
+    of n cuts lies under the tables. All else is of these very cuts.
     """
 
     label: str
-    target_m_s: float | None
+    target_speed_m_s: float | None
     cuts: int
     rms_m_s: float
-    predicted_m_s: float
+    predicted_rms_m_s: float
     range_m_s: Interval
     by_table_m_s: float
     by_rules_m_s: Mapping[str, float]

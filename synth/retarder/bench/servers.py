@@ -40,12 +40,12 @@ def require_possible(addresses: Mapping[str, Address]) -> None:
             import_module(LIBRARIES[flag])
         except ImportError:
             raise InputError(f"{flag} needs what speaks it: pip install 'retarder-synth[bench]'") from None
-    for flag, (host, port) in addresses.items():
+    for flag, address in addresses.items():
         try:
-            socket.create_server((host, port)).close()
+            socket.create_server(address.pair).close()
         except (OSError, UnicodeError) as fault:
             said = str(getattr(fault, "strerror", None) or fault).partition(" (")[0]
-            raise InputError(f"{flag} is {host}:{port}, where nothing can listen ({said}); give another") from None
+            raise InputError(f"{flag} is {address}, where nothing can listen ({said}); give another") from None
 
 
 @contextlib.contextmanager
@@ -137,7 +137,7 @@ def page_served(address: Address, pages: Pages) -> Iterator[None]:
         def log_message(self, format: str, *arguments: Any) -> None:
             """Nobody wants to know."""
 
-    server = ThreadingHTTPServer(address, Handler)
+    server = ThreadingHTTPServer(address.pair, Handler)
     thread = threading.Thread(target=server.serve_forever, daemon=True, name="page")
     thread.start()
     try:

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 HEADER: Final = "bench_wires.h"
-MOST_OFF: Final = 0.01
-"""Share of the cycles that may be too long or too short; with more the score may be the clock's."""
 
 SCORES: Final = (
     *CASE,
@@ -76,16 +74,9 @@ def limits_of(found: FoundBench) -> Iterator[Limit]:
     if score.cuts < found.asked:
         yield Limit(f"{score.cuts} of {found.asked} cuts came, then the controller was silent for good", None)
     if found.cycles:
-        off, count = off_of(found), len(found.cycles)
-        yield Limit(
-            f"the cycle of the bench was kept within {TOLERANCE:.0%} in {count - off} of {count} samples",
-            True if off <= MOST_OFF * count else None,
-        )
-
-
-def off_of(found: FoundBench) -> int:
-    """Cycles that were too long or too short."""
-    return sum(abs(each - found.period_s) > TOLERANCE * found.period_s for each in found.cycles or ())
+        count, off = len(found.cycles.took_s), found.cycles.off
+        kept = f"the cycle of the bench was kept within {TOLERANCE:.0%} in {count - off} of {count} samples"
+        yield Limit(kept, found.cycles.are_kept or None)
 
 
 def chapters(found: FoundBench) -> Iterator[Chapter]:
@@ -137,15 +128,14 @@ def to_do(found: FoundBench, unanswered: int) -> Iterator[str]:
         yield "Find out why samples stayed without an answer: the stage before stood, and the score has it in it."
     if found.traffic.impossible:
         yield "Mend the controller: it commanded a stage that the position does not have."
-    if found.cycles and off_of(found) > MOST_OFF * len(found.cycles):
+    if found.cycles and not found.cycles.are_kept:
         yield "Run the bench on a machine with less to do: its own cycle was not kept."
 
 
 def score_row(score: Score) -> Row:
     """One table, or all."""
     rules = {f"{name.replace(' ', '_')}_m_s": rms for name, rms in score.by_rules_m_s.items()}
-    return {**vars(score), "target_speed_m_s": score.target_m_s, "predicted_rms_m_s": score.predicted_m_s,
-            "ratio": score.ratio, **rules}  # fmt: skip
+    return {**vars(score), "ratio": score.ratio, **rules}
 
 
 def controller(found: FoundBench) -> Iterator[Sentence]:
@@ -173,19 +163,19 @@ def controller(found: FoundBench) -> Iterator[Sentence]:
     )
     last = f" The last refusal: {traffic.last_refusal}." if traffic.refused else ""
     yield Sentence(
-        f"{counted(traffic.requests, 'request')} in {counted(traffic.connections, 'connection')}; {traffic.refused} "
-        f"refused, of these {traffic.impossible} of a stage that the position does not have.{last}",
+        f"Modbus: {counted(traffic.connections, 'connection')}. {counted(traffic.requests, 'request')} (of OPC UA only "
+        f"those that write); {traffic.refused} refused, of these {traffic.impossible} of a stage that the position does "
+        f"not have.{last}",
         vars(traffic),
         brief=True,
     )
     if found.cycles:
-        off = off_of(found)
-        worst_s = max(found.cycles, key=lambda each: abs(each - found.period_s))
+        count, off, worst_s = len(found.cycles.took_s), found.cycles.off, found.cycles.worst_s
         yield Sentence(
-            f"{len(found.cycles)} cycles of {1e3 * found.period_s:g} ms; {off} differed by more than {TOLERANCE:.0%}, "
-            f"the worst took {1e3 * worst_s:.1f} ms. The bench ran {'before' if found.is_first else 'among'} all else "
+            f"{count} cycles of {1e3 * found.period_s:g} ms; {off} differed by more than {TOLERANCE:.0%}, the worst "
+            f"took {1e3 * worst_s:.1f} ms. The bench ran {'before' if found.cycles.is_first else 'among'} all else "
             "that the machine had to do.",
-            {"cycles": len(found.cycles), "cycles_off": off, "worst_cycle_s": worst_s},
+            {"cycles": count, "cycles_off": off, "worst_cycle_s": worst_s},
             brief=True,
         )
 

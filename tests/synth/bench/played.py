@@ -18,6 +18,7 @@ from synth.retarder.bench.cases import BenchCase, bench_case, coming_cuts
 from synth.retarder.bench.clock import InStep
 from synth.retarder.bench.exchange import Exchange, Traffic
 from synth.retarder.bench.live_run import LiveRun
+from synth.retarder.bench.options import Address
 from synth.retarder.bench.run import Bench, Patience
 from synth.retarder.bench.servers import listening
 from synth.retarder.bench.wires import COMMANDS_AT, TOLD_WIRES
@@ -46,7 +47,7 @@ def free_port() -> int:
 
 
 def played(
-    addresses: Mapping[str, tuple[str, int]], cuts: int, patience: Patience = QUICK
+    addresses: Mapping[str, Address], cuts: int, patience: Patience = QUICK
 ) -> tuple[tuple[BenchPass, ...], Traffic, list[str]]:
     """The passes of a run in step, what was heard, and what was told."""
     case, told = the_case(), list[str]()

@@ -17,8 +17,9 @@ from pymodbus.client import ModbusTcpClient
 from pymodbus.exceptions import ModbusException
 
 from synth.retarder.bench.bench_pass import BenchPass
-from synth.retarder.bench.clock import RealTime
+from synth.retarder.bench.clock import Cycles, RealTime
 from synth.retarder.bench.exchange import Exchange
+from synth.retarder.bench.options import Address
 from synth.retarder.bench.wires import COMMANDS_AT, OPC_UA_FOLDER, OPC_UA_NAMESPACE, TOLD_WIRES
 from tests.synth.bench.played import HOST, TableClient, beside, free_port, played, the_case
 
@@ -36,19 +37,19 @@ def require_the_table(passes: Sequence[BenchPass], count: int) -> None:
 
 
 def test_a_table_over_modbus_is_the_simulator_while_others_talk_nonsense() -> None:
-    modbus, page = (HOST, free_port()), (HOST, free_port())
-    client, documents = TableClient(the_case().table, modbus[1]), list[bytes]()
+    modbus, page = Address(HOST, free_port()), Address(HOST, free_port())
+    client, documents = TableClient(the_case().table, modbus.port), list[bytes]()
 
     def nonsense(over: threading.Event) -> None:
         while not over.is_set():
             try:
-                with socket.create_connection(modbus, 1.0) as one:
+                with socket.create_connection(modbus.pair, 1.0) as one:
                     one.sendall(b"GET / HTTP/1.0\r\n\r\n" + bytes(range(256)) * 4)
-                with ModbusTcpClient(HOST, port=modbus[1], retries=0) as other:
+                with ModbusTcpClient(HOST, port=modbus.port, retries=0) as other:
                     assert other.write_registers(COMMANDS_AT, [99, 0]).isError()
                     assert other.write_registers(0, [1]).isError()
                     assert other.read_holding_registers(90, count=50).isError()
-                with urllib.request.urlopen(f"http://{HOST}:{page[1]}/now") as found:
+                with urllib.request.urlopen(f"http://{HOST}:{page.port}/now") as found:
                     documents.append(found.read())
             except (OSError, ModbusException):
                 over.wait(0.05)
@@ -57,7 +58,7 @@ def test_a_table_over_modbus_is_the_simulator_while_others_talk_nonsense() -> No
         request = bytes((0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 17))
         while not over.is_set():
             try:
-                with socket.create_connection(modbus, 1.0) as one:
+                with socket.create_connection(modbus.pair, 1.0) as one:
                     one.sendall(request * 500)
                     over.wait(0.01)
             except OSError:
@@ -75,10 +76,10 @@ def test_a_table_over_modbus_is_the_simulator_while_others_talk_nonsense() -> No
 
 
 def test_a_controller_that_vanishes_is_told_and_the_stage_before_stands() -> None:
-    modbus, table = (HOST, free_port()), the_case().table
+    modbus, table = Address(HOST, free_port()), the_case().table
 
     def vanishing(over: threading.Event) -> None:
-        client = TableClient(table, modbus[1])
+        client = TableClient(table, modbus.port)
         client(over, 30)
         over.wait(0.4)
         client(over, 60)
@@ -93,13 +94,13 @@ def test_a_controller_that_vanishes_is_told_and_the_stage_before_stands() -> Non
 
 
 def test_a_table_over_opc_ua_is_the_simulator() -> None:
-    address = HOST, free_port()
+    address = Address(HOST, free_port())
     names, client = [wire.name for wire in TOLD_WIRES], TableClient(the_case().table, 0)
 
     async def controlled(over: threading.Event) -> None:
         while not over.is_set():
             try:
-                async with Client(f"opc.tcp://{HOST}:{address[1]}/") as server:
+                async with Client(f"opc.tcp://{address}/") as server:
                     await controller(server, over)
             except (TimeoutError, OSError, UaError):
                 await asyncio.sleep(0.05)
@@ -135,8 +136,8 @@ def test_only_an_answer_to_this_sample_is_one() -> None:
 
 
 def test_a_cycle_counts_as_kept_within_a_tenth() -> None:
-    clock = RealTime(0.1, [0.1, 0.109, 0.111, 0.091, 0.089, 0.3])
-    assert clock.late == 3
+    cycles = Cycles(0.1, (0.1, 0.109, 0.111, 0.091, 0.089, 0.3), False)
+    assert (cycles.off, cycles.worst_s, cycles.are_kept) == (3, 0.3, False)
 
 
 def test_the_clock_makes_up_for_a_late_sample_and_not_for_a_stop() -> None:
