@@ -164,8 +164,8 @@ def controller(found: FoundBench) -> Iterator[Sentence]:
     last = f" The last refusal: {traffic.last_refusal}." if traffic.refused else ""
     yield Sentence(
         f"Modbus: {counted(traffic.connections, 'connection')}. {counted(traffic.requests, 'request')} (of OPC UA only "
-        f"those that write); {traffic.refused} refused, of these {traffic.impossible} of a stage that the position does "
-        f"not have.{last}",
+        f"those that write); {traffic.refused} refused, of these {traffic.impossible} of a stage that the position "
+        f"does not have.{last}",
         vars(traffic),
         brief=True,
     )
