@@ -14,6 +14,9 @@ from synth.retarder.bench.options import Address
 from synth.retarder.bench.wires import COMMAND_WIRES, COMMANDS_AT, TOLD_WIRES, registers_of
 
 ANY_UNIT: Final = 0
+OF_REGISTERS: Final = (3, 4, 6, 16, 22, 23)
+"""Functions that read or write registers; the library would take single bits for them, too."""
+
 WITHOUT_VALUES: Final = 0x80
 """Function codes of refusals are those of their requests and this."""
 
@@ -26,6 +29,8 @@ def modbus_server(exchange: Exchange, address: Address) -> ModbusTcpServer:
     async def on_access(
         function: int, start: int, first: int, count: int, registers: list[int], words: list[int] | list[bool] | None
     ) -> ExcCodes | None:
+        if function not in OF_REGISTERS:
+            return ExcCodes.ILLEGAL_FUNCTION
         if words is None:
             registers[:read_only] = registers_of(exchange.values)
             return None

@@ -68,5 +68,4 @@ def setter(exchange: Exchange, take: Callable[[int], bool | None]) -> Callable[.
 
 def variant_of(wire: Wire, value: float) -> ua.Variant:
     """A value in the type of its node."""
-    number: float = {"Float": float, "Boolean": bool, "UInt16": int}[wire.words.node_type](value)
-    return ua.Variant(number, ua.VariantType[wire.words.node_type])
+    return ua.Variant(wire.words.of(value), ua.VariantType[wire.words.node_type])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from typing import Final
@@ -46,18 +46,20 @@ COMMANDS: Final = (STAGE, ANSWERS)
 
 @dataclass(frozen=True)
 class Words:
-    """How a kind of number crosses the cable: registers, `struct` format, type of OPC UA, type in C."""
+    """How a kind of number crosses the cable: registers, `struct` format, type in OPC UA, C, Python, and in words."""
 
     registers: int
     form: str
     node_type: str
     c_type: str
+    of: Callable[[float], float]
+    shown: str
 
 
 WORDS: Final[Mapping[Kind, Words]] = {
-    Kind.FLOAT64: Words(2, ">f", "Float", "float"),
-    Kind.INT32: Words(1, ">H", "UInt16", "uint16_t"),
-    Kind.BOOLEAN: Words(1, ">H", "Boolean", "uint16_t"),
+    Kind.FLOAT64: Words(2, ">f", "Float", "float", float, "float32"),
+    Kind.INT32: Words(1, ">H", "UInt16", "uint16_t", int, "uint16"),
+    Kind.BOOLEAN: Words(1, ">H", "Boolean", "uint16_t", bool, "0 or 1"),
 }
 """Big-endian: the first register of a number has its higher half. Tables are asked in binary32, so nothing is lost."""
 
@@ -81,8 +83,7 @@ class Wire:
 
     def registers_of(self, value: float) -> list[int]:
         """The registers of `value`."""
-        number = value if self.variable.kind is Kind.FLOAT64 else int(value)
-        return list(struct.unpack(f">{self.words.registers}H", struct.pack(self.words.form, number)))
+        return list(struct.unpack(f">{self.words.registers}H", struct.pack(self.words.form, self.words.of(value))))
 
 
 def wires_of(variables: Sequence[Variable], first: int) -> tuple[Wire, ...]:
@@ -108,8 +109,7 @@ def table_rows() -> Iterator[tuple[str, ...]]:
     for wire in (*TOLD_WIRES, *COMMAND_WIRES):
         last = wire.address + wire.words.registers - 1
         place = str(wire.address) if last == wire.address else f"{wire.address}–{last}"
-        kind = {"Float": "float32", "UInt16": "uint16", "Boolean": "0 or 1"}[wire.words.node_type]
-        yield place, f"`{wire.name}`", kind, wire.variable.unit or "", wire.variable.meaning
+        yield place, f"`{wire.name}`", wire.words.shown, wire.variable.unit or "", wire.variable.meaning
 
 
 def c_header() -> str:
