@@ -94,9 +94,16 @@ async def begin_modbus(exchange: Exchange, address: Address, stack: contextlib.A
     """Serve Modbus until `stack` ends."""
     from synth.retarder.bench.modbus_server import modbus_server
 
-    server = modbus_server(exchange, address)
+    server: Any = modbus_server(exchange, address)  # some of its methods have no types
     await server.serve_forever(background=True)
-    stack.push_async_callback(server.shutdown)
+
+    async def end() -> None:
+        await server.shutdown()
+        await asyncio.sleep(GRACE_S)
+        for late in tuple(server.active_connections.values()):  # accepted while it closed
+            late.close()
+
+    stack.push_async_callback(end)
 
 
 async def begin_opc_ua(exchange: Exchange, address: Address, stack: contextlib.AsyncExitStack) -> None:

@@ -29,7 +29,7 @@ from tuning_tables import ControllerTable, begin, decide_for, speed_for
 
 SEED = 7
 HOST = "127.0.0.1"
-QUICK = Patience(gap_s=0.3, silent_s=0.2, first_s=20.0, end_s=1.0)
+QUICK = Patience(gap_s=0.3, silent_s=0.2, first_s=20.0, end_s=3.0)
 
 
 @cache
@@ -47,13 +47,13 @@ def free_port() -> int:
 
 
 def played(
-    addresses: Mapping[str, Address], cuts: int, patience: Patience = QUICK
+    addresses: Mapping[str, Address], cuts: int, answer_s: float = 5.0
 ) -> tuple[tuple[BenchPass, ...], Traffic, list[str]]:
-    """The passes of a run in step, what was heard, and what was told."""
+    """The passes of a run in step that waits `answer_s` for an answer, what was heard, and what was told."""
     case, told = the_case(), list[str]()
     exchange = Exchange(case.loop.stages)
     live = LiveRun("bench", cuts, exchange)
-    bench = Bench(exchange, InStep(0.05), case.loop.sensor.period_s, patience, told.append)
+    bench = Bench(exchange, InStep(answer_s), case.loop.sensor.period_s, QUICK, told.append)
     with listening(exchange, addresses, {"/": lambda: b"<p>page</p>", "/now": live.document}):
         passes = bench.run([case], coming_cuts(SEED, 1, cuts), live, told.append)
         return passes, exchange.traffic, told

@@ -8,6 +8,7 @@ import socket
 import threading
 import urllib.request
 from collections.abc import Sequence
+from typing import Any
 
 import pytest
 from asyncua import ua
@@ -38,11 +39,13 @@ def require_the_table(passes: Sequence[BenchPass], count: int) -> None:
 
 def test_a_table_over_modbus_is_the_simulator_while_others_talk_nonsense() -> None:
     modbus, page = Address(HOST, free_port()), Address(HOST, free_port())
-    client, documents = TableClient(the_case().table, modbus.port), list[bytes]()
+    client, documents = TableClient(the_case().table, modbus.port), list[dict[str, Any]]()
 
     def nonsense(over: threading.Event) -> None:
         while not over.is_set():
             try:
+                with urllib.request.urlopen(f"http://{HOST}:{page.port}/now") as found:
+                    documents.append(json.loads(found.read()))
                 with socket.create_connection(modbus.pair, 1.0) as one:
                     one.sendall(b"GET / HTTP/1.0\r\n\r\n" + bytes(range(256)) * 4)
                 with ModbusTcpClient(HOST, port=modbus.port, retries=0) as other:
@@ -50,8 +53,6 @@ def test_a_table_over_modbus_is_the_simulator_while_others_talk_nonsense() -> No
                     assert other.write_registers(0, [1]).isError()
                     assert other.write_coil(COMMANDS_AT, True).isError()
                     assert other.read_holding_registers(90, count=50).isError()
-                with urllib.request.urlopen(f"http://{HOST}:{page.port}/now") as found:
-                    documents.append(found.read())
             except (OSError, ModbusException):
                 over.wait(0.05)
 
@@ -72,8 +73,7 @@ def test_a_table_over_modbus_is_the_simulator_while_others_talk_nonsense() -> No
     assert traffic.impossible > 0
     assert traffic.refused > 3 * (traffic.impossible - 1)
     assert traffic.connections > 3
-    last = json.loads(documents[-1])
-    assert (last["passes"], last["traffic"]["impossible"] > 0) == (3, True)
+    assert {each["passes"] for each in documents} == {3}
 
 
 def test_a_controller_that_vanishes_is_told_and_the_stage_before_stands() -> None:
@@ -86,7 +86,7 @@ def test_a_controller_that_vanishes_is_told_and_the_stage_before_stands() -> Non
         client(over, 60)
 
     with beside(vanishing):
-        passes, traffic, told = played({"--modbus": modbus}, 3)
+        passes, traffic, told = played({"--modbus": modbus}, 3, answer_s=0.05)
     assert traffic.connections == 2
     assert any("the controller is silent; stage" in each for each in told)
     assert told[-1].startswith("no answer for ")
