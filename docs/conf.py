@@ -18,6 +18,9 @@ sys.path.insert(0, str(DOCS.parent))
 from scripts.documentation.api_page import api_text  # noqa: E402
 from scripts.documentation.commands_page import commands_text  # noqa: E402
 from scripts.documentation.gallery_pictures import GalleryPictures  # noqa: E402
+from scripts.documentation.known_defects_page import defects_text  # noqa: E402
+from scripts.documentation.requirements import PAGE as REQUIREMENTS  # noqa: E402
+from scripts.documentation.requirements import with_proofs  # noqa: E402
 
 project = "retarder-synth"
 author = "the developers of retarder-synth"
@@ -46,7 +49,7 @@ sphinx_gallery_conf = {
     "show_signature": False,
     "download_all_examples": False,
     "abort_on_example_error": True,
-    "capture_repr": (),
+    "capture_repr": ("_repr_html_",),  # datasets and data frames
 }
 
 html_theme = "furo"
@@ -57,7 +60,8 @@ html_show_sourcelink = False
 
 API = re.compile(r"<!-- api (\S+) -->\n")
 COMMANDS = "<!-- commands -->\n"
-"""Marks in pages: the public names of a package, and all commands, stand in their place."""
+DEFECTS = "<!-- known defects -->\n"
+"""Marks in pages: the public names of a package, all commands, and the known defects stand in their place."""
 
 
 def setup(app: Any) -> None:
@@ -65,7 +69,8 @@ def setup(app: Any) -> None:
     app.connect("source-read", fill_marks)
 
 
-def fill_marks(_: Any, __: str, source: list[str]) -> None:
-    """Replace the marks of one page."""
+def fill_marks(_: Any, page: str, source: list[str]) -> None:
+    """Replace the marks of one page; requirements get their tests."""
     text = API.sub(lambda mark: api_text(mark[1]), source[0])
+    text = with_proofs(text) if page == REQUIREMENTS else text.replace(DEFECTS, defects_text())
     source[0] = text.replace(COMMANDS, commands_text("..")) if COMMANDS in text else text

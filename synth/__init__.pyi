@@ -1,5 +1,7 @@
 from synth.api.aiming import aim_tables as aim_tables
 from synth.api.aiming import load_aim as load_aim
+from synth.api.as_pandas import to_pandas as to_pandas
+from synth.api.as_xarray import to_xarray as to_xarray
 from synth.api.baselines import compare_with_baselines as compare_with_baselines
 from synth.api.design import FittedLines as FittedLines
 from synth.api.design import fit as fit
@@ -13,6 +15,7 @@ from synth.api.passes import Simulated as Simulated
 from synth.api.passes import predict as predict
 from synth.api.passes import simulate as simulate
 from synth.api.passes import trace as trace
+from synth.api.pictures import figures as figures
 from synth.api.pictures import plot_passes as plot_passes
 from synth.api.pictures import plot_table as plot_table
 from synth.api.problems import load_config as load_config

@@ -1,4 +1,4 @@
-"""For all tests: hypothesis draws the same examples in CI."""
+"""For all tests: hypothesis draws the same examples in CI; what is long waits; a matrix of requirements if wanted."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from hypothesis import settings
 from tests.corpus import Corpus, shared_base
 from tests.effort import IS_LONG, sized
 from tests.printed_page import Page, caught
+from tests.requirement_matrix import RequirementMatrix
 
 EXAMPLES = sized(25, 100)
 """That hypothesis draws where a test does not say how many."""
@@ -32,6 +33,17 @@ def pages() -> Iterator[list[Page]]:
 def corpus(tmp_path_factory: pytest.TempPathFactory) -> Corpus:
     """What commands have left, made once for all processes of this run."""
     return Corpus(shared_base(tmp_path_factory))
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Take the option that asks for a matrix."""
+    parser.addoption("--matrix", type=Path, help="write what became of each requirement into this file, as Markdown")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Keep the outcomes where a matrix is wanted."""
+    if path := config.getoption("matrix"):
+        config.pluginmanager.register(RequirementMatrix(path))
 
 
 COMPILES = "checker/test_any_time_simulation.py"

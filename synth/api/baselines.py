@@ -7,14 +7,13 @@ from synth.api.passes import FEWEST_PASSES, PASSES
 from synth.frame.input_error import InputError
 from synth.problem.problem import Problem
 from synth.retarder.class_setup import TUNING_PASSES
-from synth.retarder.comparison.baselines import tune_baselines
+from synth.retarder.comparison.compared_laws import compared_laws, permitted
 from synth.retarder.comparison.measured import Measured
-from synth.retarder.tune_case import beside_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import common_passes
 from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
-from tuning_tables import ControllerTable, Decisions
+from tuning_tables import ControllerTable
 
 
 @as_a_command
@@ -58,5 +57,5 @@ def compare_with_baselines(
     common, target = common_passes(problem.plant, stratified_passes(seed, 0, passes)), problem.target_speed_m_s
     rehearsal = common.of_others(random_passes(seed + 1, 0, TUNING_PASSES))
     sample = common.run(TableController(table))
-    laws = tune_baselines(rehearsal, target, tuple(dict.fromkeys((Decisions.AT_REST, table.decisions))))
-    return tuple(beside_table(law.name, common.run(law.controller), sample, target) for law in laws)
+    laws = compared_laws(rehearsal, common, sample, target, permitted(table))
+    return tuple(law.measured for law in laws)

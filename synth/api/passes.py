@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from synth.api.as_a_command import as_a_command
 from synth.api.problems import usual_resolution
 from synth.frame.input_error import InputError
@@ -39,7 +36,8 @@ class Simulated:
     seed
         Which passes they are.
     sample
-        How each ended.
+        How each ended, arrays (n,): `exit_speed_m_s` (0 after a stall), `stalled`, `switchings` (commands),
+        `transit_time_s`, and `weight`, how many cuts a pass stands for: use it in averages of your own.
 
     Examples
     --------
@@ -68,26 +66,6 @@ class Simulated:
         (1000, 0.033, [0.031, 0.035])
         """
         return exit_statistics(self.sample, self.target_speed_m_s)
-
-    def columns(self) -> dict[str, NDArray[np.generic]]:
-        """The passes as columns, for example for `pandas.DataFrame`.
-
-        Returns
-        -------
-        dict
-            Arrays of shape (n,) by name: `exit_speed_m_s` (0 after a stall), `stalled`, `switchings` (commands),
-            `transit_time_s`, and `weight`, how many cuts a pass stands for: use it in averages of your own.
-
-        Examples
-        --------
-        With `problem` and `table` from the example of `tabulate`:
-
-        >>> import synth
-        >>> columns = synth.simulate(table, problem, passes=1000).columns()
-        >>> {name: column.shape for name, column in columns.items() if name.endswith("_s")}
-        {'exit_speed_m_s': (1000,), 'transit_time_s': (1000,)}
-        """
-        return dict(vars(self.sample))
 
     def __repr__(self) -> str:
         found = self.statistics

@@ -1,12 +1,16 @@
-"""Pictures of a table."""
+"""Pictures of tables and results."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 from synth.api.as_a_command import as_a_command
+from synth.frame.exhibits import Chart, exhibits_of
+from synth.hump.trains.humped_trial import HumpedTrial
+from synth.logs.identify import Identified
 from synth.problem.problem import Problem
 from tuning_tables import ControllerTable
+from tuning_tables.aim import AimTables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -72,3 +76,42 @@ def plot_passes(table: ControllerTable, problem: Problem, seed: int = 1) -> Figu
     from synth.retarder.pictures.table_picture import drawn_passes, table_passes
 
     return table_passes(table, drawn_passes(table, problem.plant, seed))
+
+
+@as_a_command
+def figures(result: Identified | HumpedTrial | AimTables) -> dict[str, Figure]:
+    """Draw every picture that a command shows of a result.
+
+    Parameters
+    ----------
+    result
+        What `identify`, `hump_trains` or `aim_tables` gives.
+
+    Returns
+    -------
+    dict of matplotlib.figure.Figure
+        By the names that the files of the command have.
+
+    Examples
+    --------
+    >>> import synth
+    >>> trains = synth.hump_trains(synth.load_trial("dumper"), trains=2)
+    >>> sorted(synth.figures(trains))[:2]
+    ['hump-contacts', 'hump-couplings']
+    """
+    match result:
+        case Identified():
+            from synth.logs.identify_shown import numbers
+
+            exhibits = numbers(result)
+        case HumpedTrial():
+            from synth.hump.trains.simulate_command import COMMAND
+
+            exhibits = exhibits_of(tuple(COMMAND.show(result)))
+        case AimTables():
+            from synth.aim.pictures.commands import aim_figures
+
+            return dict(aim_figures(result.tables))
+        case _:
+            assert_never(result)
+    return {each.name: each.draw() for each in exhibits if isinstance(each, Chart)}

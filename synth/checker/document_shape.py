@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -197,3 +198,11 @@ def refuse_unless(holds: bool, value: Any, path: str, wanted: str) -> None:
     """Raise `DamagedError` unless `holds`."""
     if not holds:
         raise DamagedError(f"{path or 'the document'} is {shown(value)}, but it must be {wanted}")
+
+
+def origin_faults(document: Mapping[str, Any]) -> Iterator[str]:
+    """Faults of what a table says of its making."""
+    if re.fullmatch("[0-9a-f]{64}", document["generator"]["config_sha256"]) is None:
+        yield f"its config_sha256, {document['generator']['config_sha256'][:70]!r}, is not one"
+    if re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z", document["created"], re.ASCII) is None:
+        yield f"its date {document['created'][:40]!r} is not one"

@@ -88,6 +88,12 @@ def table_of(document: Mapping[str, Any]) -> Table:
     refuse_unless(2 <= len(stages) <= 32, len(stages), "the number of stages", "from 2 to 32")
     passes = predicted["passes"]
     refuse_unless(passes is None or passes >= 1, passes, "predicted.passes", "1 or more")
+    refuse_unless(
+        passes is None or document["estimator"] is not None,
+        passes,
+        "predicted.passes",
+        "null where there is no estimator",
+    )
     for k, stage in enumerate(stages):
         refuse_unless(stage["k"] == k, stage["k"], f"stages[{k}].k", str(k))
         for line in (stage["lower"], stage["upper"]):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
+from synth.checker.document_shape import origin_faults
 from synth.checker.finding import Finding, Kind
 from synth.checker.float32 import LARGEST, is_float32, rounded
 from synth.checker.line_order import LEVEL, Tilt, compare, range_of
@@ -58,8 +58,7 @@ def identity_faults(table: Table) -> Iterator[str]:
     begin, end = map(rounded, table.path_m)
     if not (begin < end and begin <= 0.0 and end >= rounded(table.exit_m)):
         yield f"its valid path, {table.path_m}, does not cover the way from 0 to the exit at {table.exit_m:g} m"
-    if re.fullmatch("[0-9a-f]{64}", table.config_sha256) is None:
-        yield f"its config_sha256, {table.config_sha256[:70]!r}, is not one"
+    yield from origin_faults(table.document)
 
 
 def pressure_faults(table: Table) -> Iterator[str]:

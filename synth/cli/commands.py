@@ -126,7 +126,7 @@ def inspect(
 def export(
     source: ExportSource,
     form: Annotated[
-        str, typer.Option("--format", metavar="json|csv|c|st|plcopen|twincat|scl|fmu", help="Form of the tables.")
+        str, typer.Option("--format", metavar="json|csv|c|st|plcopen|twincat|scl|fmu|fmu2", help="Form of the tables.")
     ],
     manner: Manner,
     output: Annotated[
@@ -147,7 +147,7 @@ def export(
 
     JSON and CSV: a file each. C99 and Structured Text: all tables together, with the rule and a self-test. Structured
     Text as bare text (st), as one XML file of PLCopen (CODESYS, Beremiz), for TwinCAT 3, or in SCL (TIA Portal). FMU:
-    the controller and its position as units of FMI 3.0 for co-simulation.
+    the controller and its position as units of FMI 3.0 (fmu) or 2.0 (fmu2) for co-simulation.
     """
     from synth.cli.export import AskedCode, export_command
 

@@ -29,7 +29,7 @@ class AskedCode:
 def export_command(source: Path, form: str, output: Path, asked: AskedCode, manner: Manner) -> int:
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
     from synth.frame.results_directory import results_directory
-    from synth.retarder.forms.code_options import CONTROLLER_NAMES, FMU, code_options
+    from synth.retarder.forms.code_options import CONTROLLER_NAMES, FMU_NAMES, code_options
     from synth.retarder.forms.configuration_beside import configuration_file
     from synth.retarder.forms.correction_form import correction_files
     from synth.retarder.forms.table_file import files_at
@@ -50,10 +50,11 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, mann
         files |= configuration_file(source, tables, options.prefix)
         for sentence in shadows(source, tables):
             manner.warn(f"warning: {sentence}")
-    if form == FMU:
+    if form in FMU_NAMES:
+        from synth.retarder.fmi.interfaces import INTERFACES
         from synth.retarder.forms.position_form import position_files
 
-        files |= position_files(source, tables, options.prefix, manner.warn)
+        files |= position_files(source, tables, INTERFACES[form], options.prefix, manner.warn)
     with results_directory(output, "export", files_at(source)) as directory:
         names = [str(file) for file in directory.write_all(files)]
     manner.give(lambda: {"files": names}, lambda: names)

@@ -17,6 +17,7 @@ from synth.cli.inspect_drawn import AskedDrawing, draw
 from synth.cli.inspect_passages import passage_document, passage_page
 from synth.cli.inspect_table import table_words
 from synth.frame.command import Limit, Verdict
+from synth.frame.known_defects import Concerned, concerned
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.printed_page import Exhibit
@@ -63,6 +64,12 @@ class Inspected:
     code: Sequence[CodeFile]
     summary: dict[str, Any] | None
 
+    @property
+    def defects(self) -> tuple[Concerned, ...]:
+        """Known ones of the versions that made the tables."""
+        tables = (*self.tables.of_stages, *(file.table for file in self.tables.aims))
+        return concerned(lambda: map(to_document, tables))
+
     def document(self) -> dict[str, Any]:
         """It for programs."""
         tables = self.tables
@@ -70,6 +77,7 @@ class Inspected:
         found: dict[str, Any] = {"path": str(tables.path), "files": files}
         found |= {"passage_tables": [*map(passage_document, tables.passages)]} if tables.passages else {}
         found |= {"code": [*map(code_document, self.code)]} if self.code else {}
+        found |= {"known_defects": [each.document for each in self.defects]}
         return found | ({"summary": self.summary} if self.summary else {})
 
     def page(self) -> Iterator[Exhibit]:
@@ -88,6 +96,7 @@ class Inspected:
         yield from map(code_sentence, self.code)
         if self.summary is not None:
             yield f"{tables.path / 'summary.json'}: {self.summary['sentence']}"
+        yield from (each.sentence for each in self.defects)
 
 
 def contents(file: TableFile) -> str:

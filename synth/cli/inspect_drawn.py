@@ -54,7 +54,8 @@ def asked_drawing(output: Path | None, config: Path | None) -> AskedDrawing | No
 
 def draw(source: Path, tables: TablesAt, asked: AskedDrawing, page: Sequence[Exhibit], manner: Manner) -> Drawn:
     """Draw the `tables` at `source`, passes only for those that a class of the configuration fits; and leave `page`."""
-    from synth.cli.inspect_pictures import Surroundings, aim_figures, figures_of
+    from synth.aim.pictures.commands import aim_figures
+    from synth.cli.inspect_pictures import Surroundings, figures_of
     from synth.cli.printed_report import report_of
     from synth.frame.perform import PAGE
     from synth.frame.results_directory import results_directory

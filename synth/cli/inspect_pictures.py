@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
@@ -13,7 +13,6 @@ if TYPE_CHECKING:
 
     from synth.retarder.configuration.resolved_config import ResolvedConfig
     from tuning_tables import ControllerTable
-    from tuning_tables.aim import AimTable
     from tuning_tables.passages.passage_table import PassageTable
     from tuning_tables.table_kinds import StageTable
 
@@ -41,16 +40,6 @@ class Surroundings:
                 raise
             self.manner.warn(f"no passes are drawn: {fault}")
             return None
-
-
-def aim_figures(tables: Sequence[AimTable]) -> Mapping[str, Figure]:
-    """The pictures of aim tables by name, all tables of one kind of knowledge together."""
-    from synth.aim.pictures.commands import commands_by_cars, commands_by_resistance
-
-    measured = [table for table in tables if table.is_measured]
-    plain = [table for table in tables if not table.is_measured]
-    found = {"aim-commands-by-cars": commands_by_cars(plain)} if plain else {}
-    return {**found, "aim-commands-by-resistance": commands_by_resistance(measured)} if measured else found
 
 
 def figures_of(table: StageTable, around: Surroundings) -> Mapping[str, Figure]:

@@ -6,15 +6,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from synth.frame.known_defects import Concerned, concerned
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.printed_page import Verdict as Told
-from synth.frame.terminal.telling import INPUT_FAULT, say
+from synth.frame.terminal.telling import INPUT_FAULT, LIMITS_MISSED, say
 
 if TYPE_CHECKING:
+    from synth.checker.aim.reading import Aim
     from synth.checker.finding import Finding
+    from synth.checker.passages.reading import PassageTable
     from synth.checker.statistics import ExitFigures
+    from synth.checker.table_reading import Table
     from synth.checker.verdict import AimVerdict, PassageVerdict, TableVerdict, Verdict
 
 
@@ -32,21 +36,30 @@ def verify_command(source: Path, passes: int, seed: int, output: Path | None, ma
     except NothingToVerifyError as fault:
         say(str(fault))
         return INPUT_FAULT
+    defects = concerned(lambda: (each.document for each in tables_of(verdict)))
+    code = verdict.code or (LIMITS_MISSED if any(each.defect.unsafe for each in defects) else 0)
+    told = [*words(verdict), *(each.sentence for each in defects)]
     if output is not None:
         from synth.cli.printed_report import write_report
 
-        page: list[Exhibit] = [verdict_words(verdict), *words(verdict)]
-        write_report("verify", f"Check of {source.name}", page, source, output, steps(verdict))
-    manner.give(lambda: document(verdict), lambda: [*words(verdict), verdict_words(verdict)])
-    return verdict.code
+        page: list[Exhibit] = [verdict_words(verdict, code), *told]
+        write_report("verify", f"Check of {source.name}", page, source, output, steps(code))
+    manner.give(lambda: document(verdict, defects, code), lambda: [*told, verdict_words(verdict, code)])
+    return code
 
 
-def document(verdict: Verdict) -> dict[str, Any]:
+def tables_of(verdict: Verdict) -> list[Table | Aim | PassageTable]:
+    """All tables that were read."""
+    lines, passages = ([each.table for each in judged] for judged in (verdict.tables, verdict.passages))
+    return [*lines, *(each.aim for each in verdict.aims), *passages]
+
+
+def document(verdict: Verdict, defects: Sequence[Concerned], code: int) -> dict[str, Any]:
     """The verdict for programs."""
     return {
         "path": str(verdict.path),
-        "confirmed": verdict.code == 0,
-        "exit_code": verdict.code,
+        "confirmed": code == 0,
+        "exit_code": code,
         "passes": verdict.passes,
         "seed": verdict.seed,
         "files": list(verdict.files),
@@ -57,6 +70,7 @@ def document(verdict: Verdict) -> dict[str, Any]:
             {"about": finding.about, "kind": finding.kind.value, "sentence": finding.sentence}
             for finding in verdict.findings
         ],
+        "known_defects": [each.document for each in defects],
     }
 
 
@@ -144,9 +158,9 @@ def finding_lines(findings: Sequence[Finding]) -> list[str]:
     return [f"  {finding.kind.value}: {finding.sentence}" for finding in findings]
 
 
-def steps(verdict: Verdict) -> tuple[str, ...]:
+def steps(code: int) -> tuple[str, ...]:
     """What to do first."""
-    if verdict.code == 0:
+    if code == 0:
         return ("Load the tables, and try them on the track: this check knows nothing of your retarder.",)
     return ("Do not load these tables: make them again, or copy them again from where they were made.",)
 
@@ -162,8 +176,9 @@ def words(verdict: Verdict) -> list[str]:
     return [*lines, *(f"{finding.about}: {finding.kind.value}: {finding.sentence}" for finding in verdict.others)]
 
 
-def verdict_words(verdict: Verdict) -> Told:
+def verdict_words(verdict: Verdict, code: int) -> Told:
     """What it comes to."""
     found = state(verdict.findings) if verdict.findings else "nothing found"
-    count = len(verdict.tables) + len(verdict.aims) + len(verdict.passages)
-    return Told(verdict.code == 0, f"{counted(count, 'table')}, {counted(len(verdict.files), 'file')}: {found}")
+    found += ", but made by a version with an unsafe defect" if code and not verdict.code else ""
+    count = len(tables_of(verdict))
+    return Told(code == 0, f"{counted(count, 'table')}, {counted(len(verdict.files), 'file')}: {found}")

@@ -11,7 +11,7 @@ from plant_models import Plant
 from synth.problem.aim import Aim
 from synth.retarder.case_result import CaseResult, CaseStudy
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup
-from synth.retarder.comparison.baselines import tune_baselines
+from synth.retarder.comparison.compared_laws import beside_table, best_law, compared_laws, permitted
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.friction_bound import friction_bound
 from synth.retarder.comparison.measured import Measured
@@ -24,13 +24,12 @@ from synth.retarder.policy_map import policy_map
 from synth.retarder.tuned_table import TunedTable, ValidatedLines, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses
-from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import TRACE_FACTORS, ExitSample
 from synth.simulation.random_passes import random_passes
 from synth.simulation.unavoidable_error import unavoidable_error
 from synth.solver.backward_induction import Solution
 from synth.solver.tabulate import lines_of
-from tuning_tables import ControllerTable, Decisions
+from tuning_tables import ControllerTable
 
 LINE_NODES = 301
 INDIFFERENCE_SHOWN_M2_S2 = 1e-4
@@ -103,9 +102,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
 def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedLines, told: ExitSample) -> Comparison:
     """The closed loops of all controllers on the common passes; `told`: that of the reference."""
     passes, target, sample = order.setup.passes, order.solution.aim.target_speed_m_s, validated.sample
-    baselines = tune_baselines(order.tuning, target, permitted(tuned))
-    by_baselines = {each.name: passes.run(each.controller) for each in baselines}
-    best = min(by_baselines, key=lambda name: exit_statistics(by_baselines[name], target).rms_m_s)
+    laws = compared_laws(order.tuning, passes, sample, target, permitted(validated.table))
 
     def at_rest() -> Measured:
         controller = controller_of(tuned.at_rest.lines, validated.table.estimator)
@@ -113,24 +110,10 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedLines, t
 
     return Comparison(
         friction_known=beside_table("friction known", told, sample, target),
-        baselines=tuple(beside_table(name, each, sample, target) for name, each in by_baselines.items()),
-        baseline_ratio_ci95=beside_table(best, by_baselines[best], told, target).table_ratio_ci95,
+        baselines=tuple(each.measured for each in laws),
+        baseline_ratio_ci95=beside_table("", best_law(laws).sample, told, target).table_ratio_ci95,
         at_rest=None if tuned.at_any_time is None else at_rest(),
     )
-
-
-def permitted(tuned: TunedTable) -> tuple[Decisions, ...]:
-    """When laws that the table is compared with may command: as it, or less often."""
-    return (Decisions.AT_REST,) if tuned.at_any_time is None else (Decisions.AT_REST, Decisions.AT_ANY_TIME)
-
-
-def beside_table(name: str, sample: ExitSample, table: ExitSample, target_speed_m_s: float) -> Measured:
-    """Figures of a controller's `sample`, and how the table fares on the same passes."""
-    found = exit_statistics(sample, target_speed_m_s)
-    if found.rms_m_s == 0.0:
-        return Measured(name, found)
-    ratio, ci95 = rms_ratio(table, sample, target_speed_m_s)
-    return Measured(name, found, table_ratio=ratio, table_ratio_ci95=ci95)
 
 
 def case_study(order: CaseOrder, validated: ValidatedLines) -> CaseStudy:

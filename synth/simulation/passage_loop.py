@@ -143,11 +143,15 @@ def close_passage_loop(plant: Plant, sensors: PointSensors, stages: int, substep
     if not len(deciding.path_m):
         raise ValueError("passage loop: no axle at which is decided passes a sensor before the exit")
     radar = close_loop(replace(plant, sensor=replace(plant.sensor, missed_share=0.0)), stages)
-    if substeps is None:
-        substeps = math.ceil(sensors.scan_period_s / SUBSTEP_S - 1e-9)
+    substeps = substeps or scan_substeps(sensors)
     actuator = stage_locked_actuator(plant.position, sensors, stages - 1, substeps)
     drive = piece_drive(actuator, sensors.scan_period_s, plant.approach.initial_stage)
     return PassageLoop(sensors, radar, drive, pulses, deciding)
+
+
+def scan_substeps(sensors: PointSensors) -> int:
+    """Parts of a scan in which a transient is played: as many as make them at most `SUBSTEP_S`."""
+    return math.ceil(sensors.scan_period_s / SUBSTEP_S - 1e-9)
 
 
 def piece_drive(actuator: Actuator, period_s: float, initial_stage: int) -> kernel.PieceDrive:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,14 +42,8 @@ class PolynomialLines:
 
     def powers_of_s(self) -> NDArray[np.float64]:
         """Ascending coefficients in powers of s in metres, (K + 1, 2, r + 1)."""
-        series = np.polynomial.legendre.Legendre
-        converted = np.zeros_like(self.coefficients)
-        for index in np.ndindex(*self.has_line.shape):
-            power = series(self.coefficients[index], domain=[self.start_m, self.exit_m]).convert(
-                kind=np.polynomial.Polynomial, domain=[-1.0, 1.0]
-            )
-            converted[index][: len(power.coef)] = power.coef
-        return converted
+        powers: NDArray[np.float64] = self.coefficients @ basis_in_powers(self.start_m, self.exit_m, self.degree)
+        return powers
 
     def basis(self, nodes_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """Legendre polynomials at the nodes, (nodes, r + 1)."""
@@ -63,6 +58,18 @@ def basis(nodes_m: NDArray[np.float64], start_m: float, exit_m: float, degree: i
     """Legendre polynomials at the nodes, (nodes, r + 1)."""
     x = 2.0 * (nodes_m - start_m) / (exit_m - start_m) - 1.0
     return np.asarray(np.polynomial.legendre.legvander(x, degree), dtype=np.float64)
+
+
+@lru_cache(maxsize=32)
+def basis_in_powers(start_m: float, exit_m: float, degree: int) -> NDArray[np.float64]:
+    """Ascending coefficients in powers of s in metres of every Legendre polynomial, (r + 1, r + 1)."""
+    found = np.zeros((degree + 1, degree + 1))
+    for order in range(degree + 1):
+        series = np.polynomial.legendre.Legendre.basis(order, domain=[start_m, exit_m])
+        power = series.convert(kind=np.polynomial.Polynomial, domain=[-1.0, 1.0])
+        found[order, : len(power.coef)] = power.coef
+    found.setflags(write=False)
+    return found
 
 
 def gap_of(lines: PolynomialLines) -> float:

@@ -37,6 +37,7 @@ def relative_names() -> Iterator[str]:
     return (path.relative_to(ROOT).as_posix() for path in FILES)
 
 
+@pytest.mark.requirement("VERIFY-01")
 def test_import_contracts_are_kept() -> None:
     run = lint_imports(ROOT)
     assert run.returncode == 0, run.stdout + run.stderr
@@ -62,6 +63,7 @@ INTRUDERS = (
 """A module, an import that no contract allows it, and how that is told."""
 
 
+@pytest.mark.requirement("VERIFY-01")
 def test_an_import_against_the_contracts_is_found(tmp_path: Path) -> None:
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     for package in PACKAGES:

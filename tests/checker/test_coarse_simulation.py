@@ -171,6 +171,7 @@ def many(plant: Plant, table: Table) -> Passes:
     return simulate(plant, table, 4000, 9)
 
 
+@pytest.mark.requirement("VERIFY-06")
 def test_agrees_with_the_production_simulator(many: Passes, table: Table) -> None:
     """Two samples of 4 000 passes: within four standard errors and one percent of coarseness."""
     found = figures_of(many, table.target_m_s)
@@ -182,6 +183,7 @@ def test_agrees_with_the_production_simulator(many: Passes, table: Table) -> Non
     assert abs(difference) < 4.0 * math.hypot(own, stated) + 0.01
 
 
+@pytest.mark.requirement("VERIFY-02")
 def test_true_claims_are_not_doubted(many: Passes, table: Table) -> None:
     """1 000 samples of 300 passes: none is doubted; five would be too many for a chance of 1e-3 (5e-3 at the level)."""
     random, doubted = Random(2), 0

@@ -17,6 +17,7 @@ from tuning_tables.table_book import TableBook
 READINGS = 60_000
 
 
+@pytest.mark.requirement("VERIFY-06")
 @pytest.mark.parametrize("made", [sample_book, approaching_book, surface_book])
 def test_hard_readings_are_decided_alike(made: Callable[[], TableBook]) -> None:
     book = made()

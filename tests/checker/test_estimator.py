@@ -127,6 +127,7 @@ def assert_the_same(estimator: Estimator, samples: list[Sample]) -> Iterator[tup
         yield own, alarmed, answer
 
 
+@pytest.mark.requirement("VERIFY-06")
 def test_it_is_that_of_the_controller_bit_for_bit() -> None:
     """After each of 30 000 samples of 300 cuts, many of them impossible, of estimators of every kind."""
     chance, clamped = Random(7), 0

@@ -113,6 +113,7 @@ def test_a_sound_export_is_compared_and_confirmed(
     assert code_at(tmp_path) == code_at(tmp_path / code[0]) == (only_code(tmp_path),)
 
 
+@pytest.mark.requirement("VERIFY-05")
 @pytest.mark.parametrize(("kind", "form", "split"), EXPORTS)
 def test_a_changed_number_of_any_member_is_found(tmp_path: Path, kind: str, form: str, split: bool) -> None:
     source = read_source(written(tmp_path, kind, form, split))

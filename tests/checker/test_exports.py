@@ -36,6 +36,7 @@ def swap_coefficients(document: Document) -> None:
     line[0], line[1] = line[1], line[0]
 
 
+@pytest.mark.requirement("VERIFY-05")
 def test_swapped_coefficients_are_found_in_every_export(tuned: Path) -> None:
     rewrite(min((tuned / "tables").glob("*.json")), swap_coefficients)
     verdict = judged(tuned)
@@ -171,6 +172,7 @@ def test_a_book_that_points_elsewhere_is_not_followed(tuned: Path) -> None:
     assert found(look(book), Kind.DAMAGED, "mass_t is no dataset of its own")
 
 
+@pytest.mark.requirement("VERIFY-05")
 def test_a_removed_table_is_missed(tuned: Path) -> None:
     min((tuned / "tables").glob("*.json")).unlink()
     verdict = judged(tuned)
@@ -183,6 +185,7 @@ def test_a_removed_csv_is_missed(tuned: Path) -> None:
     assert found(look(tuned), Kind.DISAGREES, "it has none")
 
 
+@pytest.mark.requirement("VERIFY-05")
 def test_a_table_too_many_is_found(tuned: Path) -> None:
     table = min((tuned / "tables").glob("*.json"))
     copy = Path(shutil.copy(table, table.with_name("copy.json")))

@@ -14,6 +14,7 @@ from synth.checker.verdict import CONFIRMED, verify
 from tests.checker.planted_fault import Document, alone, claim_in_summary, found, judged, look, rewrite
 
 
+@pytest.mark.requirement("VERIFY-02")
 def test_a_tune_with_every_export_passes(tuned_once: Path) -> None:
     verdict = verify(tuned_once, 300, 1)
     assert verdict.findings == ()
@@ -72,6 +73,7 @@ def outside_its_interval(document: Document) -> None:
     document["validated"]["rms_ci95_m_s"] = [0.9 * x for x in document["validated"]["rms_ci95_m_s"]]
 
 
+@pytest.mark.requirement("VERIFY-03")
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -131,6 +133,7 @@ def other_exit(document: Document) -> None:
     document["retarder"]["exit_m"] += 1.0
 
 
+@pytest.mark.requirement("VERIFY-04")
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -151,6 +154,7 @@ def test_a_senseless_table_is_damaged(tuned: Path, change: Callable[[Document], 
     assert found(look(table), Kind.DAMAGED, words)
 
 
+@pytest.mark.requirement("VERIFY-04")
 def test_a_table_of_another_configuration_is_found(tuned: Path) -> None:
     rewrite(alone(tuned), lambda document: document["generator"].update(config_sha256="0" * 64))
     assert found(look(tuned), Kind.DISAGREES, "it was made from another configuration than summary.json tells")

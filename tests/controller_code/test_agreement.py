@@ -40,6 +40,7 @@ def tracks(book: TableBook) -> Tracks:
     return follow(book, SAMPLES, 20261122)
 
 
+@pytest.mark.requirement("CODE-01")
 @pytest.mark.parametrize(("book", "build"), PROVED, indirect=["book"], scope="session")
 def test_c_decides_chooses_and_estimates_as_python(
     build: Build, questions: Questions, tracks: Tracks, tmp_path: Path, tool: Tool
@@ -79,6 +80,7 @@ def test_one_reading_at_a_time_is_decided_as_many(questions: Questions) -> None:
         assert decide_for(questions.book.tables[table], int(stage), *reading) == questions.decisions[place]
 
 
+@pytest.mark.requirement("CODE-08")
 @pytest.mark.parametrize("flag", ["-ffast-math", "-ffinite-math-only"])
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_switches_that_break_the_rule_are_refused(

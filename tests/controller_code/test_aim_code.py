@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -13,24 +12,20 @@ import numpy.typing as npt
 import pytest
 
 from scripts.studies.in_the_loop.builds import Build
-from scripts.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
+from tests.controller_code.built_program import built, told
 from tests.controller_code.conftest import ToChange, Tool
-from tests.controller_code.sample_book import sample_book
-from tests.controller_code.test_export import FLOAT_H, PEDANTIC
 from tests.controller_code.ways import WAYS
 from tests.effort import QUESTIONS
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
-from tests.tuning_tables.aim.made_tables import category_table, measured_table, random_table, reported_of
+from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
 from tuning_tables.aim import AimTables
 from tuning_tables.aim.c_source import aim_c_files
 from tuning_tables.aim.golden_aims import few_golden_aims, golden_aims
-from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.aim_code import aim_code
 from tuning_tables.controller_code.code import crc32_of, words_of
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
-SOURCES = ("aim_table.c", "aim_self_test.c")
 PROGRAM = r"""
 #include <stdio.h>
 #include <string.h>
@@ -83,28 +78,7 @@ def right(aims: AimTables, asked: npt.NDArray[np.void]) -> npt.NDArray[np.float3
     return answers(aims, asked)
 
 
-def written(files: Mapping[str, bytes], folder: Path) -> None:
-    for name, content in files.items():
-        (folder / name).write_bytes(content)
-    (folder / "main.c").write_text(PROGRAM)
-
-
-def built(files: Mapping[str, bytes], folder: Path, build: Build) -> list[str]:
-    """The command that runs a program with the exported files in it."""
-    written(files, folder)
-    objects = []
-    for name in SOURCES:
-        objects.append(str(folder / f"{name}.o"))
-        compile_with([build.compiler, *build.contract, *build.flags, "-c", str(folder / name), "-o", objects[-1]])
-    program = str(folder / "program")
-    compile_with([build.compiler, *build.flags, *build.link, str(folder / "main.c"), *objects, "-o", program])
-    return [*build.emulator, program]
-
-
-def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
-    return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
-
-
+@pytest.mark.requirement("CODE-01")
 @pytest.mark.parametrize("build", WAYS, ids=str)
 def test_c_answers_as_python_to_the_last_bit(
     build: Build,
@@ -116,7 +90,7 @@ def test_c_answers_as_python_to_the_last_bit(
 ) -> None:
     for name in build.missing():
         tool(name)
-    command = built(aim_c_files(aims), tmp_path, build)
+    command = built(aim_c_files(aims), PROGRAM, tmp_path, build)
     found = np.frombuffer(
         told(command, given=asked.astype(asked.dtype.newbyteorder(build.order)).tobytes()), f"{build.order}f4"
     )
@@ -131,43 +105,6 @@ def test_the_questions_reach_much(asked: npt.NDArray[np.void], right: npt.NDArra
         assert np.count_nonzero(~np.isfinite(asked[name])) > 0.0005 * QUESTIONS
     # One step of float32 in the distance changes the answer: it is near a node, or sharp.
     assert np.count_nonzero(asked["cars"] < 1) > 0.005 * QUESTIONS
-
-
-@pytest.mark.parametrize("compiler", ["gcc", "clang"])
-@pytest.mark.parametrize("measured", [True, False])
-def test_compilers_have_nothing_to_say(compiler: str, measured: bool, tmp_path: Path, tool: Tool) -> None:
-    written(aim_c_files(sample_set() if measured else AimTables((category_table(),))), tmp_path)
-    for name in SOURCES:
-        said = compile_with([tool(compiler), *PEDANTIC, str(tmp_path / name), "-o", str(tmp_path / "o")])
-        assert said == ""
-
-
-@pytest.mark.long
-def test_analysers_have_nothing_to_say(aims: AimTables, tmp_path: Path, tool: Tool) -> None:
-    written(aim_c_files(aims), tmp_path)
-    weak = ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage", "-Wno-unknown-warning-option",
-            "-Wno-declaration-after-statement")  # fmt: skip
-    for name in SOURCES:
-        for command in ([tool("gcc"), *PEDANTIC, "-fanalyzer"], [tool("clang"), *PEDANTIC, *weak]):
-            assert compile_with([*command, str(tmp_path / name), "-o", str(tmp_path / "o")]) == ""
-    files = [str(tmp_path / name) for name in (*SOURCES, "main.c")]
-    checks = ["--enable=all", "--inconclusive", "--std=c99", "--quiet", "--error-exitcode=3"]
-    assert compile_with([tool("cppcheck"), *checks, "--suppress=missingIncludeSystem", *FLOAT_H, *files]) == ""
-
-
-def test_nothing_but_itself_is_linked_and_nothing_is_variable(aims: AimTables, tmp_path: Path, tool: Tool) -> None:
-    written(aim_c_files(aims), tmp_path)
-    for name in SOURCES:
-        compile_with([tool("gcc"), *CONTRACT, "-Os", "-c", str(tmp_path / name), "-o", str(tmp_path / f"{name}.o")])
-    listed = compile_with(["nm", *(str(tmp_path / f"{name}.o") for name in SOURCES)])
-    kinds = {(line.split()[-2], line.split()[-1]) for line in listed.splitlines() if len(line.split()) >= 2}
-    defined = {name for kind, name in kinds if kind in "TRDBC"}
-    assert {name for kind, name in kinds if kind == "U"} - defined <= {"memcpy", "memset"}
-    assert not {kind for kind, _ in kinds} & set("dDbBC")
-    assert {name for kind, name in kinds if kind in "TR"} == {
-        "aim_table_count", "aim_tables", "aim_select", "aim_exit_speed", "aim_table_intact", "aim_crc32",
-        "aim_self_test",
-    }  # fmt: skip
 
 
 MUTANTS = (
@@ -222,23 +159,25 @@ def to_mutate(self_test: SelfTestSize) -> Mapping[str, bytes]:
     return {**aim_c_files(aims, RETARDER, self_test), "main.c": PROGRAM.encode("ascii")}
 
 
+@pytest.mark.requirement("CODE-06")
 @pytest.mark.parametrize(
     ("before", "after", "fault"), MUTANTS, ids=[f"{each[1][:30]}-{n}" for n, each in enumerate(MUTANTS)]
 )
 def test_the_self_test_finds_a_wrong_controller(
     before: str, after: str, fault: int | None, tmp_path: Path, to_change: ToChange
 ) -> None:
-    export = to_change([to_mutate(size) for size in (FULL, SMALL)], SOURCES[0])
+    export = to_change([to_mutate(size) for size in (FULL, SMALL)], "aim_table.c")
     for said in export.self_tests(before, after, tmp_path):
         assert said.returncode == 0
         assert said.stdout.startswith(f"fault {fault} at") if fault else said.stdout == "fault 0 at 0\n"
 
 
+@pytest.mark.requirement("CODE-07")
 def test_a_damaged_table_is_found_and_leads_nowhere(tmp_path: Path, tool: Tool) -> None:
     """Every changed byte of a block; sizes that would lead out of the table; speeds that are none."""
     tool("gcc")
     aims = AimTables((category_table(), measured_table()))
-    command = built(aim_c_files(aims), tmp_path, Build("gcc", ("-O1", "-g", "-fsanitize=address,undefined")))
+    command = built(aim_c_files(aims), PROGRAM, tmp_path, Build("gcc", ("-O1", "-g", "-fsanitize=address,undefined")))
     code = aim_code(aims, FULL)
     words = words_of(code.table, code.tables[1].values)
     sound = np.append(words, np.uint32(crc32_of(words)))
@@ -259,46 +198,6 @@ def test_a_damaged_table_is_found_and_leads_nowhere(tmp_path: Path, tool: Tool) 
     assert {line[0] for line in lines[1:]} == {"0"}
     assert {line[2] for line in lines[1:]} == {"0", "1"}  # never a speed out of the bounds
     assert set(lines[-11:]) == {"0 0"}
-
-
-def test_files_of_two_exports_are_not_compiled_together(tmp_path: Path, tool: Tool) -> None:
-    written(aim_c_files(AimTables((category_table(),))), tmp_path)
-    (tmp_path / "aim_table.h").write_bytes(aim_c_files(AimTables((category_table(0.7),)))["aim_table.h"])
-    for name in SOURCES:
-        with pytest.raises(BuildError, match=r"aim_table\.h is of another export"):
-            compile_with([tool("gcc"), *CONTRACT, "-c", str(tmp_path / name), "-o", str(tmp_path / "o")])
-
-
-def test_aim_tables_of_two_positions_and_controller_tables_fit_into_one_program(tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
-    files = {
-        **c_files(sample_book(), ExportPrefix("PARK")),
-        **aim_c_files(AimTables((category_table(),)), ExportPrefix("PARK")),
-    }
-    files |= aim_c_files(AimTables((random_table(3, True),)), ExportPrefix("Park_2"))
-    main = '#include "park_self_test.h"\n#include "park_aim_self_test.h"\n#include "park_2_aim_self_test.h"\n'
-    main += "int main(void) { return park_self_test(0) + park_aim_self_test(0) + park_2_aim_self_test(0)"
-    main += " + (PARK_AIM_CATEGORY_ST != PARK_CATEGORY_ST) + (park_2_aim_select(1, 0) >= 0); }\n"
-    written({**files, "all.c": main.encode()}, tmp_path)
-    sources = [name for name in files if name.endswith(".c")]
-    assert sorted(sources)[:2] == ["park_2_aim_self_test.c", "park_2_aim_table.c"]
-    compile_with(
-        ["gcc", *CONTRACT[:-1], *(str(tmp_path / name) for name in (*sources, "all.c")), "-o", str(tmp_path / "all")]
-    )
-    assert subprocess.run([tmp_path / "all"], check=False).returncode == 0
-
-
-@pytest.mark.parametrize("standard", ["c++98", "c++17"])
-def test_cxx_takes_the_headers_and_since_17_the_code(
-    standard: str, aims: AimTables, tmp_path: Path, tool: Tool
-) -> None:
-    written(aim_c_files(aims), tmp_path)
-    (tmp_path / "caller.cpp").write_text('#include "aim_self_test.h"\nint main() { return aim_self_test(0); }\n')
-    compiler = [tool("clang"), "-x", "c++", f"-std={standard}", "-pedantic-errors", "-c", "-o", str(tmp_path / "o")]
-    compile_with([*compiler, str(tmp_path / "caller.cpp")])
-    if standard == "c++17":
-        for name in SOURCES:
-            compile_with([*compiler, "-ffp-contract=off", str(tmp_path / name)])
 
 
 def test_equal_sets_give_equal_bytes_and_golden_aims_are_few(aims: AimTables) -> None:

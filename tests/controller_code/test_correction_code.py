@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
-import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -14,20 +12,15 @@ import pytest
 from numba import njit
 
 from scripts.studies.in_the_loop.builds import Build
-from scripts.studies.in_the_loop.controller_process import CONTRACT, compile_with
 from synth.kernels.compiled_rules import compiled_rule
+from tests.controller_code.built_program import built, told
 from tests.controller_code.conftest import ToChange, Tool
-from tests.controller_code.sample_book import sample_book
-from tests.controller_code.test_export import FLOAT_H, PEDANTIC
 from tests.controller_code.ways import WAYS
 from tests.effort import QUESTIONS
 from tuning_tables.c_correction import correction_c_files
-from tuning_tables.c_source import c_files
 from tuning_tables.correction import Correction
-from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.programs.correct import corrected_speed, learn_exit, usable_exit
 
-SOURCES = ("retarder_correction.c", "retarder_correction_self_test.c")
 CORRECTION = Correction(0.15, 0.06)
 QUESTION = np.dtype([("state", "u4", 3), ("error", "u4"), ("speed", "u4"), ("credible", "i4"), ("pass", "i4", 6)])
 PROGRAM = r"""
@@ -114,29 +107,6 @@ def right() -> npt.NDArray[np.float32]:
     return answers
 
 
-@cache
-def exported() -> Mapping[str, bytes]:
-    """The exported files and the program around them."""
-    return {**correction_c_files(CORRECTION), "main.c": PROGRAM.encode("ascii")}
-
-
-def built(folder: Path, build: Build) -> list[str]:
-    """The command that runs a program with the exported files in it."""
-    for name, content in exported().items():
-        (folder / name).write_bytes(content)
-    objects = []
-    for name in SOURCES:
-        objects.append(str(folder / f"{name}.o"))
-        compile_with([build.compiler, *build.contract, *build.flags, "-c", str(folder / name), "-o", objects[-1]])
-    program = str(folder / "program")
-    compile_with([build.compiler, *build.flags, *build.link, str(folder / "main.c"), *objects, "-o", program])
-    return [*build.emulator, program]
-
-
-def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
-    return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
-
-
 def test_python_and_its_compiled_text_agree() -> None:
     found, answers = asked(), right()
     for i in range(2000):
@@ -150,11 +120,12 @@ def test_python_and_its_compiled_text_agree() -> None:
         )
 
 
+@pytest.mark.requirement("CORR-06")
 @pytest.mark.parametrize("build", WAYS, ids=str)
 def test_c_learns_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
     for name in build.missing():
         tool(name)
-    command = built(tmp_path, build)
+    command = built(correction_c_files(CORRECTION), PROGRAM, tmp_path, build)
     given = asked().view("i4").astype(f"{build.order}i4").tobytes()
     found = np.frombuffer(told(command, given=given), f"{build.order}f4").astype(np.float32).reshape(-1, 5)
     # Which of its many bit patterns a NaN that is handed on has is the processor's business.
@@ -169,48 +140,6 @@ def test_the_questions_reach_much() -> None:
     assert np.abs(answers[:, 1]).max() == CORRECTION.setting.limit_m_s
     for share in ((answers[:, 1] == 0.0).mean(), answers[:, 4].mean(), (answers[:, 3] == 0.0).mean()):
         assert 0.001 < share < 0.6
-
-
-@pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_compilers_and_checkers_have_nothing_to_say(compiler: str, tmp_path: Path, tool: Tool) -> None:
-    built(tmp_path, Build(tool(compiler), ("-O1",)))
-    weak = ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage", "-Wno-unknown-warning-option",
-            "-Wno-declaration-after-statement")  # fmt: skip
-    switches = ("-fanalyzer",) if compiler == "gcc" else weak
-    for name in SOURCES:
-        said = compile_with([compiler, *PEDANTIC, *switches, str(tmp_path / name), "-o", str(tmp_path / "o")])
-        assert said == ""
-
-
-def test_cppcheck_has_nothing_to_say(tmp_path: Path, tool: Tool) -> None:
-    checker = tool("cppcheck")
-    built(tmp_path, Build(tool("gcc"), ("-O1",)))
-    checks = ["--enable=all", "--inconclusive", "--std=c99", "--quiet", "--error-exitcode=3"]
-    files = [str(tmp_path / name) for name in (*SOURCES, "main.c")]
-    assert compile_with([checker, *checks, "--suppress=missingIncludeSystem", *FLOAT_H, *files]) == ""
-
-
-def test_it_links_beside_the_tables_and_needs_nothing(tmp_path: Path, tool: Tool) -> None:
-    files = {**c_files(sample_book()), **correction_c_files(CORRECTION)}
-    sources = [name for name in files if name.endswith(".c")]
-    for name, content in files.items():
-        (tmp_path / name).write_bytes(content)
-    for name in sources:
-        compile_with([tool("gcc"), *CONTRACT, "-Os", "-c", str(tmp_path / name), "-o", str(tmp_path / f"{name}.o")])
-    (tmp_path / "main.c").write_text(
-        '#include "retarder_table.h"\n#include "retarder_correction.h"\nint main(void)\n{\n    retarder_correction c;\n'
-        "    retarder_begin_correction(&c);\n    retarder_begin_correction(0);\n"
-        "    retarder_learn_exit(0, 0, 0.0f, 1);\n"
-        "    const float v = retarder_corrected_speed(retarder_correction_settings, &c, 1.0f);\n"
-        "    return (int)retarder_decide(0, 0, 1.0f, v, 0.0f) + (v != 1.0f);\n}\n"
-    )
-    objects = [str(tmp_path / f"{name}.o") for name in sources]
-    compile_with([tool("gcc"), "-std=c99", str(tmp_path / "main.c"), *objects, "-o", str(tmp_path / "m")])
-    assert subprocess.run([tmp_path / "m"], check=False).returncode == 0
-    listed = compile_with(["nm", *(each for each in objects if "correction" in each)])
-    undefined = {line.split()[-1] for line in listed.splitlines() if " U " in line}
-    assert {name for name in undefined if not name.startswith("retarder_")} <= {"memcpy", "memset"}
-    assert not re.search(r" [dDbBC] ", listed)
 
 
 MUTANTS = (
@@ -255,19 +184,7 @@ MUTANTS = (
 def test_the_self_test_finds_a_wrong_controller(
     before: str, after: str, fault: int | None, tmp_path: Path, to_change: ToChange
 ) -> None:
-    (said,) = to_change([exported()], SOURCES[0]).self_tests(before, after, tmp_path)
+    export = {**correction_c_files(CORRECTION), "main.c": PROGRAM.encode("ascii")}
+    (said,) = to_change([export], "retarder_correction.c").self_tests(before, after, tmp_path)
     assert said.returncode == 0 if fault else said.returncode != 0  # without a record it must not fall
     assert said.stdout.startswith(f"fault {fault} at" if fault else "")
-
-
-def test_names_take_the_prefix_and_equal_corrections_give_equal_bytes() -> None:
-    files = correction_c_files(Correction(), ExportPrefix("BUNCH"))
-    assert list(files) == [
-        "bunch_correction.h", "bunch_correction.c", "bunch_correction_self_test.h", "bunch_correction_self_test.c",
-        "bunch_golden_exits.csv",
-    ]  # fmt: skip
-    assert b"retarder_" not in b"".join(files.values()).lower()
-    assert correction_c_files(Correction()) == correction_c_files(Correction())
-    assert correction_c_files(Correction()) != correction_c_files(Correction(0.1))
-    lines = [line for name in list(files)[:4] for line in files[name].decode("ascii").splitlines()]
-    assert [line for line in lines if len(line) > 120 and not line.startswith("    {")] == []

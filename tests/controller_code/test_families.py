@@ -55,6 +55,7 @@ def test_the_families_of_all_cases() -> None:
     assert [*pairs().families] == due
 
 
+@pytest.mark.requirement("CHOICE-04")
 def test_python_takes_lines_between_like_tables_only() -> None:
     found = {name: pairs().choose("Л", axles_of(name), BETWEEN_M_S).status for name in CASES}
     assert found == dict.fromkeys(LIKE, Status.BETWEEN) | dict.fromkeys(UNLIKE, Status.SLOWER)
@@ -80,6 +81,7 @@ def test_tables_for_another_cut_are_no_family(change: str, family: int) -> None:
     assert families_of((one, replace(one, cut=cuts[change]))) == (0, family)
 
 
+@pytest.mark.requirement("CHOICE-04")
 def test_c_does_in_every_case(built: Built) -> None:
     controller = built(pairs())
     commands = np.array([(LIGHT, axles_of(name), BETWEEN_M_S) for name in CASES], COMMAND)

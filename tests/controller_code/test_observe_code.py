@@ -50,6 +50,7 @@ int main(void)
 """
 
 
+@pytest.mark.requirement("CODE-07")
 def test_spoilt_tables_and_estimates_do_no_harm(tmp_path: Path, tool: Tool) -> None:
     """Any sizes, lines that are none, any bits in every word, under the sanitizers; each call ends."""
     spoilt = surface_book()

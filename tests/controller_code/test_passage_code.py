@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-import re
-import subprocess
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -16,31 +13,24 @@ import numpy.typing as npt
 import pytest
 
 from scripts.studies.in_the_loop.builds import Build
-from scripts.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
+from scripts.studies.in_the_loop.controller_process import compile_with
+from tests.controller_code.built_program import built, told, written
 from tests.controller_code.conftest import Tool
-from tests.controller_code.passage_tables import every_axle_book, odd_table, passage_book, passage_table
+from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, right
-from tests.controller_code.sample_book import sample_book
-from tests.controller_code.test_export import FLOAT_H, PEDANTIC
 from tests.controller_code.ways import WAYS
 from tests.effort import QUESTIONS, every
-from tuning_tables.c_correction import correction_c_files
-from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.code import crc32_of, words_of
 from tuning_tables.controller_code.passage_code import passage_code
-from tuning_tables.correction import Correction
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_prefix import RETARDER
 from tuning_tables.passages.c_source import passage_c_files
 from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.programs.at_pulse import wanted_stage
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
-SOURCES = ("retarder_passages.c", "retarder_passages_self_test.c")
 BOOK = passage_book()
 TABLES = BOOK.tables
-FEW_TABLES = PassageBook((passage_table("to 2.5"), odd_table()))
-"""A usual table and the odd one: what proves the text of an export and not its answers."""
 
 PROGRAM = r"""
 #include <stdio.h>
@@ -104,30 +94,8 @@ def questions(book: PassageBook = BOOK) -> tuple[Rows, Rows]:
 
 @cache
 def exported(book: PassageBook, self_test: SelfTestSize) -> Mapping[str, bytes]:
-    """The exported files and the program around them."""
-    return {**passage_c_files(book, RETARDER, self_test), "main.c": PROGRAM.encode("ascii")}
-
-
-def write(folder: Path, book: PassageBook = BOOK, self_test: SelfTestSize = FULL) -> None:
-    """Write `exported` into the folder."""
-    for name, content in exported(book, self_test).items():
-        (folder / name).write_bytes(content)
-
-
-def built(folder: Path, build: Build, book: PassageBook = BOOK) -> list[str]:
-    """The command that runs a program with the exported files in it."""
-    write(folder, book)
-    objects = []
-    for name in SOURCES:
-        objects.append(str(folder / f"{name}.o"))
-        compile_with([build.compiler, *build.contract, *build.flags, "-c", str(folder / name), "-o", objects[-1]])
-    program = str(folder / "program")
-    compile_with([build.compiler, *build.flags, *build.link, str(folder / "main.c"), *objects, "-o", program])
-    return [*build.emulator, program]
-
-
-def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
-    return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
+    """The exported files."""
+    return passage_c_files(book, RETARDER, self_test)
 
 
 def differences(command: Sequence[str], build: Build, found: Rows, answers: Rows) -> int:
@@ -144,11 +112,12 @@ def blocks(book: PassageBook) -> list[npt.NDArray[np.uint32]]:
     return [np.append(each, np.uint32(crc32_of(each))) for each in words]
 
 
+@pytest.mark.requirement("CODE-01")
 @pytest.mark.parametrize("build", every(3, WAYS), ids=str)
 def test_c_does_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
     for name in build.missing():
         tool(name)
-    command = built(tmp_path, build)
+    command = built(exported(BOOK, FULL), PROGRAM, tmp_path, build)
     assert differences(command, build, *questions()) == 0
     assert told(command, "self-test") == b"fault 0 at 0\n"
     words = np.frombuffer(told(command, "dump"), f"{build.order}u4")
@@ -157,7 +126,7 @@ def test_c_does_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: To
 
 def test_c_does_as_python_on_every_axle(tmp_path: Path, tool: Tool) -> None:
     build, book = Build(tool("gcc"), ("-O2",)), every_axle_book()
-    command = built(tmp_path, build, book=book)
+    command = built(exported(book, FULL), PROGRAM, tmp_path, build)
     assert differences(command, build, *questions(book)) == 0
     assert told(command, "self-test") == b"fault 0 at 0\n"
 
@@ -175,65 +144,9 @@ def test_the_questions_reach_much() -> None:
         assert 0.04 < share < 0.96
 
 
-@pytest.mark.parametrize("compiler", ["gcc", "clang", "arm-linux-gnueabihf-gcc"])
-def test_compilers_and_checkers_have_nothing_to_say(compiler: str, tmp_path: Path, tool: Tool) -> None:
-    write(tmp_path, FEW_TABLES, SMALL)
-    weak = ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage", "-Wno-unknown-warning-option",
-            "-Wno-declaration-after-statement")  # fmt: skip
-    switches = {"gcc": ("-fanalyzer",), "clang": weak}.get(compiler, ("-mcpu=cortex-m4", "-mthumb"))
-    for name in SOURCES:
-        said = compile_with([tool(compiler), *PEDANTIC, *switches, str(tmp_path / name), "-o", str(tmp_path / "o")])
-        assert said == ""
-
-
-def test_cppcheck_has_nothing_to_say(tmp_path: Path, tool: Tool) -> None:
-    checker = tool("cppcheck")
-    write(tmp_path)
-    checks = ["--enable=all", "--inconclusive", "--std=c99", "--quiet", "--error-exitcode=3"]
-    files = [str(tmp_path / name) for name in (*SOURCES, "main.c")]
-    assert compile_with([checker, *checks, "--suppress=missingIncludeSystem", *FLOAT_H, *files]) == ""
-
-
-@pytest.mark.parametrize("standard", ["c++98", "c++17"])
-def test_cxx_takes_the_headers_and_since_17_the_code(standard: str, tmp_path: Path, tool: Tool) -> None:
-    write(tmp_path)
-    caller = '#include "retarder_passages_self_test.h"\nint main() { return retarder_passages_self_test(0); }\n'
-    (tmp_path / "caller.cpp").write_text(caller)
-    compiler = [tool("clang"), "-x", "c++", f"-std={standard}", "-pedantic-errors", "-c", "-o", str(tmp_path / "o")]
-    compile_with([*compiler, str(tmp_path / "caller.cpp")])
-    if standard == "c++17":
-        for name in SOURCES:
-            compile_with([*compiler, "-ffp-contract=off", str(tmp_path / name)])
-
-
-def test_it_links_beside_all_other_code_and_needs_nothing(tmp_path: Path, tool: Tool) -> None:
-    files = {**c_files(sample_book()), **correction_c_files(Correction()), **exported(BOOK, FULL)}
-    del files["main.c"]
-    sources = [name for name in files if name.endswith(".c")]
-    for name, content in files.items():
-        (tmp_path / name).write_bytes(content)
-    for name in sources:
-        compile_with([tool("gcc"), *CONTRACT, "-Os", "-c", str(tmp_path / name), "-o", str(tmp_path / f"{name}.o")])
-    (tmp_path / "main.c").write_text(
-        '#include "retarder_table.h"\n#include "retarder_correction.h"\n#include "retarder_passages.h"\n'
-        "int main(void)\n{\n    retarder_tracker t;\n    retarder_begin_cut(&t);\n    retarder_begin_cut(0);\n"
-        "    return (retarder_at_pulse(0, &t, 0, 1.0f, 0.1f, 3, 1) != 3)\n"
-        "        + (retarder_at_pulse(retarder_passage_tables, 0, 0, 1.0f, 0.1f, 3, 1) != 3)\n"
-        "        + (retarder_believed_passage(0, &t, 0, 1.0f, 2.0f) != -1)\n"
-        "        + (retarder_wanted_stage(0, 0, 3, 2.0f) != 3) + retarder_passage_table_intact(0);\n}\n"
-    )
-    objects = [str(tmp_path / f"{name}.o") for name in sources]
-    compile_with([tool("gcc"), "-std=c99", str(tmp_path / "main.c"), *objects, "-o", str(tmp_path / "m")])
-    assert subprocess.run([tmp_path / "m"], check=False).returncode == 0
-    listed = compile_with(["nm", *(each for each in objects if "passages" in each)])
-    undefined = {line.split()[-1] for line in listed.splitlines() if " U " in line}
-    assert {name for name in undefined if not name.startswith("retarder_")} <= {"memcpy", "memset"}
-    assert not re.search(r" [dDbBC] ", listed)
-
-
 def test_every_changed_byte_of_a_table_is_found(tmp_path: Path, tool: Tool) -> None:
     tables = (passage_table(stages=3, places_m=(-4.0, 2.0, 9.0)),)
-    command = built(tmp_path, Build(tool("gcc"), ("-O1",)), book=PassageBook(tables))
+    command = built(exported(PassageBook(tables), FULL), PROGRAM, tmp_path, Build(tool("gcc"), ("-O1",)))
     block = blocks(PassageBook(tables))[0].view(np.uint8)
     assert told(command, "intact", given=block.tobytes()) in (b"10", b"11", b"12")
     damaged = np.repeat(block[None, :], 255 * len(block), axis=0)
@@ -243,13 +156,6 @@ def test_every_changed_byte_of_a_table_is_found(tmp_path: Path, tool: Tool) -> N
     assert len(answers) == 2 * len(damaged)
     assert set(answers[::2]) == set(b"0")
     assert set(answers[1::2]) <= set(b"012")  # no stage that the table has not
-
-
-def test_files_of_two_exports_are_not_compiled_together(tmp_path: Path, tool: Tool) -> None:
-    write(tmp_path)
-    (tmp_path / SOURCES[0]).write_bytes(exported(FEW_TABLES, SMALL)[SOURCES[0]])
-    with pytest.raises(BuildError, match=r"retarder_passages\.h is of another export"):
-        compile_with([tool("gcc"), *CONTRACT, "-c", str(tmp_path / SOURCES[0]), "-o", str(tmp_path / "o")])
 
 
 def test_golden_stages_as_csv_are_answered_as_they_say() -> None:
@@ -264,7 +170,7 @@ def test_golden_stages_as_csv_are_answered_as_they_say() -> None:
 
 
 def test_a_table_and_a_tracker_take_what_the_page_says(tmp_path: Path, tool: Tool) -> None:
-    write(tmp_path)
+    written(exported(BOOK, FULL), tmp_path)
     heard, passages, stages = 7 * 6, 6, 8
     (tmp_path / "size.c").write_text(
         '#include "retarder_passages.h"\n'
@@ -274,22 +180,3 @@ def test_a_table_and_a_tracker_take_what_the_page_says(tmp_path: Path, tool: Too
         "int main(void) { return 0; }\n"
     )
     compile_with([tool("gcc"), "-std=c99", "-c", str(tmp_path / "size.c"), "-o", str(tmp_path / "o")])
-
-
-def test_names_take_the_prefix_and_equal_tables_give_equal_bytes() -> None:
-    files = passage_c_files(FEW_TABLES, ExportPrefix("BUNCH"))
-    assert list(files) == [
-        "bunch_passages.h", "bunch_passages.c", "bunch_passages_self_test.h", "bunch_passages_self_test.c",
-        "bunch_golden_stages.csv", "bunch_golden_pairs.csv", "bunch_golden_pulses.csv",
-    ]  # fmt: skip
-    assert b"retarder_" not in b"".join(files.values()).lower()
-    plain = passage_c_files(FEW_TABLES)
-    assert plain == passage_c_files(PassageBook((passage_table("to 2.5"), odd_table())))
-    first, odd = FEW_TABLES.tables
-    assert plain != passage_c_files(PassageBook((replace(first, initial_stage=1), odd)))
-    for name in list(files)[:4]:
-        text = files[name].decode("ascii")
-        assert "@" not in text
-        assert all(line == line.rstrip() for line in text.splitlines())
-        data = ("{", "        {", "            {", "                {", "    {", "        0x")
-        assert [line for line in text.splitlines() if len(line) > 120 and not line.startswith(data)] == []

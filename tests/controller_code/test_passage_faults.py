@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.controller_code.conftest import ToChange
-from tests.controller_code.test_passage_code import BOOK, SOURCES, exported
+from tests.controller_code.test_passage_code import BOOK, PROGRAM, exported
 from tests.effort import every
 from tuning_tables.self_test_size import FULL, SMALL
 
@@ -89,11 +89,13 @@ MUTANTS = (
 )
 
 
+@pytest.mark.requirement("CODE-06")
 @pytest.mark.parametrize(("before", "after", "fault"), every(3, MUTANTS), ids=[f"{n}" for n in range(len(MUTANTS))])
 def test_the_self_test_finds_a_wrong_controller(
     before: str, after: str, fault: int, tmp_path: Path, to_change: ToChange
 ) -> None:
-    export = to_change([exported(BOOK, size) for size in (FULL, SMALL)], SOURCES[0])
+    program = {"main.c": PROGRAM.encode("ascii")}
+    export = to_change([{**exported(BOOK, size), **program} for size in (FULL, SMALL)], "retarder_passages.c")
     # Questions that come first may be too few for it in the small one.
     for said in export.self_tests(before, after, tmp_path):
         assert said.returncode == 0

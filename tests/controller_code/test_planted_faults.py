@@ -45,6 +45,7 @@ def rules_book() -> TableBook:
     return TableBook(tuple(tables[name] for name in wanted))
 
 
+@pytest.mark.requirement("CODE-06")
 @pytest.mark.parametrize("part", PARTS)
 def test_the_self_test_finds_every_fault(part: str, tmp_path: Path, to_change: ToChange) -> None:
     export = to_change([sources_of(rules_book())], "retarder_table.c")

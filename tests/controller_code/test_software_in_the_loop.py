@@ -20,6 +20,7 @@ from tuning_tables import Decisions
 from tuning_tables.table_book import TableBook
 
 
+@pytest.mark.requirement("CODE-11")
 def test_a_process_controls_as_the_rule_in_the_simulator(tmp_path: Path, tool: Tool) -> None:
     tool("gcc")
     first = make_case().table
@@ -42,6 +43,7 @@ def test_a_process_controls_as_the_rule_in_the_simulator(tmp_path: Path, tool: T
     assert closed_loop_with_process(plant, observing, 0, controller, passes, line).differing > 10
 
 
+@pytest.mark.requirement("CODE-11")
 @pytest.mark.long
 def test_a_process_decides_at_any_time_as_the_rule_in_the_simulator(tmp_path: Path, tool: Tool) -> None:
     tool("gcc")

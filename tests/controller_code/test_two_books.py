@@ -81,6 +81,7 @@ def asked(name: str) -> tuple[Questions, Tracks]:
     return ask(POSITIONS[name], 100_000, 5_000, 7), follow(POSITIONS[name], 20_000, 8)
 
 
+@pytest.mark.requirement("CODE-09")
 @pytest.mark.parametrize("small", [False, True], ids=["full", "small"])
 def test_both_answer_as_alone(small: bool, compiled: Callable[[bool], Path]) -> None:
     program = compiled(small)

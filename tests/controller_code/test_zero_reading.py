@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.controller_code.sample_book import sample_book
 from tuning_tables.c_source import c_files
 from tuning_tables.estimator import begin, unseen_samples
@@ -13,6 +15,7 @@ from tuning_tables.st_source import TABLE_FILE, st_files
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "controllers.md"
 
 
+@pytest.mark.requirement("RULE-10")
 def test_zero_is_believed_and_lowers() -> None:
     table, state = sample_book().tables[0], begin()
     assert speed_for(table, state, 5.0, 0.0, 0.0) == 0.0

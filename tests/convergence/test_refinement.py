@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from plant_models import Plant
@@ -57,12 +58,14 @@ def orders(name: str, rms: list[float]) -> tuple[NDArray[np.float64], NDArray[np
     return differences, order
 
 
+@pytest.mark.requirement("PRED-04")
 def test_prediction_converges_in_the_path_step(plant: Plant) -> None:
     """Between first and second order (measured 1.7, 1.5): decisions fall on nodes, their phase is interpolated."""
     _, order = orders("prediction, path", [predicted(t) for t in series(plant, path_step_m=(0.5, 0.25, 0.125, 0.0625))])
     assert order.min() > 1.2
 
 
+@pytest.mark.requirement("PRED-04")
 def test_prediction_converges_in_the_speed_step(plant: Plant) -> None:
     """Cubic interpolation: measured orders 3.9 and 4.6; at the default step the error is under 1e-5 m/s."""
     rms = [predicted(t) for t in series(plant, speed_step_m_s=(0.08, 0.04, 0.02, 0.01))]

@@ -8,7 +8,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import nbformat
 import pytest
+from nbclient import NotebookClient
+from sphinx_gallery.notebook import python_to_jupyter_cli
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -39,6 +42,18 @@ def test_what_is_written_by_hand_is_few_words() -> None:
     """All but pages of data, and what is made, or is no text."""
     pages = [page.read_text(encoding="utf-8") for page in DOCS.rglob("*.md") if page.parent != DOCS / "data"]
     assert sum(len(NOT_READ.sub("", page).split()) for page in pages) <= MOST_WORDS
+
+
+def test_the_notebook_of_the_gallery_runs(tmp_path: Path) -> None:
+    """As it is downloaded from the site, in a kernel of its own: frames are shown as tables, and pictures as such."""
+    program = Path(shutil.copy(DOCS / "gallery" / "notebook.py", tmp_path))
+    python_to_jupyter_cli([str(program)])
+    notebook = nbformat.read(program.with_suffix(".ipynb"), as_version=4)  # type: ignore[no-untyped-call]
+    NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [each for cell in notebook.cells if cell.cell_type == "code" for each in cell.outputs]
+    assert {each.output_type for each in shown} == {"execute_result", "display_data"}, "a warning, or more is printed"
+    assert sum("text/html" in each.data for each in shown) == 3
+    assert sum("image/png" in each.data for each in shown) == 2
 
 
 @pytest.mark.long

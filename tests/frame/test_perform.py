@@ -66,6 +66,7 @@ def summary(folder: Path) -> dict[str, Any]:
     return read
 
 
+@pytest.mark.requirement("CMD-08")
 def test_every_medium_tells_the_same_figures(app: typer.Typer, tmp_path: Path) -> None:
     code, printed = run(app, "-o", str(tmp_path))
     assert code == 0
@@ -101,6 +102,7 @@ def test_the_summary_names_every_file_with_its_hash_and_is_what_json_prints(app:
     assert (told["command"], told["accepted"], told["limits"][0]["kept"]) == ("throw coins", True, True)
 
 
+@pytest.mark.requirement("CMD-03")
 @pytest.mark.parametrize(
     ("text", "kept"), [("[coin]\nheads = 0.95\n", False), ("[coin]\nheads = 0.75\n", None)], ids=["missed", "open"]
 )

@@ -205,6 +205,7 @@ def act(results: ResultsDirectory, rng: random.Random) -> None:
 HISTORIES = sized(100, 400)
 
 
+@pytest.mark.requirement("CMD-05")
 def test_no_order_of_events_costs_a_byte_of_the_users(tmp_path: Path) -> None:
     """Histories of a user and two commands at one directory, drawn at random."""
     ran = 0

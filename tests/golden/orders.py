@@ -66,7 +66,7 @@ ORDERS: tuple[Order, ...] = (
     Order(f"inspect {BOOK} {PARK}", "pictures"),
     Order(f"explore {BOOK} {PARK}", "explored"),
     Order(f"loop {BOOK} {PARK}", "loops"),
-    *(Order(f"export {BOOK} --format {form}", f"export-{form}") for form in ("json", "c", "st", "csv", "fmu")),
+    *(Order(f"export {BOOK} --format {form}", f"export-{form}") for form in ("json", "c", "st", "csv", "fmu", "fmu2")),
     Order(f"export {BOOK} --format st --split --self-test small --correction 0.2 --prefix PARK", "export-split"),
     *(
         Order(f"export {BOOK} --format {form} --self-test small", f"export-{form}")

@@ -319,6 +319,7 @@ def noisy(plant_with: Callable[..., Plant], stages_kpa: tuple[float, ...], perio
     )
 
 
+@pytest.mark.requirement("PRED-01")
 @pytest.mark.parametrize(
     ("stages_kpa", "period_s", "target_m_s", "price", "time_price", "w_std"),
     every(

@@ -44,6 +44,7 @@ def straight_lines(nodes_m: NDArray[np.float64]) -> SwitchingLines:
     return SwitchingLines(np.array(nodes_m), lower, np.stack([3.6 - 0.3 * u, 4.6 - 1.2 * u, never]))
 
 
+@pytest.mark.requirement("PRED-02")
 @pytest.mark.parametrize(("cv", "path_std", "resolution_m_s"), [(0.10, 0.10, 0.04), (0.0, 0.0, 0.0)])
 def test_density_predicts_the_simulation(
     plant_with: Callable[..., Plant], cv: float, path_std: float, resolution_m_s: float

@@ -251,6 +251,7 @@ def best_lines(gains: list[list[float]], readings: np.ndarray, up: bool) -> list
     return found
 
 
+@pytest.mark.requirement("PRED-01")
 def test_solve_agrees_with_plain_loops(solved: Solution) -> None:
     """The same values to 1e-9 and the same lines to 1e-6."""
     plain, t = PlainLoops(solved.chain), solved.chain

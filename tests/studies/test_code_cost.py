@@ -15,7 +15,6 @@ from scripts.studies.in_the_loop.code_cost import (
     size_program,
     totals_in,
 )
-from scripts.studies.in_the_loop.cost_study import Cost, Dearest, Sizes, thousands
 
 LISTING = """\
 retarder_table.o  :
@@ -76,15 +75,3 @@ def test_the_dearest_call_is_the_one_that_turns_most(tmp_path: Path) -> None:
     assert 3 <= a_turn <= 10
     assert cost(10, 20, 1) == twenty
     assert cost(30) == twenty + 10 * a_turn
-
-
-def test_tables_that_could_not_be_counted_are_left_out() -> None:
-    size = CodeSize(1108, 3244, 0)
-    found = Cost(("0", "1"), "gcc 12", 15, (216, 428), (), (Sizes("Cortex-M4, -Os", 15, size, size),))
-    assert set(found.tables()) == {"sizes"}
-    assert found.tables()["sizes"].rows[0][:2] == ("Cortex-M4, -Os, 15 tables", "1108 / 1108 bytes")
-    counts = {"decide": 122, "observe": 24, "select": 17659, "intact": 16766}
-    shown = Cost(("0", "1"), "gcc 12", 15, (216, 428), (Dearest("-O2", counts, counts),), ()).tables()["instructions"]
-    assert shown.heads[3] == "`retarder_select`"
-    assert shown.rows == (("-O2", "122 / 122", "24 / 24", "17 659 / 17 659", "16 766 / 16 766"),)
-    assert thousands(1945) == "1945"

@@ -7,7 +7,6 @@ import pytest
 
 from scripts.studies.coverage import (
     CASES,
-    COARSE_PASSES,
     DEFAULT_PASSES,
     RATIO,
     Coverage,
@@ -86,15 +85,6 @@ def test_a_share_out_of_range_is_a_fault(passes: int, share: float, found: int) 
     """Two standard errors of 400 blocks are 0.0218: 0.92 − 0.022 = 0.898, 0.98 + 0.022 > 1, 0.90 − 0.022 = 0.878."""
     findings = Coverage(1, (Row("knp:22:2", passes, 400, {"rms": share, "over-speed": None}),))
     assert len(findings.faults()) == found
-
-
-def test_a_row_of_the_checker_has_dashes_for_the_other_figures() -> None:
-    rows = (
-        Row("a:22:2", 1000, 4, {"rms": 0.95, "bias": None}),
-        Row("a:22:2", COARSE_PASSES[0], 4, {"rms of verify": 1}),
-    )
-    cells = Coverage(1, rows).tables()["coverage"].rows
-    assert cells == (("a, 22, 2", "1000", "4", "95.0", "–", "–"), ("a, 22, 2", "300", "4", "–", "–", "100.0"))
 
 
 @pytest.mark.parametrize("case", ["knp-5-bunch", "knp-5-bunch:heavy:3", "a:1:2:3"])

@@ -9,7 +9,6 @@ import pytest
 from numpy.typing import NDArray
 
 from scripts.studies.estimator.reserve_findings import CaseRows, Excess, Reserves, Row
-from scripts.studies.estimator.reserve_picture import picture
 from scripts.studies.estimator.reserve_study import excess_outside
 from scripts.studies.estimator.wrong import braking_otherwise
 from synth.retarder.configuration.plant_parameter import nominal_value
@@ -53,15 +52,6 @@ def test_a_reserve_that_keeps_its_limits_is_no_fault() -> None:
     (curve,) = [t for name, t in found(KEPT).tables().items() if name == "curve"]
     assert [row[4] for row in curve.rows] == ["1", "0"]
     assert [row[5] for row in curve.rows] == ["1", "0"]
-
-
-def test_a_table_and_a_picture_name_the_uncertainty_that_they_show() -> None:
-    """The assumed one, 0.1, or the last where it was not among those studied."""
-    for mean_cv in (0.1, 0.15):
-        shown = found(replace(KEPT, mean_cv=mean_cv))
-        assert shown.tables()["cases"].title.endswith(f"with mean_cv = {mean_cv:g}")
-        titles = [axes.get_title(loc="left") for axes in picture(shown).axes]
-        assert any(f"full: mean_cv = {mean_cv:g}," in title for title in titles)
 
 
 def test_a_dear_or_thin_reserve_is_a_fault() -> None:

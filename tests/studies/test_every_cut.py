@@ -11,11 +11,10 @@ from scipy.stats import binom
 from plant_models.library import car_names, load_car, load_position, position_names
 from scripts.studies.document_pictures import is_stale, write_picture
 from scripts.studies.every_cut.cut_figures import Beside, BesideWithout, CutFigures, Outcome, Untuned
-from scripts.studies.every_cut.findings import EveryCut, class_cells, faults_of, findings_of, length_name
+from scripts.studies.every_cut.findings import EveryCut, faults_of, findings_of
 from scripts.studies.every_cut.kept_cases import KeptCases
 from scripts.studies.every_cut.measured_case import measured
 from scripts.studies.every_cut.order_statistics import median_interval
-from scripts.studies.every_cut.picture import figures
 from scripts.studies.every_cut.random_case import CARS_OF_A_CUT, RandomCase, random_case
 from scripts.studies.every_cut.study import METHOD, Options, configuration
 from scripts.studies.result import Result, run_study
@@ -122,25 +121,6 @@ def test_a_prediction_off_beyond_the_interval_is_a_fault(predicted: float, hones
     found = replace(SOUND, predicted_rms_m_s=predicted)
     assert found.honest is honest
     assert len(list(faults_of(found))) == (not honest)
-
-
-def test_what_is_told_of_a_class_is_counted() -> None:
-    worse = replace(RULE, ratio=1.1, ratio_ci95=(1.05, 1.15))
-    bad = replace(SOUND, length_m=150.0, feasible=False, best=worse, predicted_rms_m_s=0.08)
-    told = findings_of(1, 2000, [SOUND, Untuned(MANY[1], "the grid is too coarse"), bad])
-    assert isinstance(told, EveryCut)
-    rows = {row[0]: row for row in told.tables()["classes"].rows}
-    assert [rows[name][1] for name in ("below 60 m", "60 to 100 m", "from 100 m", "all")] == ["0", "1", "1", "2"]
-    assert rows["limit cannot be met"] == class_cells("limit cannot be met", [bad])
-    assert rows["all"][2].startswith("50.0 [1.3, 98.7] (1)")
-    assert rows["all"][3] == "1.050 –"
-    assert rows["all"][4] == "0.0 [0.0, 84.2] (0)"
-    assert rows["all"][5:] == ("0.800, 0.800", "0.900, 0.900", "0.800, 1.000", "0")
-    assert told.tables()["worst"].rows[0][0] == bad.case.name
-    assert len(told.faults()) == 2
-    assert any("the grid is too coarse" in sentence for sentence in told.sentences())
-    assert length_name(0.0, 60.0) == "below 60 m"
-    assert set(figures(told)) == {"ratio"}
 
 
 def test_a_picture_is_the_one_of_its_result_until_that_changes(tmp_path: Path) -> None:

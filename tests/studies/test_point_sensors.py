@@ -15,7 +15,6 @@ from scripts.studies.point_sensors.layouts import equal_sections, planned
 from scripts.studies.point_sensors.rows import FaultRow, ManyRow, SensorRow
 from scripts.studies.point_sensors.sensor_table import AXLES, SensorTable, tabulated, unfinished_share
 from scripts.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
-from scripts.studies.point_sensors.tables import kind_of, tables_of
 from scripts.studies.point_sensors.told import RESISTANCES, speeds_for, squares_at, told_bound
 from synth.frame.input_error import InputError
 from synth.problem.resolution import Resolution
@@ -162,12 +161,6 @@ def test_without_fault_wide_limits_change_nothing(
     assert max(row.ratio for row in dead) > 1.0
 
 
-def test_kinds_of_fault_have_no_number() -> None:
-    assert kind_of("sensor 3 dead") == "dead"
-    assert kind_of("sensors 3 and 4 swapped") == "swapped"
-    assert kind_of("lone axle 2 s ahead") == "lone axle 2 s ahead"
-
-
 # --------------------------------------------------------------------------------------------------- claims
 
 
@@ -209,9 +202,3 @@ def test_claims_that_hold_are_no_faults() -> None:
 def test_a_claim_that_fails_is_a_fault(rows: tuple[SensorRow, ...], ratio: float, sentence: str) -> None:
     (fault,) = worth(rows, ratio).faults()
     assert sentence in fault
-
-
-def test_of_each_kind_of_fault_the_worst_sensor_is_shown() -> None:
-    rows = tables_of(worth((), 1.0))["faults"].rows
-    assert [row[2] for row in rows] == ["no fault", "sensor 1 dead"]
-    assert rows[1][3] == "3.0000 ± 0.3000"

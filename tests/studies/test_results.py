@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from scripts.studies import study as study_module
-from scripts.studies.markdown_table import MarkdownTable, around, plus_minus, table
+from scripts.studies.markdown_table import MarkdownTable, table
 from scripts.studies.options import option
 from scripts.studies.result import Result, read_result, run_study
 from scripts.studies.study import Findings, Method, Study
@@ -109,11 +109,3 @@ def test_a_number_that_is_not_finite_is_no_result(study: Study) -> None:
     broken = replace(FOUND, shares={"rms": math.nan})
     with pytest.raises(ValueError, match="Out of range float"):
         Result(study, "1", Options(), broken).json()
-
-
-def test_cells() -> None:
-    assert around(0.04191, (0.0414, 0.04249)) == "0.0419 [0.0414, 0.0425]"
-    assert around(0.0419, (0.0414, 0.0425), 1, 1e3) == "41.9 [41.4, 42.5]"
-    assert plus_minus(0.0419, (0.0414, 0.0425), 2, 1e3) == "41.90 ± 0.55"
-    with pytest.raises(ValueError, match="1 cells under 2 heads"):
-        table("t", ("a", "b"), [("c",)])

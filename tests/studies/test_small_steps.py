@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from scripts.studies.book import Measure, cells, row_of, short_cell
 from scripts.studies.cases import class_cases, named_cases, of_masses
 from scripts.studies.criteria.study import BINS_M_S, criteria, density_of
 from scripts.studies.side_by_side import side_by_side
 from synth.frame.input_error import InputError
-from synth.frame.printed_numbers import few
 from synth.problem.criterion import SQUARED_ERROR_CRITERION
-from synth.retarder.acceptance import judge_case
 from synth.retarder.configuration.config_file import load_config
-from synth.retarder.configuration.settings import AcceptanceSettings
-from tests.synth.case_factory import make_case, make_sample
+from tests.synth.case_factory import make_sample
 
 
 def test_cases_are_found_by_mass_and_target() -> None:
@@ -59,21 +53,3 @@ def test_every_criterion_differs_from_the_default_in_one_thing() -> None:
     for name, each in asked.items():
         changed = [key for key in vars(each) if getattr(each, key) != getattr(SQUARED_ERROR_CRITERION, key)]
         assert changed == {"default": [], "over-speed ×4": ["terminal"]}.get(name, ["requirement"])
-
-
-def test_a_row_of_the_book_is_that_of_its_case() -> None:
-    case = make_case("gondola-4-66t", 2.0)
-    found, verdict = case.statistics, judge_case(case, AcceptanceSettings())
-    row = row_of(case, verdict)
-    low, high = found.rms_ci95_m_s
-    rms = f"{found.rms_m_s:.4f} [{low:.4f}, {high:.4f}]"
-    assert short_cell(row) == f"{rms}; {few(1e4 * case.brake_power.brake_saturated)}"
-    assert short_cell(replace(row, feasible=False)).startswith(f"{rms}°; ")
-    assert row.prediction_ratio == Measure(case.measured.prediction_ratio, case.measured.prediction_ratio_ci95)
-    assert row.regret == Measure(case.comparison.regret, case.comparison.regret_ci95)
-    beaten = replace(case, comparison=replace(case.comparison, baseline_ratio_ci95=(1.1, 1.2)))
-    without = row_of(beaten, verdict)
-    assert (without.regret, cells(without)[9]) == (None, "–")
-    told = [each for each in case.off_nominal if each.outcome is not None]
-    assert [each.name for each in row.off_nominal] == [each.name for each in told]
-    assert len(told) == len(case.off_nominal) - 1

@@ -5,10 +5,8 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
-import pytest
-
 from scripts.studies.timing.machine import processor_name, this_machine
-from scripts.studies.timing.turns import Ratio, Times, in_turns, speed_against, three_digits, timed
+from scripts.studies.timing.turns import Ratio, Times, in_turns, speed_against, timed
 
 
 def test_calls_take_turns_after_one_round_that_counts_for_nothing() -> None:
@@ -30,19 +28,6 @@ def test_ratios_are_of_one_round() -> None:
     base, other = Times((2.0, 8.0, 3.0), (0.0,) * 3), Times((1.0, 4.0), (0.0,) * 2)
     assert speed_against(base, other) == Ratio(2.0, 2.0, 2.0, 2)
     assert Ratio(17.46, 15.8, 123.4, 15).cell == "17.5 (15.8 to 123, n = 15)"
-
-
-def test_medians_and_extremes_are_told_in_milliseconds() -> None:
-    times = Times((0.0030, 0.0010, 0.0102), (0.001, 0.002, 0.003))
-    assert times.milliseconds == "3 (1 to 10.2, n = 3)"
-    assert times.median_processor_s == 0.002
-
-
-@pytest.mark.parametrize(
-    ("number", "text"), [(0.01234, "0.0123"), (1.2345, "1.23"), (12.345, "12.3"), (123.45, "123"), (1234.5, "1 234")]
-)
-def test_three_digits(number: float, text: str) -> None:
-    assert three_digits(number) == text
 
 
 def test_the_processor_names_itself(tmp_path: Path) -> None:

@@ -10,9 +10,6 @@ import pytest
 from scripts.studies.verification import (
     FACTORS,
     USUAL_PREDICTION_RATIO,
-    Doubts,
-    Row,
-    Verification,
     doubts_of,
     sample_of,
     with_rms_times,
@@ -69,10 +66,3 @@ def test_another_rms_is_stated_with_its_interval_and_the_same_bias(true_table: T
     assert other.predicted_rms_m_s == other.validated_rms_m_s == 0.5 * RMS_M_S
     assert other.validated_ci95_m_s == (0.5 * 0.049, 0.5 * 0.051)
     assert other.bias_m_s == true_table.bias_m_s
-
-
-def test_a_row_of_the_document_is_per_cent() -> None:
-    row = Row("a", 0.98, (0.95, 1.02), (Doubts(300, 1.0, 0.002), Doubts(300, 0.5, 1.0)))
-    shown = Verification("0", 11, (row,)).tables()["doubts"]
-    assert shown.heads[2:] == ("× 1.0, 300", "× 0.5, 300")
-    assert shown.rows == (("a", "0.980 [0.950, 1.020]", "0.2", "100.0"),)

@@ -175,6 +175,7 @@ def test_a_simulated_prediction_is_uncertain_too() -> None:
     assert math.log(sampled[1]) == pytest.approx(math.sqrt(2.0) * math.log(exact[1]))
 
 
+@pytest.mark.requirement("PRED-07")
 def test_a_book_that_the_passes_cannot_judge_says_so() -> None:
     of = AcceptanceSettings(rms_m_s=0.05)
     (limit,) = limits(sound_case(), of=of)

@@ -50,6 +50,7 @@ def test_long_cuts_fit_into_the_random_numbers_of_a_pass(plant_52t: Plant, cars:
     assert np.all(np.diff(edges) > 5e-4)
 
 
+@pytest.mark.requirement("PRED-09")
 def test_threads_and_chunks_do_not_change_a_byte(plant_22t: Plant) -> None:
     controller = energy_controller(plant_22t, 2.0)
     whole = simulate_many(plant_22t, controller, seed=1, count=5300)

@@ -158,6 +158,7 @@ def oracle_exit_speed(plant: Plant, loop: ClosedLoop, draws: Draws, followed: Pa
     return float(state[1])
 
 
+@pytest.mark.requirement("PRED-03")
 @pytest.mark.parametrize(("mass_t", "target_m_s"), [(22.0, 2.0), (52.0, 3.0)])
 def test_exit_speed_agrees_with_an_adaptive_integrator(
     plant_of: Callable[[float], Plant], passes: RandomPasses, mass_t: float, target_m_s: float

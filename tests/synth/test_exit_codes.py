@@ -40,6 +40,7 @@ FAULTS = (
 )
 
 
+@pytest.mark.requirement("CMD-01")
 @pytest.mark.parametrize(("fault", "code"), FAULTS, ids=lambda each: repr(each))
 def test_a_fault_has_its_code_and_is_one_line(
     fault: BaseException, code: int, capsys: pytest.CaptureFixture[str]
@@ -52,6 +53,7 @@ def test_a_fault_has_its_code_and_is_one_line(
     assert (printed.out, printed.err.count("\n")) == ("", 1)
 
 
+@pytest.mark.requirement("CMD-01")
 def test_codes_are_those_that_the_documents_tell() -> None:
     codes = (OK, LIMITS_MISSED, INPUT_FAULT, DAMAGED, UNFORESEEN, MACHINE_FAULT, INTERRUPTED, PIPE_CLOSED)
     assert codes == (0, 1, 2, 3, 70, 74, 130, 141)

@@ -122,6 +122,7 @@ def test_unusual_values_are_warned_of_not_refused() -> None:
     assert shares == "friction.mean_cv is 0.3; its sensible range is 0 to 0.25"
 
 
+@pytest.mark.requirement("CMD-02")
 @pytest.mark.parametrize(
     ("text", "key", "value", "rest"),
     [

@@ -40,6 +40,7 @@ def test_a_pass_does_not_depend_on_the_others_asked_for() -> None:
     assert np.array_equal(whole.path_z, random_passes(3, 0, 2500, 40).path_z)
 
 
+@pytest.mark.requirement("PRED-05")
 @pytest.mark.parametrize("passes", every(2, [1000, 5000]))
 def test_intervals_hold_the_truth_in_95_of_100_samples(passes: int) -> None:
     """A squared error with a rare heavy tail, of which everything is known: e = 0.03 ± noise, but 1.5 z below −3."""

@@ -44,6 +44,7 @@ def test_lines_survive_rounding_to_single_precision(plant_52t: Plant) -> None:
     assert exported.upper_m_s[finite] == pytest.approx(wanted.upper_m_s[finite], abs=5e-6)
 
 
+@pytest.mark.requirement("RULE-09")
 def test_a_forbidden_stage_is_left_at_once_and_never_entered(plant_22t: Plant) -> None:
     table = table_of(plant_22t)
     top = plant_22t.top_stage

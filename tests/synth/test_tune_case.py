@@ -59,6 +59,7 @@ def case(book: Book[CaseResult]) -> CaseResult:
     return book.cases[0]
 
 
+@pytest.mark.requirement("PRED-06")
 def test_the_table_on_disk_is_the_one_that_was_validated(book: Book[CaseResult], directory: Path) -> None:
     assert sorted(p.name for p in directory.iterdir()) == sorted(f"{c.table.id}.json" for c in book.cases)
     for case in book.cases:

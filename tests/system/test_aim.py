@@ -243,6 +243,7 @@ def test_directories_of_tune_and_aim_are_kept_apart(
     assert (ran.code, "holds the results of 'aim'" in ran.sentence) == (2, True)
 
 
+@pytest.mark.requirement("CMD-06")
 @pytest.mark.long
 def test_killed_aims_leave_nothing_half_done(aimed: Path, small: Path, tmp_path: Path) -> None:
     config = tmp_path / "one.toml"

@@ -91,7 +91,7 @@ def test_a_table_without_any_speed_is_told(command: Command, tmp_path: Path) -> 
 
 
 def test_inspect_and_verify_need_nothing_heavy(aims: Path) -> None:
-    assert modules_after("inspect", str(aims)).isdisjoint(HEAVY)
+    assert modules_after(["inspect", str(aims)]).isdisjoint(HEAVY)
 
 
 @pytest.mark.parametrize(

@@ -50,6 +50,7 @@ def test_no_sensor_is_too_good(tmp_path: Path, noise: str, resolution: str) -> N
     assert load_config(config).regulator.estimator is True
 
 
+@pytest.mark.requirement("CMD-02")
 @pytest.mark.parametrize("name", CONFIGURATIONS)
 def test_a_bad_configuration_touches_nothing(command: Command, tmp_path: Path, name: str) -> None:
     text, said = CONFIGURATIONS[name]
@@ -62,6 +63,7 @@ def test_a_bad_configuration_touches_nothing(command: Command, tmp_path: Path, n
     assert not out.exists()
 
 
+@pytest.mark.requirement("CMD-02")
 def test_a_refused_tune_leaves_the_last_results_alone(command: Command, tuned: Path, tmp_path: Path) -> None:
     before = {path: path.read_bytes() for path in tuned.rglob("*") if path.is_file()}
     config = tmp_path / "bad.toml"
@@ -130,6 +132,7 @@ def test_faults_of_use(command: Command, arguments: tuple[str, ...]) -> None:
     assert "see 'retarder-synth --help'" in ran.sentence
 
 
+@pytest.mark.requirement("CMD-04")
 @pytest.mark.parametrize("name", [f"tables/{ID}.json", "book.h5"])
 def test_a_cut_off_table_or_book_is_damaged(command: Command, tuned: Path, two_classes: Path, name: str) -> None:
     whole = (tuned / name).read_bytes()
@@ -142,6 +145,7 @@ def test_a_cut_off_table_or_book_is_damaged(command: Command, tuned: Path, two_c
         assert not (tuned / "new").exists()
 
 
+@pytest.mark.requirement("CMD-04")
 @pytest.mark.parametrize("name", [f"tables/{ID}.json", "book.h5"])
 def test_a_flipped_bit_is_damage(command: Command, tuned: Path, two_classes: Path, name: str) -> None:
     whole = (tuned / name).read_bytes()

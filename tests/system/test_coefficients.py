@@ -13,6 +13,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tests.effort import sized
 from tests.system.coefficients import kept
 
@@ -22,6 +24,7 @@ ROOT = Path(__file__).parents[2]
 NAMES = sized(("example of the README", "approach, estimator", "p_overspeed", "rnz-2m-park", "sweep"), tuple(kept()))
 
 
+@pytest.mark.requirement("PRED-10")
 def test_no_coefficient_has_changed() -> None:
     found = subprocess.run(
         [sys.executable, "-m", "tests.system.coefficients", *NAMES],

@@ -75,6 +75,7 @@ def test_tune_prints_a_table_and_where_things_are(command: Command, one_class: P
     assert files == {"book.h5", "configuration.toml", *(f"c/{name}" for name in C_FILES), f"tables/{ID}.json"}
 
 
+@pytest.mark.requirement("CMD-03")
 def test_missed_limits_give_1_and_stale_files_go(command: Command, one_class: Path, tuned: Path) -> None:
     strict = one_class.with_name("strict.toml")
     strict.write_text(

@@ -37,7 +37,7 @@ def test_export_is_faithful(command: Command, tuned: Path, tmp_path: Path) -> No
     assert json.loads(ran.out) == {"files": [str(tmp_path / f"{ID}.csv")]}
     ran = command("export", tuned / "book.h5", "--format", "xml")
     assert ran.code == 2
-    assert "json, csv, c, st, plcopen, twincat, scl, fmu" in ran.sentence
+    assert "json, csv, c, st, plcopen, twincat, scl, fmu, fmu2" in ran.sentence
 
 
 def test_export_of_controller_code_is_what_tune_leaves(command: Command, tuned: Path, tmp_path: Path) -> None:
@@ -52,6 +52,7 @@ def test_export_of_controller_code_is_what_tune_leaves(command: Command, tuned: 
     assert set(results_in(tmp_path / "st")) == names
 
 
+@pytest.mark.requirement("CORR-06")
 def test_export_gives_the_correction_beside_unchanged_tables(command: Command, tuned: Path, tmp_path: Path) -> None:
     for form, options, new in (
         ("c", (), {"retarder_correction.c", "retarder_correction.h", "retarder_correction_self_test.c",
@@ -140,7 +141,7 @@ def test_export_takes_a_prefix_a_small_self_test_and_splits(
         ("scl", ("--split",), "--split is for --format st, not for scl; leave it out"),
         ("twincat", ("--prefix", "TRACK__2"), "--prefix TRACK__2: the prefix is 'TRACK__2', but it must have at most"),
         ("plcopen", ("--self-test", "tiny"), "--self-test tiny: there is no such self-test; give full, small"),
-        ("json", ("--prefix", "A"), "--prefix is for --format c, st, plcopen, twincat, scl, fmu, not for json;"),
+        ("json", ("--prefix", "A"), "--prefix is for --format c, st, plcopen, twincat, scl, fmu, fmu2, not for json;"),
         ("csv", ("--self-test", "small"), "--self-test is for --format c, st, plcopen, twincat, scl, not for csv;"),
     ],
 )

@@ -65,6 +65,7 @@ def tuned(tmp_path_factory: pytest.TempPathFactory) -> Tuned:
     return Tuned(code, out.getvalue(), err.getvalue(), folder / "out")
 
 
+@pytest.mark.requirement("CMD-09")
 def test_the_other_cases_are_whole(tuned: Tuned) -> None:
     assert tuned.code == 1
     ids = ["gondola-4-22t-to-1.5-m-s", "gondola-4-30t-to-1.5-m-s"]
@@ -78,6 +79,7 @@ def test_the_other_cases_are_whole(tuned: Tuned) -> None:
     assert not [name for name in pictures if "2.5" in name]
 
 
+@pytest.mark.requirement("CMD-09")
 def test_the_bad_case_is_named_with_its_reason_and_what_to_change(tuned: Tuned) -> None:
     (failed,) = tuned.summary["tables"]["failed"]
     assert (failed["label"], failed["target_m_s"]) == ("gondola-4-22t", 2.5)

@@ -50,6 +50,17 @@ def test_the_units_of_a_book_are_its_simulator(command: Command, tuned_once: tup
     require_equal(found)
 
 
+def test_the_units_of_both_versions_have_the_same_names(
+    command: Command, tuned_once: tuple[Path, int], tmp_path: Path
+) -> None:
+    assert command("export", tuned_once[0], "--format", "fmu2", "-o", tmp_path).code == 0
+    assert names_in(tmp_path) == NAMES
+    for name in NAMES[1:]:
+        with zipfile.ZipFile(tmp_path / name) as archive:
+            assert b'fmiVersion="2.0"' in archive.read("modelDescription.xml")
+            assert "sources/fmi2.c" in archive.namelist()
+
+
 def test_what_is_missing_is_said(
     command: Command, tuned_once: tuple[Path, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -79,6 +79,7 @@ MOMENTS = (("", 3.0), ("[1/1]", 0.9), ("pictures drawn", 0.12))
 """(what to wait for, longest further wait in seconds) of each kill."""
 
 
+@pytest.mark.requirement("CMD-06")
 def test_killed_tunes_leave_nothing_half_done(tuned: Path, one_class: Path) -> None:
     # Begun in the results of another book: the old summary must be gone before anything else changes.
     rng = random.Random(20261120)
@@ -98,6 +99,7 @@ def test_killed_tunes_leave_nothing_half_done(tuned: Path, one_class: Path) -> N
     assert files - {"summary.json", MARKER} == set(json.loads((tuned / "summary.json").read_bytes())["files"])
 
 
+@pytest.mark.requirement("CMD-06")
 def test_ctrl_c_ends_at_once_with_one_line(one_class: Path, tmp_path: Path) -> None:
     tune = start(one_class, tmp_path)
     while not (tmp_path / "tables").exists():

@@ -132,9 +132,8 @@ def test_structured_text_is_exported(example: Path, command: Command, tmp_path: 
     assert "US_L" in text
 
 
-@pytest.mark.parametrize("name", FAULTS)
-def test_a_faulty_type_file_ends_a_tune_with_one_line_and_code_2(name: str, tmp_path: Path, command: Command) -> None:
-    kind, key, line, _ = FAULTS[name]
+def test_a_faulty_type_file_ends_a_tune_with_one_line_and_code_2(tmp_path: Path, command: Command) -> None:
+    kind, key, line, _ = FAULTS["unknown key"]
     path = own(tmp_path / "my", kind, "mine", **{key: line})
     config = tmp_path / "my.toml"
     config.write_text(f'library = ["my/"]\n{USED[kind.folder]}', encoding="utf-8")

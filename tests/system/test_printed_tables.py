@@ -136,6 +136,7 @@ def require_figures(told: list[dict[str, str]], rows: list[dict[str, Any]]) -> N
         assert numbers == pytest.approx(wanted, rel=0.06)
 
 
+@pytest.mark.requirement("CMD-08")
 def test_a_tune_prints_the_figures_of_its_summary(one_class: Path, tmp_path: Path, pages: list[Page]) -> None:
     told = table_of(printed(pages, "tune", one_class, "-o", tmp_path))
     rows = json.loads((tmp_path / "summary.json").read_bytes())["tables"]["cases"]

@@ -68,7 +68,7 @@ def members(value: type) -> Iterator[tuple[str, Any]]:
 
 EVERYTHING = [each for name in DOORS for each in public(name)]
 FUNCTIONS = [(name, value) for name, value in EVERYTHING if isinstance(value, FunctionType)]
-SLOW = {"synth.identify"}
+SLOW = {"synth.figures", "synth.identify"}
 """Examples that take seconds."""
 
 CLASSES = [(name, value) for name, value in EVERYTHING if isinstance(value, type)]

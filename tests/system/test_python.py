@@ -73,13 +73,12 @@ def test_a_prediction_is_that_of_the_table(
     assert synth.predict(table, problem, synth.load_config(measured_classes).resolution) == table.predicted
 
 
-def test_columns_and_trace_are_of_the_same_passes(table: ControllerTable, problem: synth.Problem) -> None:
+def test_sample_and_trace_are_of_the_same_passes(table: ControllerTable, problem: synth.Problem) -> None:
     passes = synth.simulate(table, problem, passes=1000, seed=5)
-    columns = passes.columns()
-    assert {len(column) for column in columns.values()} == {1000}
+    assert len(passes.sample) == 1000
     for index in (0, 17, 999):
         one = synth.trace(table, problem, seed=5, index=index)
-        assert one.exit_speed_m_s == columns["exit_speed_m_s"][index]
+        assert one.exit_speed_m_s == passes.sample.exit_speed_m_s[index]
     slow, fast = (synth.trace(table, problem, friction=factor).exit_speed_m_s for factor in (1.3, 0.7))
     assert slow < fast
 

@@ -9,6 +9,7 @@ import pytest
 from tests.system.conftest import EPOCH, Command
 
 
+@pytest.mark.requirement("PRED-09")
 def test_one_worker_gives_the_bytes_of_two(
     command: Command,
     tuned_once: tuple[Path, int],

@@ -164,6 +164,19 @@ def test_validate_confirms_the_file_and_notices_other_sensors(
     assert "whose passes are not logged; leave out --log" in ran.sentence
 
 
+def test_explore_plays_the_passes_of_the_tune(
+    command: Command, tuned_points: Path, config: Path, tmp_path: Path
+) -> None:
+    assert command("explore", tuned_points, "--config", config, "-o", tmp_path / "page").code == 0
+    page = (tmp_path / "page" / "explore.html").read_text(encoding="utf-8")
+    _, data = page.split('<script id="data" type="application/json">')
+    (shown,) = (each["tables"] for each in json.loads(data.partition("</script>")[0])["classes"])
+    cases = json.loads((tuned_points / "summary.json").read_bytes())["tables"]["cases"]
+    for mine, case in zip(shown, cases, strict=True):
+        assert mine["simulated"]["rms"][0] == case["rms_m_s"]["value"]
+        assert mine["rule"] is None
+
+
 def test_without_sensors_in_the_configuration_those_of_the_table_count(
     command: Command, tuned_points: Path, tmp_path: Path
 ) -> None:

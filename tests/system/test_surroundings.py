@@ -81,6 +81,7 @@ def test_no_file_takes_the_place_of_a_closed_stream(tuned: Path, tmp_path: Path)
         assert (tmp_path / "c" / name).read_bytes() == (tuned / "c" / name).read_bytes()
 
 
+@pytest.mark.requirement("CMD-07")
 @pytest.mark.parametrize("limit", [0, 700])
 def test_a_full_disk_names_the_file_and_is_no_fault_of_the_input(tuned: Path, tmp_path: Path, limit: int) -> None:
     ran = subprocess.run(
@@ -98,6 +99,7 @@ def test_a_full_disk_names_the_file_and_is_no_fault_of_the_input(tuned: Path, tm
     assert results_in(tmp_path / "c") == {}
 
 
+@pytest.mark.requirement("CMD-07")
 @pytest.mark.usefixtures("tuned_once")  # compiles the kernels, whose files are larger than the limit
 def test_a_full_disk_in_a_tune_is_74(plain: Path, tmp_path: Path) -> None:
     ran = subprocess.run(

@@ -151,6 +151,7 @@ def contents(folder: Path) -> dict[Path, bytes]:
     return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.requirement("CMD-05")
 @pytest.mark.parametrize(("each", "name"), pairs(DIRECTORIES))
 def test_a_directory_that_holds_an_input_is_refused(
     command: Command, inputs: Mapping[str, bytes], tmp_path: Path, each: Writing, name: str
@@ -194,6 +195,7 @@ def test_a_result_that_is_an_input_is_not_written(
     }.items() <= before.items()
 
 
+@pytest.mark.requirement("CMD-05")
 @pytest.mark.parametrize(
     "each",
     [

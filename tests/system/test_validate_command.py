@@ -81,6 +81,7 @@ def test_validate_refuses_a_log_that_cannot_be(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.requirement("CMD-10")
 def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_classes: Path, tmp_path: Path) -> None:
     path = tuned / "tables" / f"{ID}.json"
     table = read_json(path)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
@@ -29,6 +30,10 @@ from tuning_tables import (
 )
 from tuning_tables.aim import AimAxes, AimTable
 from tuning_tables.canonical import canonical_json, document_checksum
+from tuning_tables.declared.leaf import Leaf
+from tuning_tables.declared.members import LeafMember, SectionMember, members_of
+from tuning_tables.declared.numbers import Count, Number, Row
+from tuning_tables.declared.texts import Text, Word
 from tuning_tables.passages.sensor_layout import DecidesOn
 from tuning_tables.table_kinds import AnyTable
 
@@ -144,3 +149,34 @@ def dotted(path: JsonPath) -> str:
     for key in path:
         text += f"[{key}]" if isinstance(key, int) else f".{key}"
     return text.removeprefix(".")
+
+
+def leaves_of(declared: type, path: JsonPath = ()) -> Iterator[tuple[JsonPath, Leaf]]:
+    """Every leaf that a class declares; of several sections those of the second, which all samples have."""
+    for name, member in members_of(declared).items():
+        match member:
+            case LeafMember():
+                yield (*path, name), member.leaf
+            case SectionMember():
+                yield from leaves_of(member.section, (*path, name))
+            case _:
+                yield from leaves_of(member.section, (*path, name, 1))
+
+
+def too_far(leaf: Leaf) -> list[object]:
+    """Values of the right type just outside the limits of `leaf`."""
+    match leaf:
+        case Row():
+            return [[], *([value] * max(leaf.fewest, 1) for value in too_far(leaf.of))]
+        case Count():
+            return [leaf.least - 1, *([leaf.most + 1] if leaf.most < 2**53 else [])]
+        case Number():
+            found: list[object] = [0.0] if leaf.is_positive else []
+            found += [] if leaf.least == -math.inf else [math.nextafter(leaf.least, -math.inf)]
+            found += [] if leaf.most == math.inf else [math.nextafter(leaf.most, math.inf)]
+            return found + ([0.1] if leaf.is_single else [])
+        case Text():
+            return ["", "two\nlines"]
+        case Word():
+            return ["other"]
+    return []

@@ -34,6 +34,7 @@ def with_estimator(table: ControllerTable, *breaks: float) -> ControllerTable:
     )
 
 
+@pytest.mark.requirement("RULE-07")
 @pytest.mark.parametrize(
     ("stage", "s_m", "v_m_s", "answer"),
     [

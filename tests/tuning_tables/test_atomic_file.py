@@ -59,6 +59,7 @@ def test_a_failing_disk_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.
     assert os.listdir(tmp_path) == ["table.json"]
 
 
+@pytest.mark.requirement("FILE-08")
 def test_content_is_on_the_disk_before_the_name_and_the_name_before_the_return(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -79,6 +80,7 @@ def test_content_is_on_the_disk_before_the_name_and_the_name_before_the_return(
     assert steps == ["fsync", "replace", "fsync"]
 
 
+@pytest.mark.requirement("FILE-08")
 def test_a_killed_writer_leaves_the_old_file(tmp_path: Path) -> None:
     path = tmp_path / "table.json"
     path.write_bytes(b"old")

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from tuning_tables.canonical import canonical_json, crc32_hex, document_checksum
 
 
+@pytest.mark.requirement("FILE-07")
 def test_checksum_has_its_published_check_value() -> None:
     assert crc32_hex(b"123456789") == "cbf43926"
     assert crc32_hex(b"") == "00000000"
@@ -23,6 +24,7 @@ def test_checksum_of_the_worked_example_leaves_out_its_own_key() -> None:
     assert document_checksum({**document, "a": [0.5, 0]}) != "3f95c3d3"
 
 
+@pytest.mark.requirement("FILE-07")
 @pytest.mark.parametrize(
     ("bits", "text"),
     [  # RFC 8785, appendix B
@@ -54,6 +56,7 @@ def test_numbers_are_written_as_the_standard_shows(bits: str, text: str) -> None
     assert canonical_json(number) == text.encode()
 
 
+@pytest.mark.requirement("FILE-07")
 def test_strings_and_key_order_are_written_as_the_standard_shows() -> None:
     # RFC 8785, sections 3.2.2 and 3.2.3
     assert canonical_json('\u20ac$\x0f\nA\'B"\\\\"/') == '"\u20ac$\\u000f\\nA\'B\\"\\\\\\\\\\"/"'.encode()

@@ -63,6 +63,7 @@ def numbered(table: ControllerTable, category: str, number: int | None, **change
     return replace(table, cut=replace(table.cut, category=category, category_number=number), **changes)
 
 
+@pytest.mark.requirement("CODE-12")
 @pytest.mark.parametrize(("category", "number"), [("Л", 1), ("Т", 5), ("own", 16), ("T", 255)])
 def test_a_number_survives_every_form(table: ControllerTable, tmp_path: Path, category: str, number: int) -> None:
     made = numbered(table, category, number)
@@ -122,6 +123,7 @@ def test_in_one_book_a_name_has_one_number_and_a_number_one_name(table: Controll
     assert book.category_numbers == {"Л": 1}
 
 
+@pytest.mark.requirement("CODE-12")
 @pytest.mark.parametrize("export", [c_files, st_files])
 def test_controller_code_of_a_category_without_number_is_refused(
     table: ControllerTable, export: Callable[[TableBook], Mapping[str, bytes]]

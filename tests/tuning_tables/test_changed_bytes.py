@@ -64,6 +64,7 @@ def replacements(content: bytes, values: Iterable[int]) -> Iterator[bytes]:
             yield before + bytes([value]) + after
 
 
+@pytest.mark.requirement("FILE-01")
 @pytest.mark.parametrize(("layout", "made"), SMALLEST[:3])
 def test_no_replaced_byte_gets_through_whatever_the_value(layout: Layout, made: Callable[[], AnyTable]) -> None:
     content = layout(made())
@@ -73,6 +74,7 @@ def test_no_replaced_byte_gets_through_whatever_the_value(layout: Layout, made: 
     assert read == []
 
 
+@pytest.mark.requirement("FILE-01")
 @pytest.mark.parametrize(("layout", "made"), SMALLEST)
 def test_no_inserted_byte_gets_through(layout: Layout, made: Callable[[], AnyTable]) -> None:
     content = layout(made())
@@ -96,6 +98,7 @@ def one_byte_off(content: bytes) -> Iterator[bytes]:
         yield from (before + bytes([content[at] ^ 1 << bit]) + second + after for bit in range(8))
 
 
+@pytest.mark.requirement("FILE-01")
 @pytest.mark.parametrize("layout", [export_layout, canonical_layout])
 @pytest.mark.parametrize("made", [smallest_points, smallest_aim, smallest_measured])
 def test_no_lost_doubled_transposed_or_flipped_byte_gets_through(layout: Layout, made: Callable[[], AnyTable]) -> None:
@@ -106,6 +109,7 @@ def test_no_lost_doubled_transposed_or_flipped_byte_gets_through(layout: Layout,
     assert read == []
 
 
+@pytest.mark.requirement("FILE-01")
 @pytest.mark.parametrize(
     ("layout", "name"), [(export_layout, "table"), (canonical_layout, "table"), (export_layout, "surface_table")]
 )

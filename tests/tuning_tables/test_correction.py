@@ -33,6 +33,7 @@ def state_of(values: tuple[float, float, float]) -> npt.NDArray[np.float32]:
         return np.array(values, dtype=np.float32)
 
 
+@pytest.mark.requirement("CORR-01", "CORR-03", "CORR-05")
 @given(CORRECTIONS, st.lists(st.tuples(NUMBERS, st.booleans()), max_size=60), NUMBERS)
 @settings(max_examples=sized(75, 300))
 def test_whatever_comes_in_the_correction_is_bounded(
@@ -57,6 +58,7 @@ def test_whatever_comes_in_the_correction_is_bounded(
         assert corrected == speed or (np.isnan(corrected) and np.isnan(speed))
 
 
+@pytest.mark.requirement("CORR-02")
 @given(st.tuples(NUMBERS, NUMBERS, NUMBERS), NUMBERS, st.booleans(), st.floats(0.0, 40.0, width=32))
 @settings(max_examples=sized(125, 500))
 def test_from_any_state_one_pass_leads_back_into_the_bounds(
@@ -142,6 +144,7 @@ def test_a_bias_is_taken_off_and_none_costs_nothing() -> None:
     assert np.sqrt(np.mean(late**2)) < 1.02 * CORRECTION.spread_m_s
 
 
+@pytest.mark.requirement("CORR-04")
 def test_a_bias_beyond_the_limit_does_not_wind_it_up() -> None:
     """After 3000 passes at the limit it comes back within three memories."""
     bias = np.concatenate([np.full(3000, 0.4), np.zeros(300)])
@@ -156,6 +159,7 @@ USABLE: dict[str, Any] = {
 }  # fmt: skip
 
 
+@pytest.mark.requirement("CORR-03")
 @pytest.mark.parametrize(
     "change",
     [

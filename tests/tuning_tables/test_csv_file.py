@@ -19,6 +19,7 @@ from tuning_tables import ControllerTable, InvalidTable, to_csv, to_json, write_
 from tuning_tables.aim import AimTable
 
 
+@pytest.mark.requirement("FILE-05")
 def test_every_value_reads_back_exactly(
     table: ControllerTable,
     linear_table: ControllerTable,

@@ -55,6 +55,7 @@ def run(
     return np.array(speeds), np.array(states)
 
 
+@pytest.mark.requirement("EST-02")
 def test_it_is_the_kalman_filter(estimator: Estimator) -> None:
     """The same recursion in double precision, with matrices and the exact square root."""
     samples = passes_of(1, 1.15, 0.05, excess=0.01)
@@ -98,6 +99,7 @@ def test_it_finds_the_friction_of_a_cut(estimator: Estimator, factor: float) -> 
     assert states[-1, 3] == pytest.approx(factor + left * (1.0 - factor), abs=0.01)
 
 
+@pytest.mark.requirement("EST-02")
 def test_its_errors_are_as_large_as_it_says(estimator: Estimator) -> None:
     exact = replace(estimator, path_std=0.0)
     rng = np.random.default_rng(3)
@@ -133,6 +135,7 @@ def test_nothing_is_estimated_before_a_speed_was_measured(estimator: Estimator) 
     assert observe(lines_apart(estimator), state, 0.2, 5.5, 0.0) == np.float32(5.5)
 
 
+@pytest.mark.requirement("EST-03")
 @pytest.mark.parametrize("estimating", [True, False])
 def test_samples_without_a_reading_that_is_believed_are_counted(
     estimated_table: ControllerTable, estimating: bool
@@ -165,6 +168,7 @@ def seen_cut(estimator: Estimator, samples: int = 12, speed: float = 5.0) -> np.
     return state
 
 
+@pytest.mark.requirement("EST-04")
 def test_a_leap_is_doubted_and_corrects_nothing(estimator: Estimator) -> None:
     """As if it were missing, but that the alarm says so; doubt ends with a reading near the estimate."""
     doubted, missing = seen_cut(estimator), seen_cut(estimator)
@@ -214,6 +218,7 @@ def test_a_sensor_whose_error_lasts_is_followed_after_a_while(estimator: Estimat
     assert (unseen_samples(state), alarms(lines_apart(estimator), state)) == (0, 0)
 
 
+@pytest.mark.requirement("EST-04")
 def test_a_reading_that_repeats_itself_is_not_believed(estimator: Estimator) -> None:
     state = seen_cut(estimator)
     for sample in range(20):
@@ -223,6 +228,7 @@ def test_a_reading_that_repeats_itself_is_not_believed(estimator: Estimator) -> 
         assert alarms(lines_apart(estimator), state) == (SENSOR_ALARM if frozen else 0)
 
 
+@pytest.mark.requirement("EST-05")
 def test_a_lost_cut_is_taken_for_slower_than_it_seems(estimator: Estimator) -> None:
     """By half the limit at twice the variance; never below 0; the alarm says when."""
     state, limit = seen_cut(estimator), estimator.lost_speed_std_m_s
@@ -239,6 +245,7 @@ def test_there_is_no_alarm_before_a_cut_was_seen(estimator: Estimator) -> None:
     assert alarms(lines_apart(estimator), begin()) == 0
 
 
+@pytest.mark.requirement("EST-06")
 def test_a_neighbour_takes_over_where_the_weight_alone_is_in_doubt() -> None:
     for word in range(16):
         step = {4: -1, 8: 1}.get(word, 0)
@@ -305,6 +312,7 @@ def test_the_rule_is_asked_with_the_estimated_speed(estimated_table: ControllerT
         ) == np.float32(reading[1])
 
 
+@pytest.mark.requirement("CHOICE-04")
 def test_lines_are_taken_between_tables_of_one_estimator_only(estimated_table: ControllerTable) -> None:
     faster = replace(estimated_table, id="faster", target_speed_m_s=estimated_table.target_speed_m_s + 1.0)
     assert estimated_table.estimator is not None

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import math
 import re
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -24,10 +22,12 @@ from tests.tuning_tables.every_kind import (
     altered,
     document_of,
     dotted,
+    leaves_of,
     places,
     sealed,
     smallest_aim,
     smallest_lines,
+    too_far,
     value_at,
 )
 from tests.tuning_tables.passages.made_tables import passage_tables, table_of
@@ -49,10 +49,7 @@ from tuning_tables import (
 )
 from tuning_tables.aim import AimTable
 from tuning_tables.canonical import canonical_json
-from tuning_tables.declared.leaf import Leaf
-from tuning_tables.declared.members import LeafMember, SectionMember, members_of
-from tuning_tables.declared.numbers import Count, Number, Row
-from tuning_tables.declared.texts import Text, Word
+from tuning_tables.declared.members import members_of
 from tuning_tables.document import HEAD
 from tuning_tables.json_file import read_stage_table
 from tuning_tables.table_kinds import KINDS, AnyTable, kind_of
@@ -73,18 +70,6 @@ def read_back(content: bytes, table: AnyTable, source: str = "table") -> AnyTabl
 
 def conforms(document: Document) -> bool:
     return bool(VALIDATORS[document["kind"]].is_valid(document))
-
-
-def leaves_of(declared: type, path: JsonPath = ()) -> Iterator[tuple[JsonPath, Leaf]]:
-    """Every leaf that a class declares; of several sections those of the second, which all samples have."""
-    for name, member in members_of(declared).items():
-        match member:
-            case LeafMember():
-                yield (*path, name), member.leaf
-            case SectionMember():
-                yield from leaves_of(member.section, (*path, name))
-            case _:
-                yield from leaves_of(member.section, (*path, name, 1))
 
 
 def test_a_table_survives_both_layouts_and_the_file(sample: AnyTable, tmp_path: Path) -> None:
@@ -137,6 +122,7 @@ def test_keys_and_their_order_follow_from_the_declaration(sample: AnyTable) -> N
         assert validator.is_valid(document_of(sample)) == (kind == kind_of(type(sample)))
 
 
+@pytest.mark.requirement("FILE-03")
 def test_every_key_is_required_and_no_other_is_known(sample: AnyTable) -> None:
     document = document_of(sample)
     objects: list[JsonPath] = [(), *(path for path in places(document) if isinstance(value_at(document, path), dict))]
@@ -155,6 +141,7 @@ def test_every_key_is_required_and_no_other_is_known(sample: AnyTable) -> None:
             read_back(sealed(changed), sample)
 
 
+@pytest.mark.requirement("FILE-03")
 @pytest.mark.parametrize("wrong", every(2, WRONG), ids=repr)
 def test_no_value_of_another_type_gets_through(sample: AnyTable, wrong: object) -> None:
     document = document_of(sample)
@@ -172,25 +159,7 @@ def test_no_value_of_another_type_gets_through(sample: AnyTable, wrong: object) 
     assert refused >= 20
 
 
-def too_far(leaf: Leaf) -> list[object]:
-    """Values of the right type just outside the limits of `leaf`."""
-    match leaf:
-        case Row():
-            return [[], *([value] * max(leaf.fewest, 1) for value in too_far(leaf.of))]
-        case Count():
-            return [leaf.least - 1, *([leaf.most + 1] if leaf.most < 2**53 else [])]
-        case Number():
-            found: list[object] = [0.0] if leaf.is_positive else []
-            found += [] if leaf.least == -math.inf else [math.nextafter(leaf.least, -math.inf)]
-            found += [] if leaf.most == math.inf else [math.nextafter(leaf.most, math.inf)]
-            return found + ([0.1] if leaf.is_single else [])
-        case Text():
-            return ["", "two\nlines"]
-        case Word():
-            return ["other"]
-    return []
-
-
+@pytest.mark.requirement("FILE-03")
 def test_each_declared_limit_is_kept_and_the_fault_is_named(sample: AnyTable) -> None:
     document, tried = document_of(sample), 0
     for path, leaf in leaves_of(type(sample)):
@@ -240,6 +209,7 @@ def test_what_the_schema_refuses_the_reader_refuses_too(sample: AnyTable, wrong:
     assert refused >= 20
 
 
+@pytest.mark.requirement("FILE-04")
 @pytest.mark.parametrize(
     ("change", "error", "words"),
     [

@@ -52,6 +52,7 @@ def test_tables_survive_the_book(book: Path, table: ControllerTable, linear_tabl
     assert os.listdir(book.parent) == ["book.h5"]
 
 
+@pytest.mark.requirement("FILE-06")
 def test_equal_books_have_equal_bytes_whatever_the_process_name_and_hour(book: Path, tmp_path: Path) -> None:
     program = "import sys; from tuning_tables import *; write_book(read_book(sys.argv[1]), sys.argv[2])"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "MALLOC_PERTURB_": "165"}
@@ -203,6 +204,7 @@ def test_values_that_make_no_table_are_refused_even_under_a_right_checksum(
         read_book(path)
 
 
+@pytest.mark.requirement("FILE-02")
 @pytest.mark.parametrize("name", ["book", "surface_book"])
 def test_no_truncated_book_gets_through(request: pytest.FixtureRequest, name: str, tmp_path: Path) -> None:
     content = request.getfixturevalue(name).read_bytes()
@@ -213,6 +215,7 @@ def test_no_truncated_book_gets_through(request: pytest.FixtureRequest, name: st
             read_book(short)
 
 
+@pytest.mark.requirement("FILE-02")
 @pytest.mark.parametrize("name", ["book", "surface_book"])
 def test_no_flipped_bit_gets_through(request: pytest.FixtureRequest, name: str, tmp_path: Path) -> None:
     content = request.getfixturevalue(name).read_bytes()

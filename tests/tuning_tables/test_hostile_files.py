@@ -115,6 +115,7 @@ def foreign(table: ControllerTable, tmp_path_factory: pytest.TempPathFactory) ->
     return {reader: {name: said[str(path)] for name, path in paths.items()} for reader, said in told.items()}
 
 
+@pytest.mark.requirement("FILE-10")
 @pytest.mark.parametrize("name", FOREIGN)
 @pytest.mark.parametrize("reader", ["read_json", "read_book"])
 def test_foreign_files_are_refused_in_bounds(foreign: dict[str, Told], name: str, reader: str) -> None:
@@ -272,6 +273,7 @@ def hostile(
     return {name: said[str(path)] for name, path in paths.items()}
 
 
+@pytest.mark.requirement("FILE-10")
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_books_are_refused_in_bounds(hostile: Told, name: str) -> None:
     said = hostile[name]

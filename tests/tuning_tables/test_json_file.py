@@ -66,6 +66,7 @@ def test_large_whole_numbers_keep_their_value_in_both_layouts(table: ControllerT
         from_json(sealed({**document, "validated": {**document["validated"], "passes": 3e20}}))
 
 
+@pytest.mark.requirement("FILE-01")
 def test_no_truncated_file_gets_through(table: ControllerTable, surface_table: ControllerTable) -> None:
     for content in (to_json(table), sealed(document_of(table)), to_json(surface_table)):
         for length in range(len(content)):
@@ -105,6 +106,7 @@ def test_foreign_files_are_refused(content: bytes, error: type[TableError]) -> N
     assert type(caught.value) is error
 
 
+@pytest.mark.requirement("FILE-03")
 @pytest.mark.parametrize(
     ("token", "reason"),
     [
@@ -126,6 +128,7 @@ def test_numbers_that_are_none_are_refused(table: ControllerTable, token: bytes,
         from_json(content.replace(b'"mass_t": 22.0', b'"mass_t": ' + token))
 
 
+@pytest.mark.requirement("FILE-03")
 def test_a_key_given_twice_is_refused_though_the_last_one_is_right(table: ControllerTable) -> None:
     content = to_json(table).replace(b'"mass_t": 22.0', b'"mass_t": 85.0, "mass_t": 22.0')
     with pytest.raises(DamagedTable, match="'mass_t' is given twice"):

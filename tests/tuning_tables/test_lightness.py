@@ -54,6 +54,7 @@ def asked_in_a_new_process(packages: Path, table: Path, program: str = PROGRAM) 
     return ended.stdout.strip(), time.perf_counter() - started
 
 
+@pytest.mark.requirement("FILE-09")
 def test_loading_and_asking_a_table_needs_numpy_alone(
     only_numpy: Path, linear_table: ControllerTable, tmp_path: Path
 ) -> None:

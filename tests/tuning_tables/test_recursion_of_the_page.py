@@ -129,6 +129,7 @@ def odd_book() -> TableBook:
     )
 
 
+@pytest.mark.requirement("EST-01")
 @pytest.mark.parametrize("book", [estimating_book, approaching_book, odd_book])
 def test_the_page_gives_every_bit_of_the_golden_tracks(book: Any) -> None:
     made = book()

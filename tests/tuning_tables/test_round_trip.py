@@ -47,6 +47,7 @@ def bits(table: ControllerTable) -> tuple[bytes | str, ...]:
     )
 
 
+@pytest.mark.requirement("FILE-05")
 @given(st.lists(tables(), min_size=1, max_size=3, unique_by=lambda table: table.id))
 @slowly
 def test_json_and_book_hold_the_same_bits(tmp_path: Path, originals: list[ControllerTable]) -> None:
@@ -69,6 +70,7 @@ def test_both_layouts_of_a_table_are_read(original: ControllerTable) -> None:
     assert bits(from_json(canonical)) == bits(from_json(to_json(original))) == bits(original)
 
 
+@pytest.mark.requirement("FILE-06")
 @pytest.mark.parametrize("name", ["table", "surface_table"])
 def test_a_table_written_twice_has_the_same_bytes_in_every_format(
     request: pytest.FixtureRequest, name: str, tmp_path: Path

@@ -126,6 +126,7 @@ def test_the_three_ways_agree_on_tables_of_every_shape(compiled: Answering, tabl
     assert plain == golden.answer[some].tolist() == compiled(table, *readings).tolist()
 
 
+@pytest.mark.requirement("RULE-01", "RULE-04", "RULE-05")
 @pytest.mark.parametrize("name", TABLES)
 def test_answers_agree_with_an_independent_float32_evaluation(name: str, request: pytest.FixtureRequest) -> None:
     """A controller that sent a command for each stage, at once and with one reading, would end at the answer."""
@@ -171,6 +172,7 @@ def test_both_float_widths_of_a_reading_agree_in_compiled_code(table: Controller
             assert compiled(table.held, 1, float(s), float(v), NAN) == narrow
 
 
+@pytest.mark.requirement("RULE-01", "RULE-03")
 @pytest.mark.parametrize(
     ("stage", "s_m", "v_m_s", "answer"),
     [
@@ -197,6 +199,7 @@ def test_the_rule_on_a_table_that_can_be_checked_by_hand(
     assert decide_many(linear_table, stage, s_m, v_m_s) == answer
 
 
+@pytest.mark.requirement("RULE-02")
 @pytest.mark.parametrize(
     ("stage", "s_m", "v_m_s"),
     [
@@ -223,6 +226,7 @@ def test_an_incredible_reading_moves_no_valve(
     assert decide_many(linear_table, stage, s_m, v_m_s) == stage
 
 
+@pytest.mark.requirement("RULE-04")
 @pytest.mark.parametrize(
     ("stage", "v_m_s", "answer"),
     [
@@ -300,6 +304,7 @@ def test_the_golden_vectors_show_a_jump_at_any_time(
     assert np.all(abs(golden.answer - golden.stage) <= 1)
 
 
+@pytest.mark.requirement("RULE-05")
 def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table: ControllerTable) -> None:
     tiny = float(np.float32(1e-44))
     table = replace(

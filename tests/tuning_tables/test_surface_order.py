@@ -52,6 +52,7 @@ def tilting(table: ControllerTable) -> Tilting:
     return make
 
 
+@pytest.mark.requirement("RULE-06")
 @pytest.mark.parametrize(
     ("lower", "upper", "slopes", "accepted"),
     [
@@ -133,6 +134,7 @@ coefficients = st.floats(-8, 8, width=32).map(lambda c: c + 0.0)  # no -0.0
 slopes = st.floats(-(2.0**-5), 2.0**-5, width=32).map(lambda c: c + 0.0)
 
 
+@pytest.mark.requirement("RULE-06")
 @given(
     lower=st.lists(coefficients, min_size=1, max_size=5),
     gap=st.floats(2.0**-26, 2.0**-12),

@@ -51,6 +51,7 @@ def below(value: float) -> float:
     return float(np.nextafter(np.float32(value), np.float32(-INF)))
 
 
+@pytest.mark.requirement("RULE-08")
 @pytest.mark.parametrize(
     ("stage", "kpa", "line"),
     [
@@ -86,6 +87,7 @@ def test_the_rule_on_surfaces_that_can_be_checked_by_hand(
         assert decide_many(tilted_table, stage, 4.0, speed, kpa) == answer
 
 
+@pytest.mark.requirement("RULE-08")
 def test_one_who_gives_no_pressure_is_one_whose_gauge_is_silent(tilted_table: ControllerTable) -> None:
     for stage in (0, 1):
         for speed in (2.0, above(3.0), below(3.0), above(5.0)):
@@ -106,6 +108,7 @@ def test_the_highest_pressure_is_that_of_the_highest_stage_that_is_raised_to(sur
     assert rises_at(table, 3, np.array(NAN)).tolist() == [0.0, 0.0]
 
 
+@pytest.mark.requirement("RULE-02")
 @pytest.mark.parametrize("stage", [-1, 4, -(2**31), 2**31])
 def test_a_stage_that_there_is_not_holds(surface_table: ControllerTable, stage: int) -> None:
     assert decide_for(surface_table, stage, 1.0, 9.0, 100.0) == stage

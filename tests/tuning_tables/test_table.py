@@ -167,6 +167,7 @@ def test_rounding_gives_the_nearest_float32(value: float) -> None:
     assert round_coefficients([rounded]) == (rounded,)
 
 
+@pytest.mark.requirement("RULE-06")
 @pytest.mark.parametrize(
     ("lower", "upper", "s_m", "accepted"),
     [
@@ -223,6 +224,7 @@ def test_order_as_sampled_agrees_with_order_as_decided(
     assert accepted == (sampled > 0)
 
 
+@pytest.mark.requirement("RULE-06")
 @given(
     lower=st.lists(coefficients, min_size=3, max_size=6),
     offset=st.floats(0, 2.0**-14, width=32),

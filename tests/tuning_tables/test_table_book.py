@@ -43,6 +43,7 @@ def chosen(book: TableBook, speed: float) -> Choice:
     return book.choose("medium", 4, speed)
 
 
+@pytest.mark.requirement("CHOICE-01", "CHOICE-02")
 @pytest.mark.parametrize(
     ("speed", "status", "numbers"),
     [
@@ -71,6 +72,7 @@ def test_the_rules_of_the_choice(book: TableBook, speed: float, status: Status, 
         assert choice.table.target_speed_m_s <= np.float32(speed)
 
 
+@pytest.mark.requirement("CHOICE-02")
 def test_a_class_that_the_book_lacks(book: TableBook) -> None:
     assert book.choose("heavy", 4, 3.0) == Choice(Status.NO_CLASS, None, ())
     assert book.choose("medium", 6, 3.0).status is Status.NO_CLASS
@@ -83,6 +85,7 @@ def test_a_target_is_met_by_its_table_bit_by_bit(book: TableBook) -> None:
     assert np.array_equal(choice.table.coefficients, book.tables[2].coefficients, equal_nan=True)
 
 
+@pytest.mark.requirement("CHOICE-05")
 @given(
     part=st.floats(0.0, 1.0, exclude_min=True, exclude_max=True), place=st.floats(0.0, 37.45), line=st.integers(0, 1)
 )
@@ -123,6 +126,7 @@ def test_a_chosen_table_is_what_the_rule_takes(book: TableBook) -> None:
         choice.table.coefficients[0, 0, 0] = 1.0
 
 
+@pytest.mark.requirement("CHOICE-04")
 @pytest.mark.parametrize("change", ["degree", "stages", "lines", "range"])
 def test_tables_that_differ_in_kind_are_not_mixed(table: ControllerTable, change: str) -> None:
     slower, faster = moved(table, 2.0), moved(table, 4.0)
@@ -141,6 +145,7 @@ def test_tables_that_differ_in_kind_are_not_mixed(table: ControllerTable, change
     assert (choice.status, choice.numbers) == (Status.SLOWER, (0,))
 
 
+@pytest.mark.requirement("CHOICE-03")
 def test_of_several_masses_the_heaviest_is_taken_and_the_others_are_named(table: ControllerTable) -> None:
     heavy = CutId("medium", 30.0, (0.0, 1.85, 8.65, 10.5))
     tables = (moved(table, 2.0), moved(table, 4.0), *(moved(table, v, cut=heavy) for v in (3.0, 5.0)))
@@ -173,6 +178,7 @@ def test_numbers_that_no_controller_can_hold_are_refused(table: ControllerTable,
         TableBook((replace(table, cut=replace(table.cut, mass_t=value)),))
 
 
+@pytest.mark.requirement("CHOICE-05")
 @pytest.mark.parametrize("steps", [(2, 2), (2, 9999), (9999, 2)])
 def test_lines_too_near_to_be_interpolated_are_refused(table: ControllerTable, steps: tuple[int, int]) -> None:
     """One narrow gap is enough, whichever table has it; and what is needed covers three roundings of a number."""

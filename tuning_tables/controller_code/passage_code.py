@@ -28,7 +28,7 @@ from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
 from tuning_tables.programs.choose import Tables, choose
-from tuning_tables.programs.passage_table import HELD_PASSAGES
+from tuning_tables.programs.passage_table import HELD_PASSAGES, HeldPassages
 from tuning_tables.programs.tracker import TRACKER, begin_cut, believed_passage
 from tuning_tables.self_test_size import SelfTestSize
 
@@ -36,6 +36,8 @@ BEGIN_CUT: Final = Rule(begin_cut, "begin_cut")
 AT_PULSE: Final = Rule(at_pulse, "at_pulse", "stage")
 BELIEVED: Final = Rule(believed_passage, "believed_passage", "-1")
 WANTED: Final = Rule(wanted_stage, "wanted_stage", "stage")
+RULES: Final = (BEGIN_CUT, AT_PULSE, BELIEVED, WANTED)
+"""What a regulator asks while a cut is in the position."""
 
 HEAD: Final = (
     "A pair of pulses: an axle has passed the two coils of a sensor. Every pair of every axle over every sensor "
@@ -51,7 +53,7 @@ HEAD: Final = (
 
 def passage_code(book: PassageBook, self_test: SelfTestSize) -> ControllerCode:
     """The export of a book. Raises `InvalidTable` for a category without number."""
-    room = room_of(book)
+    room = room_of(book.tables)
     record = HELD_PASSAGES.sized(room)
     held = tuple(HeldTable(table.id, held_values(table, record)) for table in book.tables)
     golden = [self_test.passages(table) for table in book.tables]
@@ -65,7 +67,7 @@ def passage_code(book: PassageBook, self_test: SelfTestSize) -> ControllerCode:
         declared=(HELD_PASSAGES, TRACKER, record_of(Tables)),
         room=room,
         tables=held,
-        rules=(BEGIN_CUT, AT_PULSE, BELIEVED, WANTED),
+        rules=RULES,
         chooses=(Rule(choose, "choose"),),
         questions=(
             Questions("stages", (WANTED,), numbered([each.stages for each in golden])),
@@ -77,13 +79,13 @@ def passage_code(book: PassageBook, self_test: SelfTestSize) -> ControllerCode:
     )
 
 
-def room_of(book: PassageBook) -> Mapping[str, int]:
-    """The least room that every table of the book fits into."""
-    stages = max(len(table.pressure_kpa) for table in book.tables)
+def room_of(tables: Sequence[PassageTable]) -> Mapping[str, int]:
+    """The least room that every one of the tables fits into."""
+    stages = max(len(table.pressure_kpa) for table in tables)
     return {
-        "tables": len(book.tables),
-        "heard": max(len(table.heard_path_m) for table in book.tables),
-        "passages": max(len(table.passages) for table in book.tables),
+        "tables": len(tables),
+        "heard": max(len(table.heard_path_m) for table in tables),
+        "passages": max(len(table.passages) for table in tables),
         "stages": stages,
         "thresholds": stages - 1,
     }
@@ -91,7 +93,12 @@ def room_of(book: PassageBook) -> Mapping[str, int]:
 
 def held_values(table: PassageTable, record: SizedRecord) -> Values:
     """The numbers of a table; raises as `exported_number`."""
-    held = held_by(table)._replace(category=exported_number(table))._asdict()
+    return values_of(held_by(table)._replace(category=exported_number(table)), record)
+
+
+def values_of(passages: HeldPassages, record: SizedRecord) -> Values:
+    """The numbers of a table in the room of a record."""
+    held = passages._asdict()
     return {
         name: padded(held[name], record.shape(name)) if member.axes else held[name]
         for name, member in record.members.items()

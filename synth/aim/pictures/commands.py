@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,6 +15,14 @@ from tuning_tables.aim import AimTable
 
 MOST_RESISTANCES = 7
 """Lines of a panel."""
+
+
+def aim_figures(tables: Sequence[AimTable]) -> Mapping[str, Figure]:
+    """The pictures of aim tables by name, all tables of one kind of knowledge together."""
+    measured = [table for table in tables if table.is_measured]
+    plain = [table for table in tables if not table.is_measured]
+    found = {"aim-commands-by-cars": commands_by_cars(plain)} if plain else {}
+    return {**found, "aim-commands-by-resistance": commands_by_resistance(measured)} if measured else found
 
 
 def commands_by_cars(tables: Sequence[AimTable]) -> Figure:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from statistics import NormalDist
@@ -10,6 +9,7 @@ from typing import Final
 
 from synth.checker.aim.reading import Aim, NodeValues
 from synth.checker.category_number import OWN, YARD
+from synth.checker.document_shape import origin_faults
 from synth.checker.float32 import rounded
 
 MOST_NODES_OF_A_CUT: Final = 999
@@ -49,10 +49,7 @@ def purpose_faults(aim: Aim) -> Iterator[str]:
         0.0 <= measured["from_m"] < measured["to_m"] <= 1e5 and 0.0 <= measured["speed_std_m_s"] <= 40.0
     ):
         yield f"its resistance is measured from {measured['from_m']:g} to {measured['to_m']:g} m, which is impossible"
-    if re.fullmatch("[0-9a-f]{64}", document["generator"]["config_sha256"]) is None:
-        yield "its config_sha256 is not one"
-    if re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z", document["created"], re.ASCII) is None:
-        yield f"its date {document['created'][:40]!r} is not one"
+    yield from origin_faults(document)
 
 
 def axis_faults(aim: Aim) -> Iterator[str]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Final
 
+from synth.checker.document_shape import origin_faults
 from synth.checker.float32 import is_float32
 from synth.checker.passages.reading import PassageTable
 from synth.checker.passages.rule import passages_heard, wanted
@@ -59,10 +59,7 @@ def purpose_faults(table: PassageTable) -> Iterator[str]:
     low, high = document["valid_v_m_s"]
     if not 0.0 <= low < table.target_m_s < high:
         yield f"its target of {table.target_m_s:g} m/s is not within its valid speeds, {low:g} to {high:g} m/s"
-    if re.fullmatch("[0-9a-f]{64}", document["generator"]["config_sha256"]) is None:
-        yield "its config_sha256 is not one"
-    if re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z", document["created"], re.ASCII) is None:
-        yield f"its date {document['created'][:40]!r} is not one"
+    yield from origin_faults(document)
 
 
 def number_faults(table: PassageTable) -> Iterator[str]:

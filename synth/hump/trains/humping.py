@@ -87,8 +87,12 @@ class OneCut:
         memory.crest_s[:, cut], memory.hump_speed_m_s[:, cut] = time, speed
         head = 0.5 * self.length_m
         push = Push(memory.hump_speed_m_s[:, cut - 1] if cut > 0 else speed, apart)
-        self.note(push.times_s(Moving(head, speed, time), self.heads_m(np.ones(len(speed), dtype=bool))), self.rolling)
-        return Moving(head, speed, time)
+        moving, sent, every = Moving(head, speed, time), self.rolling, np.ones(len(speed), dtype=bool)
+        while sent.any():  # a long cut may come on the first points while it is still pushed
+            self.times[sent] = np.nan
+            self.note(push.times_s(moving, self.heads_m(every))[sent], sent)
+            sent = self.misroute()
+        return moving
 
     def heads_m(self, chosen: Bools) -> Floats:
         """Where the heads are at each mark of their routes, (n, elements · marks)."""

@@ -109,6 +109,27 @@ class Chart {
     });
   }
 
+  // A short level bar, `isOpen` a dashed one.
+  bar(x, y, colour, isOpen) {
+    const { pen } = this, at = [this.atX(x), this.atY(y)];
+    this.inside(() => {
+      Object.assign(pen, { strokeStyle: this.colour(colour), lineWidth: 3 });
+      pen.setLineDash(isOpen ? [4, 2] : []);
+      this.stroke([[at[0] - 8, at[1]], [at[0] + 8, at[1]]]);
+    });
+  }
+
+  // A triangle on the axis of x.
+  foot(x, colour) {
+    const { pen, bottom } = this, at = this.atX(x);
+    this.inside(() => {
+      pen.fillStyle = this.colour(colour);
+      pen.beginPath();
+      for (const [dx, dy] of [[-5, 0], [5, 0], [0, -9]]) pen.lineTo(at + dx, bottom + dy);
+      pen.fill();
+    });
+  }
+
   // A filled rectangle; null where it reaches the edge of the chart.
   band([x0, x1], [y0, y1], colour, alpha = 1) {
     const { pen } = this;

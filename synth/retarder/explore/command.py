@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -18,46 +18,57 @@ from synth.retarder.tables_configuration import configuration_for, given_config,
 
 if TYPE_CHECKING:
     from synth.retarder.explore.explore_page import PlayedTable
-    from tuning_tables import ControllerTable
+    from tuning_tables.table_kinds import StageTable
 
 LARGEST_PAGE_BYTES: Final = 3_000_000
 """A page goes by mail, and a telephone opens it."""
 
+BESIDE_BYTES: Final = 30_000
+"""More than what stands beside a table takes in a page."""
+
+
+@dataclass(frozen=True)
+class Asking:
+    """Tables to be played, with the configuration that their plants are from, called `source`."""
+
+    config: ResolvedConfig
+    source: str
+    tables: tuple[PlayedTable, ...]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """That the plants may be others than those of the tables."""
+        return made_elsewhere([each.table for each in self.tables], self.config, self.source)
+
 
 @dataclass(frozen=True)
 class ExplorePage:
-    """The page of so many tables, and the configuration that their plants are from."""
+    """The page of so many tables."""
 
-    config: ResolvedConfig
     tables: int
     file: File
-    warnings: tuple[str, ...]
 
 
-def resolve(asked: Asked[ResolvedConfig | None, ExploreOptions]) -> ExplorePage:
-    """The page, made here so that it can be refused: tables without a plant, for point sensors, or too many."""
-    from synth.frame.version import __version__
-    from synth.retarder.explore.explore_page import PAGE, explore_page
+def resolve(asked: Asked[ResolvedConfig | None, ExploreOptions]) -> Asking:
+    """The tables; refused are those without a plant, aim tables, and more than a page may hold."""
     from synth.retarder.forms.tables_at import tables_at
 
     path = asked.options.source
-    tables = tables_at(path).only_lines("explore")
+    tables = tables_at(path).only_of_stages("explore")
     config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, path, tables)
     played = tuple(played_tables(tables, path, config, source))
-    named = Path(source).name  # no file holds a path
-    warnings = made_elsewhere(tables, config, named)
-    told = " · ".join((f"retarder-synth {__version__}", f"plant: {named}", "one file, which loads nothing", *warnings))
-    content = explore_page(config.title, told, played).encode()
-    if len(content) > LARGEST_PAGE_BYTES:
+    asking = Asking(config, Path(source).name, played)  # no file holds a path
+    size = len(page_of(asking)) + BESIDE_BYTES * len(tables)
+    if size > LARGEST_PAGE_BYTES:
         raise InputError(
-            f"{path}: a page of its {len(tables)} tables would have {len(content) / 1e6:.1f} MB; "
+            f"{path}: a page of its {len(tables)} tables could have {size / 1e6:.1f} MB; "
             f"{LARGEST_PAGE_BYTES / 1e6:g} MB are allowed: give one table, or a folder of fewer"
         )
-    return ExplorePage(config, len(tables), File(PAGE, content, "Play with the tables"), warnings)
+    return asking
 
 
 def played_tables(
-    tables: tuple[ControllerTable, ...], path: Path, config: ResolvedConfig, source: str
+    tables: tuple[StageTable, ...], path: Path, config: ResolvedConfig, source: str
 ) -> Iterator[PlayedTable]:
     """The tables with the plants of their classes; `InputError` where the configuration has none for one.
 
@@ -66,26 +77,43 @@ def played_tables(
     from synth.retarder.explore.explore_page import PlayedTable
     from synth.retarder.forms.table_file import is_infeasible, summary_beside
     from synth.retarder.served_class import served_class
+    from tuning_tables import ControllerTable
     from tuning_tables.decisions import Decisions
 
     summary, limits_t = summary_beside(path), {each.label: each.mass_limits_t for each in config.cuts}
     for table in tables:
         served = served_class(table, config, source)
-        if table.decisions is Decisions.AT_ANY_TIME:
+        if isinstance(table, ControllerTable) and table.decisions is Decisions.AT_ANY_TIME:
             served.plant.drive_at_any_time()  # refused here: the scripts know no other drive
-        infeasible = is_infeasible(table, summary)
-        yield PlayedTable(table, served.label, served.plant, limits_t[served.label], infeasible)
+        yield PlayedTable(table, served, limits_t[served.label], is_infeasible(table, summary))
 
 
-def head(page: ExplorePage) -> Head:
+def page_of(asking: Asking) -> bytes:
+    """The page of the tables, with what stands beside them as far as that is known."""
+    from synth.frame.version import __version__
+    from synth.retarder.explore.explore_page import explore_page
+
+    plant = f"plant: {asking.source}"
+    told = " · ".join((f"retarder-synth {__version__}", plant, "one file, which loads nothing", *asking.warnings))
+    return explore_page(asking.config.title, told, asking.tables).encode()
+
+
+def head(asking: Asking) -> Head:
     """What is said of the configuration, with a word about tables that another one made."""
-    return head_of(page.config, page.warnings)
+    return head_of(asking.config, asking.warnings)
 
 
-def compute(page: ExplorePage, work: Work) -> ExplorePage:
-    """It is made already, so that it could be refused."""
-    work.progress.done(page.file.name)
-    return page
+def compute(asking: Asking, work: Work) -> ExplorePage:
+    """Each table and the best rule on the passes of its case, then the page of all."""
+    from synth.retarder.explore.beside import beside
+    from synth.retarder.explore.explore_page import PAGE
+
+    played = []
+    for each in asking.tables:
+        played.append(replace(each, beside=beside(each.table, each.served, asking.config)))
+        work.progress.done(each.title)
+    content = page_of(replace(asking, tables=tuple(played)))
+    return ExplorePage(len(played), File(PAGE, content, "Play with the tables"))
 
 
 def show(page: ExplorePage) -> Iterator[Chapter]:
@@ -101,7 +129,7 @@ COMMAND = Command(
     options=ExploreOptions,
     resolve=resolve,
     head=head,
-    steps=lambda page: Steps(1, "writing", "pages"),
+    steps=lambda asking: Steps(len(asking.tables), "playing", "tables"),
     compute=compute,
     show=show,
     limits_of_use=(MODEL_ONLY,),

@@ -139,22 +139,54 @@ const Drive = (() => {
       const periods = Math.max(1, Math.ceil(busy / sensor.period_s - 1e-9));
       const until = (edge) => restOf(valves, from) * Math.min(edge, 0) +
         overpressure(pieces, Math.max(edge, 0), valves.touch_kpa);
-      const found = [];
-      for (let period = 0; period < periods; period++) {
-        const parts = [];
-        for (let place = 0; place < plant.substeps; place++) {
-          const edge = (period * plant.substeps + place) * part - sensor.computing_delay_s;
-          const next = (period * plant.substeps + place + 1) * part - sensor.computing_delay_s;
-          parts.push(rint((until(next) - until(edge)) / (next - edge) * 1e9) / 1e9);
-        }
-        found.push({ pieces: joined(parts, part, (one, before) => one === before), meanKpa: mean(parts) });
-      }
-      return { pieces, periods: found, mode: this.nearestMode(wanted, end[1]) };
+      const parts = Array.from({ length: periods * plant.substeps }, (_, place) => {
+        const edge = place * part - sensor.computing_delay_s, next = (place + 1) * part - sensor.computing_delay_s;
+        return rint((until(next) - until(edge)) / (next - edge) * 1e9) / 1e9;
+      });
+      const played = (some) => joined(some, part, (one, before) => one === before);
+      const found = Array.from({ length: periods }, (_, period) => {
+        const some = parts.slice(period * plant.substeps, (period + 1) * plant.substeps);
+        return { pieces: played(some), meanKpa: mean(some) };
+      });
+      return { pieces, periods: found, whole: played(parts), mode: this.nearestMode(wanted, end[1]) };
     }
 
     nearestMode(stage, kpa) {
       const far = this.modes.map((mode) => mode.stage === stage ? Math.abs(mode.kpa - kpa) : Infinity);
       return far.indexOf(Math.min(...far));
+    }
+  }
+
+  // Commands at rest too, but at any time: what is played after a command goes on by itself, piece by piece.
+  class AtPulses extends AtRest {
+    begin() {
+      super.begin();
+      Object.assign(this, { begunS: 0, restsFromS: -Infinity });
+    }
+
+    get pieceKpa() { return this.chain === null ? restOf(this.valves, this.modes[this.mode].kpa) : this.chain.whole[this.place].kpa; }
+    get pieceEndsS() { return this.chain === null ? Infinity : this.endS; }
+
+    pressureAt(timeS) {
+      if (this.chain === null) return this.modes[this.mode].kpa;
+      const since = timeS - this.begunS - this.plant.sensor.computing_delay_s;
+      return since < 0 ? this.chain.pieces[0][1] : pressureAt(this.chain.pieces, since);
+    }
+
+    command(wanted, timeS) {
+      const chain = this.chainTo(wanted);
+      Object.assign(this, { chain, place: 0, begunS: timeS, restsFromS: Infinity });
+      this.endS = timeS + chain.whole[0].seconds;
+    }
+
+    // The piece that plays has ended.
+    next() {
+      this.place += 1;
+      if (this.place < this.chain.whole.length) {
+        this.endS += this.chain.whole[this.place].seconds;
+        return;
+      }
+      Object.assign(this, { mode: this.chain.mode, chain: null, restsFromS: this.endS });
     }
   }
 
@@ -240,7 +272,10 @@ const Drive = (() => {
     return low % 2 === 0 ? low : low + 1;
   }
 
-  const drive = (plant, atAnyTime, delayTimes) =>
-    new (atAnyTime ? AtAnyTime : AtRest)(slower(plant.valves, delayTimes), plant);
+  function drive(plant, atAnyTime, delayTimes) {
+    const kind = plant.sensor.passages ? AtPulses : atAnyTime ? AtAnyTime : AtRest;
+    return new kind(slower(plant.valves, delayTimes), plant);
+  }
+
   return { drive, rint };
 })();

@@ -2,61 +2,75 @@
 // The page: what is set, one pass of it at once, then many. All data are in the element "data"; nothing is loaded.
 (() => {
   const { classes, overspeed_m_s: overspeedMS, alarms } = JSON.parse(document.getElementById("data").textContent);
-  const LINK_AFTER_MS = 250, MANY_AFTER_MS = 200, FEW_PASSES = 100, ONE_PASS = 0;
+  const LINK_AFTER_MS = 250, MANY_AFTER_MS = 200, SOON_MS = 0, FEW_PASSES = 100, ONE_PASS = 0;
   const at = (id) => document.getElementById(id);
   const on = (id, event, act) => at(id).addEventListener(event, act);
   const choices = classes.flatMap((of) => of.tables.map((told) => ({ of, told })));
-  const charts = Object.fromEntries(["speed", "pressure", "cloud", "histogram"].map((id) => [id, new Chart(at(id))]));
+  const charts = Object.fromEntries([...document.querySelectorAll("canvas")].map((each) => [each.id, new Chart(each)]));
   const set = { choice: 0, values: null, cursor: null, unit: "m/s" };
   let shown = null, waitsForCloud = 0, waitsForLink = 0;
 
   const plantOf = () => choices[set.choice].of.plant;
   const number = (m_s, digits = 2) => (m_s * SpeedUnits.FACTORS[set.unit]).toFixed(digits);
   const withUnit = (m_s, digits = 2) => `${number(m_s, digits)} ${set.unit}`;
-  const signed = (m_s, digits) => `${m_s < 0 ? "−" : "+"}${number(Math.abs(m_s), digits)}`;
-
-  // --- passes
-  function settingOf(plant, table) {
-    const { mass: massT, noise: noiseMS, delay } = set.values;
-    return { massT, noiseMS, drive: Drive.drive(plant, table.at_any_time === 1, delay) };
+  function signed(m_s) {
+    const size = number(Math.abs(m_s));
+    return `${Number(size) === 0 ? "" : m_s < 0 ? "−" : "+"}${size}`;
   }
 
-  function passOf(plant, table, setting, cut) {
-    const questions = [], points = [];
-    const exit = Passes.run(plant, table, setting, cut, (time, s, v, _kpa, _stage, question) => {
-      points.push([s, v]);
-      if (question) questions.push({ time, v, question });
-    });
-    points.push([exit.s, exit.stalled ? 0 : exit.exitMS]);
-    return { exit, questions, points };
+  // --- passes
+  // The regulators of a table: its own, and that of the rule beside it, null where there is none.
+  function regulatorsOf({ of: { plant }, told }) {
+    const table = (Controls.isRadar(plant) ? Rule : PassageRule).table(told.held);
+    const own = Controls.isRadar(plant) ? Laws.byTable(plant, table) : Passages.byTable(plant, table);
+    return { table, own, rule: told.rule && Laws.byLines(plant, told.rule.lines) };
+  }
+
+  // What plays cuts under a regulator with the sliders as they are; of a cut that is explained it keeps everything.
+  function playerOf(plant, regulator) {
+    const { mass: massT, noise: noiseMS, timer, delay } = set.values, { run } = Controls.isRadar(plant) ? Passes : Passages;
+    const drive = Drive.drive(plant, regulator.atAnyTime, delay), setting = { massT, noiseMS, noiseS: timer * 1e-3, drive };
+    return (cut, isExplained) => {
+      const questions = [], points = [], pressures = [];
+      const exit = run(plant, regulator, setting, cut, (time, s, v, _kpa, _stage, question) => {
+        points.push([s, v]);
+        if (!isExplained) return;
+        if (question) questions.push({ time, v, question });
+        if (drive.pressureAt) pressures.push([time, drive.pressureAt(time)]);
+        else if (question) pressures.push([time, question.pressureKpa]);
+      });
+      points.push([exit.s, exit.stalled ? 0 : exit.exitMS]);
+      return { exit, questions, points, pressures };
+    };
   }
 
   // The one pass of the sliders, and everything that is drawn of it.
   function update() {
-    const { of, told } = choices[set.choice], { plant } = of, { values } = set, table = of.made(told);
+    const choice = choices[set.choice], { of: { plant, room }, told } = choice, { values } = set;
+    choice.regulators ??= regulatorsOf(choice);
+    const { table, own, rule } = choice.regulators;
     const cut = { ...Draws.cut(plant, values.seed, ONE_PASS), entryMS: values.entry, factor: values.factor,
       resistance: values.resistance };
-    const pass = passOf(plant, table, settingOf(plant, table), cut);
-    shown = { plant, table, told, pass, targetMS: told.target_m_s };
+    const pass = playerOf(plant, own)(cut, true), rulePass = rule && playerOf(plant, rule)(cut, true);
+    shown = { plant, room, table, told, pass, rulePass, targetMS: told.target_m_s };
     const first = pass.questions.findIndex(({ question }) => question.wanted !== question.before);
     if (set.cursor === null) set.cursor = Math.max(0, first);
     set.cursor = Math.min(set.cursor, pass.questions.length - 1);
-    tellExit();
+    tellExit("exit", pass);
+    if (rulePass) tellExit("rule-exit", rulePass);
     drawPass();
     clearTimeout(waitsForCloud);
-    waitsForCloud = setTimeout(manyPasses, Number(at("passes").value) > FEW_PASSES ? MANY_AFTER_MS : 0);
+    waitsForCloud = setTimeout(manyPasses, Number(at("passes").value) > FEW_PASSES ? MANY_AFTER_MS : SOON_MS);
     clearTimeout(waitsForLink);
     waitsForLink = setTimeout(writeLink, LINK_AFTER_MS);
   }
 
-  function tellExit() {
-    const { exit } = shown.pass, error = exit.exitMS - shown.targetMS, panel = at("exit");
-    panel.className = !exit.stalled && error > overspeedMS ? "fast" : "";
-    const commands = `${exit.commands} command${exit.commands === 1 ? "" : "s"}`;
-    panel.textContent = exit.stalled
-      ? `The cut stands at ${exit.s.toFixed(1)} m after ${exit.time.toFixed(1)} s; ${commands}.`
-      : `Exit ${withUnit(exit.exitMS)}, target ${withUnit(shown.targetMS)}: error ${signed(error)} ${set.unit}; ` +
-        `${commands}, ${exit.time.toFixed(1)} s.`;
+  function tellExit(id, { exit }) {
+    const error = exit.exitMS - shown.targetMS, commands = `${exit.commands} command${exit.commands === 1 ? "" : "s"}`;
+    at(id).className = !exit.stalled && error > overspeedMS ? "fast" : "";
+    at(id).textContent = exit.stalled ? "The cut stands" : `Error ${signed(error)} ${set.unit}`;
+    at(`${id}-more`).textContent = exit.stalled ? `at ${exit.s.toFixed(1)} m after ${exit.time.toFixed(1)} s; ${commands}`
+      : `exit ${withUnit(exit.exitMS)}, target ${withUnit(shown.targetMS)}; ${commands}, ${exit.time.toFixed(1)} s`;
   }
 
   function drawPass() {
@@ -66,56 +80,59 @@
     const moment = shown.pass.questions[set.cursor], slider = at("moment");
     slider.max = shown.pass.questions.length - 1;
     slider.value = set.cursor;
-    const sentences = moment ? Words.why(shown.plant, shown.table, moment, withUnit, alarms)
-      : ["The pass ended before the first sample."];
+    const sentences = moment ? whyOf(moment) : ["The pass ended before the first sample."];
     at("why").replaceChildren(...sentences.map((textContent) => Object.assign(document.createElement("li"), { textContent })));
   }
 
+  const whyOf = (moment) => Controls.isRadar(shown.plant) ? Words.why(shown.plant, shown.table, moment, withUnit, alarms)
+    : PassageWords.why(shown.plant, shown.table, shown.room, moment, withUnit);
+
+  // Many cuts under the table and under the rule: { title, colour, simulated, passes } of each.
   function manyPasses() {
-    const { plant, table, told } = shown, count = Number(at("passes").value), setting = settingOf(plant, table);
-    const passes = Array.from({ length: count }, (_, place) =>
-      passOf(plant, table, setting, Draws.cut(plant, set.values.seed, ONE_PASS + 1 + place)));
-    shown.many = passes;
-    const exits = passes.map(({ exit }) => exit);
+    const { plant, told } = shown, count = Number(at("passes").value), { own, rule } = choices[set.choice].regulators;
+    const cuts = Array.from({ length: count }, (_, place) => Draws.cut(plant, set.values.seed, ONE_PASS + 1 + place));
+    const played = [{ regulator: own, name: "this table", colour: "radar", simulated: told.simulated, of: ["cloud", "histogram"] }];
+    if (rule) {
+      const of = ["rule-cloud", "rule-histogram"];
+      played.push({ regulator: rule, name: told.rule.name, colour: "rule", simulated: told.rule.simulated, of });
+    }
+    for (const each of played) {
+      const play = playerOf(plant, each.regulator);
+      each.passes = cuts.map((cut) => play(cut, false));
+      each.exits = each.passes.map(({ exit }) => exit);
+    }
     at("count").textContent = count;
-    Pictures.cloud(charts.cloud, shown, passes);
-    Pictures.histogram(charts.histogram, shown, exits, told.predicted, overspeedMS);
-    compare(Figures.of(exits, shown.targetMS, overspeedMS), told);
+    drawMany(played);
+    tellMany(played);
     at("differs").textContent = Controls.isConfigured(plant, set.values) ? ""
-      : "Mass, noise or delays are not those of the configuration: the figures of the table are not for this plant.";
+      : "Mass, noise or delays are not those of the configuration: densities and simulated passes are not of this plant.";
   }
 
-  function compare(found, { predicted, validated }) {
-    const speed = (value) => number(value, 4), percent = (value) => `${(100 * value).toFixed(2)} %`;
-    const plain = (value) => value.toFixed(1);
-    const row = (name, form, key, own) => [name, `${form(found[key][0])} [${form(found[key][1])}, ${form(found[key][2])}]`, own];
-    const checked = validated ? `; validated ${speed(validated.rms_m_s)} ` +
-      `[${validated.rms_ci95_m_s.map(speed).join(", ")}] in ${validated.passes} passes` : "";
-    const rows = [
-      [`rms of the exit error, ${set.unit}`, `${speed(found.rms)} of these cuts`, speed(predicted.rms_m_s) + checked],
-      row(`95 of 100 cuts leave within ±, ${set.unit}`, speed, "within", "not told"),
-      row(`mean exit error, ${set.unit}`, speed, "bias", speed(predicted.bias_m_s)),
-      row(`more than ${withUnit(overspeedMS, 1)} too fast`, percent, "overspeed", percent(predicted.p_overspeed)),
-      row("stands in the position", percent, "stalled",
-        predicted.p_stall === null ? "not told" : percent(predicted.p_stall)),
-      row("commands of a cut", plain, "commands", plain(predicted.switchings)),
-      row("time from where the regulator acts, s", plain, "time", "not told"),
-    ];
-    at("here").textContent = `here, ${found.n} cuts`;
-    at("told").textContent = `as the table tells: ${predicted.passes === null ? "exact by the model"
-      : `from ${predicted.passes} simulated passes`}`;
-    at("figures").replaceChildren(...rows.map(([name, ...cells]) => {
-      const made = document.createElement("tr");
-      for (const [tag, textContent] of [["th", name], ...cells.map((cell) => ["td", cell])]) {
-        made.append(Object.assign(document.createElement(tag), { textContent }));
-      }
-      return made;
-    }));
+  function drawMany(played) {
+    const speeds = played.flatMap(({ passes }) => passes.flatMap(({ points }) => points.map(([, v]) => v)));
+    const highestMS = 1.05 * speeds.reduce((most, each) => Math.max(most, each), 0);
+    const bins = Histogram.of(played.map(({ exits }) => exits), played.map(({ simulated }) => simulated.density), shown.targetMS);
+    played.forEach(({ passes, colour, of: [cloud, histogram] }, place) => {
+      Pictures.cloud(charts[cloud], shown, passes, { colour, highestMS });
+      Pictures.histogram(charts[histogram], shown, bins[place], { colour, expected: bins[place].expected, overspeedMS });
+    });
+  }
+
+  function tellMany(played) {
+    const [own, rule] = played.map(({ exits }) => exits), { n } = shown.told.simulated, { targetMS } = shown;
+    const figures = {
+      here: played.map(({ exits }) => Figures.of(exits, targetMS, overspeedMS)),
+      simulated: played.map(({ simulated }) => simulated),
+      nearer: rule && Figures.nearer(own, rule, targetMS),
+      overspeedMS,
+    };
+    const titles = [`${own.length} cuts here`, `${n} simulated`].flatMap((title) => played.map(({ name }) => `${name}, ${title}`));
+    FigureTable.show(at("figure-head"), at("figures"), titles, FigureTable.rows(figures, { unit: set.unit, number, withUnit }));
   }
 
   // --- the state and its link
   function writeLink() {
-    const others = { unit: set.unit, at: set.cursor };
+    const others = { unit: set.unit, at: set.cursor, cuts: at("passes").value };
     const link = Controls.link(plantOf(), choices[set.choice].told.id, set.values, others);
     try { history.replaceState(null, "", link); } catch { return; }  // a browser may refuse it for a file
   }
@@ -125,6 +142,8 @@
     set.choice = Math.max(0, found);
     set.values = Controls.valuesAsked(plantOf(), words);
     set.unit = SpeedUnits.known(words.get("unit")) ? words.get("unit") : SpeedUnits.remembered();
+    const cuts = [...at("passes").options].findIndex(({ value }) => value === words.get("cuts"));
+    at("passes").selectedIndex = Math.max(0, cuts);
     const moment = Number(words.get("at") ?? NaN);
     set.cursor = Number.isInteger(moment) && moment >= 0 && words.has("at") ? moment : null;
   }
@@ -133,7 +152,10 @@
   const sliders = new Map();
   function showSliders() {
     const plant = plantOf();
-    for (const [{ key, label, isSpeed, range, step, digits }, { name, input, output }] of sliders) {
+    for (const [slider, { row, name, input, output }] of sliders) {
+      row.hidden = !Controls.slidersOf(plant).includes(slider);
+      if (row.hidden) continue;
+      const { key, label, isSpeed, range, step, digits } = slider;
       const [low, high] = range(plant);
       Object.assign(input, { min: low, max: high, step: low === high ? "any" : step, disabled: low === high });
       input.value = set.values[key];
@@ -151,7 +173,7 @@
       input.addEventListener("input", () => change({ [slider.key]: Number(input.value) }));
       row.append(name, input, output);
       at(slider.of).append(row);
-      sliders.set(slider, { name, input, output });
+      sliders.set(slider, { row, name, input, output });
     }
   }
 
@@ -185,34 +207,11 @@
     };
   }
 
-  // --- words of the drawings
-  function key(id, entries) {
-    at(id).replaceChildren(...entries.map(([colour, kind, text]) => {
-      const entry = document.createElement("span"), mark = document.createElement("i");
-      mark.className = kind;
-      mark.style.color = `var(--${colour})`;
-      entry.append(mark, text);
-      return entry;
-    }));
-  }
-
-  function showKeys() {
-    key("speed-key", [["ink", "", "true speed"], ["radar", "ring", "radar"], ["estimate", "disc", "estimate, if the table has one"],
-      ["upper", "", "upper line of the stage in force: raise above it"], ["lower", "dash", "lower line: lower below it"],
-      ["soft", "thin", "thin: the same lines for the whole path, at the moment that is explained"],
-      ["ink", "dots", "target"], ["zone", "fill", "retarders"]]);
-    key("pressure-key", [["ink", "", "pressure in the cylinders"], ["upper", "dash", "pressure of the commanded stage"],
-      ["soft", "dots", "the pads touch"]]);
-    key("cloud-key", [["radar", "", "a cut each"], ["ink", "dots", "target"]]);
-    key("histogram-key", [["radar", "fill", "cuts that left"], ["estimate", "disc", "mean and rms as the table tells"],
-      ["upper", "dash", `${withUnit(overspeedMS, 1)} too fast`]]);
-  }
-
   function showAll() {
     at("table").selectedIndex = set.choice;
     at("unit").value = set.unit;
     showSliders();
-    showKeys();
+    Legends.show(choices[set.choice], { overspeedMS, withUnit });
     update();
   }
 
@@ -255,10 +254,6 @@
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", update);
   }
 
-  for (const of of classes) {
-    const made = new Map();
-    of.made = (told) => { if (!made.has(told)) made.set(told, Rule.table(told.held)); return made.get(told); };
-  }
   for (const { told } of choices) at("table").add(new Option(told.title));
   for (const unit of Object.keys(SpeedUnits.FACTORS)) at("unit").add(new Option(unit));
   makeSliders();

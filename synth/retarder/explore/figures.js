@@ -62,5 +62,14 @@ const Figures = (() => {
     };
   }
 
-  return { of };
+  // Of the same cuts under two regulators, the share that the first lets out nearer to the target; ties are halves.
+  function nearer(exits, others, targetMS) {
+    const wins = exits.reduce((sum, each, place) => {
+      const apart = Math.abs(others[place].exitMS - targetMS) - Math.abs(each.exitMS - targetMS);
+      return sum + (apart > 0 ? 1 : apart === 0 ? 0.5 : 0);
+    }, 0);
+    return share(wins, exits.length);
+  }
+
+  return { of, nearer };
 })();

@@ -2,7 +2,7 @@
 // The motion of a cut (plant_models.motion): within a path cell and at a constant pressure its acceleration is constant.
 // A cell has been worked out in Python: grade, braking force for each kPa, and how much the friction varies along it.
 const Motion = (() => {
-  const MOVES = 0, LEFT = 1, STANDS = 2;
+  const MOVES = 0, LEFT = 1, STANDS = 2, THERE = 3;
 
   // The cut in numbers: its inertia is mass and rotating wheels; its mass lies between the limits of its class.
   function cut(plant, massT) {
@@ -42,11 +42,13 @@ const Motion = (() => {
     return Math.sqrt(Math.max(entryMS * entryMS - 2 * gained, plant.slowest_start_m_s * plant.slowest_start_m_s));
   }
 
-  // Moves `at` (cell, s, v) for `duration` seconds under an overpressure; returns how that ends and the time used.
-  function advance(path, at, kpa, duration) {
+  // Moves `at` (cell, s, v) for `duration` seconds under an overpressure, but no farther than `toM`; returns how that
+  // ends and the time used.
+  function advance(path, at, kpa, duration, toM = Infinity) {
     let left = duration;
     for (;;) {
-      const a = path.free[at.cell] - path.brake[at.cell] * kpa, gap = path.edges[at.cell + 1] - at.s;
+      const a = path.free[at.cell] - path.brake[at.cell] * kpa, edge = path.edges[at.cell + 1];
+      const goal = Math.min(edge, toM), gap = Math.max(0, goal - at.s);
       const end = at.v + a * left, way = 0.5 * (at.v + end) * left;
       if (end > 0 && way < gap) {
         at.s += way;
@@ -60,14 +62,17 @@ const Motion = (() => {
         at.v = 0;
         return [STANDS, used];
       }
-      const edge = Math.sqrt(square);
-      left = Math.max(0, left - 2 * gap / (at.v + edge));
-      at.v = edge;
-      at.cell += 1;
-      at.s = path.edges[at.cell];
-      if (at.cell === path.free.length) return [LEFT, duration - left];
+      const speed = Math.sqrt(square);
+      left = Math.max(0, left - 2 * gap / (at.v + speed));
+      at.v = speed;
+      at.s = Math.max(at.s, goal);
+      if (edge <= toM) {
+        at.cell += 1;
+        if (at.cell === path.free.length) return [LEFT, duration - left];
+      }
+      if (toM <= edge) return [THERE, duration - left];
     }
   }
 
-  return { MOVES, LEFT, STANDS, cells, startSpeed, advance };
+  return { MOVES, LEFT, STANDS, THERE, cells, startSpeed, advance };
 })();

@@ -1,5 +1,5 @@
 "use strict";
-// One pass of a cut through the position: the radar reads, the rule decides, the drive follows, the cut moves on.
+// One pass of a cut that a radar sees: it reads, the regulator decides, the drive follows, the cut moves on.
 const Passes = (() => {
   // What the radar shows of a speed; `z` is its noise in standard deviations, NaN for a lost reading.
   function measure(sensor, noiseMS, v, z) {
@@ -8,34 +8,14 @@ const Passes = (() => {
     return shown < 0 ? 0 : shown;
   }
 
-  // The stage that the position lets a regulator command.
-  const admitted = (plant, stage, wanted, s) => s < 0 ? Math.min(wanted, Math.max(stage, plant.entrance_stage)) : wanted;
-
-  // A regulator of one cut: an estimate if the table has one, the stage commanded last, and its question at a sample.
-  class Regulator {
-    constructor(plant, table) {
-      Object.assign(this, { plant, table, estimate: Rule.estimate(), stage: plant.initial_stage, passedKpa: 0 });
-    }
-
-    // Everything about the question at a sample, for the words; `isAsked` false: a change of stage is under way.
-    ask(s, measured, pressureKpa, isAsked) {
-      const { table, stage, plant } = this;
-      const known = table.breaks > 0 ? Rule.observe(table, this.estimate, s, measured, this.passedKpa) : measured;
-      const told = { s, measured, known, pressureKpa, isAsked, before: stage, wanted: stage };
-      told.alarms = table.breaks > 0 ? Rule.alarms(table, this.estimate) : 0;
-      if (isAsked) told.wanted = admitted(plant, stage, Rule.decide(table, stage, s, known, pressureKpa), s);
-      this.stage = told.wanted;
-      return told;
-    }
-  }
-
-  // Runs a pass. `cut`: factor, resistance, entryMS, phase, pathZ, noiseZ. `setting`: massT, noiseMS, and a `drive`.
+  // `regulator`: of `Laws`. `cut`: factor, resistance, entryMS, phase, pathZ, noiseZ. `setting`: massT, noiseMS, `drive`.
   // `note`, if given, is told every piece: (time, s, v, overpressure, stage, question at its beginning or null).
-  function run(plant, table, setting, cut, note = null) {
+  function run(plant, regulator, setting, cut, note = null) {
     const { sensor } = plant, { drive } = setting, path = Motion.cells(plant, setting.massT, cut);
     const at = { cell: 0, s: path.edges[0], v: Motion.startSpeed(plant, path, cut.entryMS) };
     const first = cut.phase * sensor.period_s, longest = Math.trunc(plant.longest_pass_s / sensor.period_s);
-    const regulator = new Regulator(plant, table);
+    regulator.begin();
+    drive.begin();
     let commands = 0, began = 0, pieces = [{ kpa: drive.overpressureKpa, seconds: first }], question = null;
     for (let sample = -1; ; sample++) {
       if (sample >= 0) {
@@ -60,11 +40,5 @@ const Passes = (() => {
 
   const ended = (time, at, stalled, commands) => ({ time, s: at.s, exitMS: stalled ? 0 : at.v, stalled, commands });
 
-  // A pass with the drive made ready.
-  function runFrom(plant, table, setting, cut, note) {
-    setting.drive.begin();
-    return run(plant, table, setting, cut, note);
-  }
-
-  return { run: runFrom };
+  return { run, ended };
 })();

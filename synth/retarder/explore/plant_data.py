@@ -1,4 +1,4 @@
-"""A plant as plain data for the page: its path cells, its drive, its radar, and the laws that cuts are drawn from."""
+"""A plant as plain data for the page: path cells, drive, radar or point sensors, and the laws of its cuts."""
 
 from __future__ import annotations
 
@@ -8,11 +8,15 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import EntryLaw, Plant, path_coefficients
+from plant_models import EntryLaw, Plant, PointSensors, every_axle, path_coefficients
 from plant_models.cut import GRAVITY_M_S2
 from plant_models.plant import SLOWEST_START_M_S
+from plant_models.point_sensors import deciding_passages
+from synth.kernels.loop.passage_loop import WATCHED_FROM_S
+from synth.kernels.loop.passage_pulses import BASE_COLUMN, SHORTEST_BASE
 from synth.kernels.loop.passes import LONGEST_PASS_S
 from synth.simulation.closed_loop import close_loop
+from synth.simulation.passage_loop import PassageLoop, close_passage_loop, scan_substeps
 
 Data = dict[str, Any]
 
@@ -20,20 +24,27 @@ ENTRY_QUANTILES: Final = 512
 """Parts of equal probability of the entry law, linear within each."""
 
 
-def plant_data(plant: Plant, mass_limits_t: tuple[float, float], stages: int) -> Data:
+def plant_data(
+    plant: Plant, mass_limits_t: tuple[float, float], stages: int, sensors: PointSensors | None = None
+) -> Data:
     """What the scripts must know of `plant` with so many stages; its cut may weigh what lies
-    between `mass_limits_t`.
+    between `mass_limits_t`. `sensors`: those that its regulator decides at, in place of a radar.
 
     The cells are those of the closed loop: whatever mass, a cell has the same grade and the same pads.
     """
-    loop = close_loop(plant, stages)
+    if sensors is None:
+        loop = close_loop(plant, stages)
+        sensor, substeps = radar_data(plant), loop.drive.substeps
+    else:
+        by_pulses = close_passage_loop(plant, sensors, stages)
+        loop, sensor, substeps = by_pulses.radar, pulse_data(by_pulses), scan_substeps(sensors)
     path, cut, position = loop.path, plant.cut, plant.position
     gravity = cut.reduced_gravity_m_s2 * 1e-3
     return {
         "stage_kpa": list(position.stage_pressures_kpa[:stages]),
         "initial_stage": plant.approach.initial_stage,
         "entrance_stage": plant.approach.entrance_stage,
-        "substeps": loop.drive.substeps,
+        "substeps": substeps,
         "longest_pass_s": LONGEST_PASS_S,
         "slowest_start_m_s": SLOWEST_START_M_S,
         "zones_m": [list(zone) for zone in position.zones_m],
@@ -50,7 +61,7 @@ def plant_data(plant: Plant, mass_limits_t: tuple[float, float], stages: int) ->
         "eta_memory": path.eta_memory.tolist(),
         "eta_fresh": path.eta_fresh.tolist(),
         "valves": valve_data(plant),
-        "sensor": sensor_data(plant),
+        "sensor": sensor,
         "laws": law_data(plant),
     }
 
@@ -69,7 +80,31 @@ def valve_data(plant: Plant) -> Data:
     return {**valves._asdict(), "closing_delay_s": pneumatics.closing_delay_s}
 
 
-def sensor_data(plant: Plant) -> Data:
+def pulse_data(loop: PassageLoop) -> Data:
+    """Point sensors: their clock and timer, and the passages of all axles, each of which gives a pair of pulses."""
+    sensors, plant, pulses = loop.sensors, loop.plant, loop.heard
+    met = deciding_passages(replace(sensors, axles=every_axle), plant.cut, plant.exit_m)
+    return {
+        "period_s": sensors.scan_period_s,
+        "computing_delay_s": sensors.computing_delay_s,
+        "missed_share": 0.0,
+        "timer_noise_s": sensors.timer_noise_s,
+        "timer_resolution_s": sensors.timer_resolution_s,
+        "base_m": sensors.base_m,
+        "base_tolerance": sensors.base_tolerance,
+        "base_column": BASE_COLUMN,
+        "shortest_base": SHORTEST_BASE,
+        "watched_from_s": WATCHED_FROM_S,
+        "path_m": list(sensors.path_m),
+        "coils": pulses.coils.tolist(),
+        "passages": [
+            {"sensor": each.sensor, "axle": each.axle, "path_m": float(path_m), "column": int(column)}
+            for each, path_m, column in zip(met, pulses.path_m, pulses.column, strict=True)
+        ],
+    }
+
+
+def radar_data(plant: Plant) -> Data:
     """The radar."""
     sensor = plant.sensor
     return {

@@ -83,10 +83,12 @@ const Words = (() => {
     } else {
       for (const step of steps(table, question)) told.push(stepTold(table, question, step, withUnit));
     }
-    told.push(wanted === before ? "So nothing is commanded." : `So stage ${wanted} is commanded, ` +
-      `${plant.stage_kpa[wanted].toFixed(0)} kPa.`);
+    told.push(commanded(plant, before, wanted));
     return told;
   }
 
-  return { LOWER, UPPER, line, steps, why };
+  const commanded = (plant, before, wanted) => wanted === before ? "So nothing is commanded."
+    : `So stage ${wanted} is commanded, ${plant.stage_kpa[wanted].toFixed(0)} kPa.`;
+
+  return { LOWER, UPPER, line, steps, where, commanded, why };
 })();

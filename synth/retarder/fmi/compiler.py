@@ -18,7 +18,7 @@ SWITCHES: Final = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden",
 """No contraction: a fused multiply-add rounds otherwise, and a pass would differ from that of the simulator."""
 
 PLATFORMS: Final = {("Linux", "x86_64"): "x86_64-linux", ("Linux", "aarch64"): "aarch64-linux"}
-"""Folder of the library, as FMI 3.0 calls it, by what Python calls system and processor."""
+"""Platforms by what Python calls system and processor, as FMI 3.0 calls them."""
 
 LONGEST_S: Final = 120.0
 
@@ -37,7 +37,7 @@ def compiler() -> str | None:
 
 
 def platform() -> str | None:
-    """The folder of libraries made here; None where no library is made."""
+    """That of libraries made here; None where no library is made."""
     return PLATFORMS.get((machine.system(), machine.machine()))
 
 

@@ -1,4 +1,4 @@
-"""The two documents of a unit: modelDescription.xml and sources/buildDescription.xml (FMI 3.0.1, sections 2.4, 2.5)."""
+"""The documents of a unit of FMI 3.0: modelDescription.xml and buildDescription.xml (FMI 3.0.1, sections 2.4, 2.5)."""
 
 from __future__ import annotations
 
@@ -51,15 +51,7 @@ def model_description(head: Head, variables: Sequence[Variable]) -> bytes:
             **({"fixedInternalStepSize": shown(head.period_s)} if head.period_s else {}),
         },
     )
-    units = SubElement(root, "UnitDefinitions")
-    used = {each.unit for each in variables}
-    for name, base in UNITS.items():
-        if name in used:
-            SubElement(SubElement(units, "Unit", name=name), "BaseUnit", base)
-    category = {"name": "logStatusError", "description": "Why a call was refused"}
-    SubElement(SubElement(root, "LogCategories"), "Category", category)
-    if head.period_s:
-        SubElement(root, "DefaultExperiment", startTime="0.0", stepSize=shown(head.period_s))
+    add_surroundings(root, head, variables)
     listed = SubElement(root, "ModelVariables")
     for reference, variable in enumerate(variables):
         add_variable(listed, reference, variable)
@@ -71,9 +63,29 @@ def model_description(head: Head, variables: Sequence[Variable]) -> bytes:
     return text_of(root)
 
 
+def add_surroundings(root: Element, head: Head, variables: Sequence[Variable]) -> None:
+    """Units, log categories and the step of an experiment: the same in FMI 2.0 and 3.0."""
+    units = SubElement(root, "UnitDefinitions")
+    used = {each.unit for each in variables}
+    for name, base in UNITS.items():
+        if name in used:
+            SubElement(SubElement(units, "Unit", name=name), "BaseUnit", base)
+    category = {"name": "logStatusError", "description": "Why a call was refused"}
+    SubElement(SubElement(root, "LogCategories"), "Category", category)
+    if head.period_s:
+        SubElement(root, "DefaultExperiment", startTime="0.0", stepSize=shown(head.period_s))
+
+
 def add_variable(listed: Element, reference: int, variable: Variable) -> None:
-    """The element of a variable; outputs have no start, as they are calculated."""
-    given = variable.causality in (Causality.PARAMETER, Causality.INPUT)
+    """The element of a variable."""
+    attributes = attributes_of(variable, reference) | values_of(variable)
+    element = SubElement(listed, variable.kind.element, attributes)
+    if variable.is_array:
+        SubElement(element, "Dimension", start=str(len(variable.start)))
+
+
+def attributes_of(variable: Variable, reference: int) -> dict[str, str]:
+    """What a variable is; outputs are calculated."""
     is_fixed = variable.causality is Causality.PARAMETER
     attributes = {
         "name": variable.name,
@@ -82,18 +94,18 @@ def add_variable(listed: Element, reference: int, variable: Variable) -> None:
         "causality": variable.causality.value,
         "variability": "fixed" if is_fixed else variable.kind.variability,
     }
-    if variable.causality is Causality.OUTPUT:
-        attributes["initial"] = "calculated"
-    if variable.unit is not None:
-        attributes["unit"] = variable.unit
-    if given:
+    return attributes | ({"initial": "calculated"} if variable.causality is Causality.OUTPUT else {})
+
+
+def values_of(variable: Variable) -> dict[str, str]:
+    """Unit, limits and start of its values; what is calculated has no start."""
+    attributes = {} if variable.unit is None else {"unit": variable.unit}
+    if variable.causality in (Causality.PARAMETER, Causality.INPUT):
         limits = {"min": variable.low, "max": variable.high}
         whole = variable.kind is Kind.INT32
         attributes |= {key: shown(int(x) if whole else float(x)) for key, x in limits.items() if x is not None}
         attributes["start"] = " ".join(map(shown, variable.start))
-    element = SubElement(listed, variable.kind.element, attributes)
-    if variable.is_array:
-        SubElement(element, "Dimension", start=str(len(variable.start)))
+    return attributes
 
 
 def build_description(head: Head, sources: Sequence[str]) -> bytes:

@@ -1,4 +1,4 @@
-"""A unit of FMI 3.0 as a file: documents, C and, where a C compiler is at hand, the library made of it."""
+"""A unit of FMI as a file: documents, C and, where a C compiler is at hand, the library made of it."""
 
 from __future__ import annotations
 
@@ -12,11 +12,9 @@ from importlib.resources import files
 from typing import Final
 
 from synth.retarder.fmi.compiler import compiled, platform
-from synth.retarder.fmi.description import Head, build_description, model_description
+from synth.retarder.fmi.description import Head
+from synth.retarder.fmi.interfaces import FMI_3, Interface
 from synth.retarder.fmi.variables import TIME, Variable, variables_c, variables_h
-
-INTERFACE: Final = ("fmi3.h", "unit.h", "interface.c", "not_offered.c")
-"""What every unit has of C."""
 
 ZIP_DATE: Final = (1980, 1, 1, 0, 0, 0)
 """The first that a ZIP archive can tell: no day of the export is in it."""
@@ -44,44 +42,44 @@ class Unit:
 
     @property
     def variables(self) -> tuple[Variable, ...]:
-        """All of them; the number of each is its value reference."""
+        """All of them."""
         return (TIME, *self.own)
 
-    @property
-    def token(self) -> str:
+    def token(self, interface: Interface) -> str:
         """What tells this unit from all others: of its variables and its C."""
         told = hashlib.sha256(repr((self.variables, sorted(self.c.items()), self.period_s)).encode())
-        for name in INTERFACE:
+        for name in interface.c:
             told.update(c_part(name).encode())
         return f"{{{uuid.UUID(bytes=told.digest()[:16])}}}"
 
-    def sources(self) -> dict[str, str]:
+    def sources(self, interface: Interface = FMI_3) -> dict[str, str]:
         """All files of C, by name."""
+        listed = interface.listed(self.variables)
         return {
-            **{name: c_part(name) for name in INTERFACE},
-            "variables.h": variables_h(self.variables, self.period_s, self.token),
-            "variables.c": variables_c(self.variables),
+            **{name: c_part(name) for name in interface.c},
+            "variables.h": variables_h(self.variables, len(listed), self.period_s, self.token(interface)),
+            "variables.c": variables_c(self.variables, listed),
             **self.c,
         }
 
-    def content(self, sources: Mapping[str, str]) -> dict[str, bytes]:
+    def content(self, sources: Mapping[str, str], interface: Interface) -> dict[str, bytes]:
         """The files of the archive, by path; the library is there where a C compiler has made it."""
-        head = Head(self.identifier, self.name, self.meaning, self.tool, self.token, self.period_s)
+        head = Head(self.identifier, self.name, self.meaning, self.tool, self.token(interface), self.period_s)
         compilable = sorted(name for name in sources if name.endswith(".c"))
-        library = compiled(sources, self.identifier)
-        binaries = {} if library is None else {f"binaries/{platform()}/{library.name}": library.content}
+        folder = interface.folders.get(platform() or "")
+        library = compiled(sources, self.identifier) if folder else None
+        binaries = {} if library is None else {f"binaries/{folder}/{library.name}": library.content}
         return {
-            "modelDescription.xml": model_description(head, self.variables),
-            "sources/buildDescription.xml": build_description(head, compilable),
+            **interface.documents(head, interface.listed(self.variables), compilable),
             **{f"sources/{name}": text.encode("ascii") for name, text in sorted(sources.items())},
             **binaries,
         }
 
-    def archive(self) -> bytes:
+    def archive(self, interface: Interface = FMI_3) -> bytes:
         """The file: the same bytes for the same unit, with the same compiler and zlib."""
         room = io.BytesIO()
         with zipfile.ZipFile(room, "w") as archive:
-            for name, content in self.content(self.sources()).items():
+            for name, content in self.content(self.sources(interface), interface).items():
                 entry = zipfile.ZipInfo(name, ZIP_DATE)
                 entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
                 archive.writestr(entry, content)

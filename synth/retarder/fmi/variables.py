@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
 
@@ -87,8 +87,17 @@ def shown(value: Value) -> str:
     return str(value).lower() if isinstance(value, bool) else repr(value)
 
 
-def variables_h(variables: Sequence[Variable], period_s: float, token: str) -> str:
-    """The text of variables.h: the values of a unit by name, how many there are, its step and its token."""
+def scalars(variables: Sequence[Variable]) -> tuple[Variable, ...]:
+    """The variables, but for each array its elements, called as C calls them."""
+    return tuple(
+        replace(each, name=f"{each.name}[{place}]", start=(start,)) if each.is_array else each
+        for each in variables
+        for place, start in enumerate(each.start)
+    )
+
+
+def variables_h(variables: Sequence[Variable], listed: int, period_s: float, token: str) -> str:
+    """The text of variables.h: the values of a unit by name, how many are listed, its step and its token."""
     rows = []
     for each in variables:
         length = f"[{len(each.start)}]" if each.is_array else ""
@@ -102,7 +111,7 @@ def variables_h(variables: Sequence[Variable], period_s: float, token: str) -> s
             "",
             '#include "fmi3.h"',
             "",
-            f"#define UNIT_VARIABLES {len(variables)}",
+            f"#define UNIT_VARIABLES {listed}",
             f"#define UNIT_PERIOD_S {shown(float(period_s))} /* length of a step; 0: a step may have any */",
             f'#define UNIT_TOKEN "{token}"',
             "",
@@ -116,16 +125,17 @@ def variables_h(variables: Sequence[Variable], period_s: float, token: str) -> s
     )
 
 
-def variables_c(variables: Sequence[Variable]) -> str:
-    """The text of variables.c: where each value stands, and the values to begin with."""
+def variables_c(variables: Sequence[Variable], listed: Sequence[Variable]) -> str:
+    """The text of variables.c: where each of those that are listed stands, and the values to begin with."""
     places, starts = [], []
-    for each in variables:
+    for each in listed:
         causality = f"UNIT_{each.causality.value.upper()}"
         place = f"offsetof(unit_values, {each.name})"
         low = "-HUGE_VAL" if each.low is None else shown(float(each.low))
         high = "HUGE_VAL" if each.high is None else shown(float(each.high))
         fields = (f'"{each.name}"', each.kind.c_name, causality, place, str(len(each.start)), low, high)
         places.append(f"    {{{', '.join(fields)}}},")
+    for each in variables:
         values = ", ".join(map(shown, each.start))
         starts.append(f"    .{each.name} = {f'{{{values}}}' if each.is_array else values},")
     return "\n".join(

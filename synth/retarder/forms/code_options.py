@@ -16,9 +16,9 @@ PLC_NAMES: Final = ("st", "plcopen", "twincat", "scl")
 """The forms of Structured Text."""
 CODE_NAMES: Final = ("c", *PLC_NAMES)
 """The forms of code."""
-FMU: Final = "fmu"
-"""The form of units of the Functional Mock-up Interface."""
-CONTROLLER_NAMES: Final = (*CODE_NAMES, FMU)
+FMU_NAMES: Final = ("fmu", "fmu2")
+"""The forms of units of the Functional Mock-up Interface, versions 3.0 and 2.0."""
+CONTROLLER_NAMES: Final = (*CODE_NAMES, *FMU_NAMES)
 """The forms that hold a controller: all tables together, with the rule."""
 OPTIONS: Mapping[str, tuple[str, ...]] = {
     "--prefix": CONTROLLER_NAMES,

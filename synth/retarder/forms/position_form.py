@@ -1,4 +1,4 @@
-"""The position that tables were made for, as a unit of FMI 3.0: of the configuration that they were made of."""
+"""The position that tables were made for, as a unit of FMI: of the configuration that they were made of."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from plant_models import Plant, PlantError
 from synth.frame.input_error import InputError
 from synth.retarder.fmi.compiler import compiler, platform
+from synth.retarder.fmi.interfaces import Interface
 from synth.retarder.fmi.position_unit import position_unit
 from synth.retarder.forms.table_forms import Files
 from synth.retarder.served_class import plant_for
@@ -17,13 +18,13 @@ from tuning_tables.table_kinds import AnyTable, StageTable
 
 
 def position_files(
-    source: Path, tables: Sequence[AnyTable], prefix: ExportPrefix, warn: Callable[[str], None]
+    source: Path, tables: Sequence[AnyTable], interface: Interface, prefix: ExportPrefix, warn: Callable[[str], None]
 ) -> Files:
     """The unit of the position, by the name of its file; `warn` is told in a sentence what is missing, and why.
 
     `tables`: those at `source`, with lines or for point sensors.
     """
-    if compiler() is None or platform() is None:
+    if compiler() is None or platform() not in interface.folders:
         warn("warning: no library is made without a C compiler, or on this system: the units hold sources alone")
     try:
         plants = plants_of(source, [table for table in tables if isinstance(table, StageTable)])
@@ -32,7 +33,7 @@ def position_files(
     except (InputError, PlantError) as fault:
         warn(f"warning: the position is not exported: {fault}")
         return {}
-    return {f"{unit.identifier}.fmu": unit.archive()}
+    return {f"{unit.identifier}.fmu": unit.archive(interface)}
 
 
 def plants_of(source: Path, tables: Sequence[StageTable]) -> list[Plant]:

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, TypeAlias
 
 from synth.frame.input_error import InputError
-from synth.retarder.forms.code_options import FMU, PLAIN, PLC_NAMES, CodeOptions
+from synth.retarder.forms.code_options import FMU_NAMES, PLAIN, PLC_NAMES, CodeOptions
 from synth.retarder.forms.table_file import file_stem
 from tuning_tables import TableBook, to_csv, to_json
 from tuning_tables.aim.aim_table import AimTable
@@ -68,15 +68,18 @@ def plc_form(name: str, tables: Sequence[AnyTable], options: CodeOptions = PLAIN
     return PLC_FORMS[name].files(export, options)
 
 
-def fmu_form(tables: Sequence[AnyTable], options: CodeOptions = PLAIN) -> Files:
-    """The controller of tables with lines as a unit of FMI 3.0; `InputError` for others. Raises as `bound`."""
+def fmu_form(name: str, tables: Sequence[AnyTable], options: CodeOptions = PLAIN) -> Files:
+    """The controller of tables with lines as a unit, a form of `FMU_NAMES`; `InputError` for others, or as `bound`."""
     from synth.retarder.fmi.controller_unit import controller_unit
+    from synth.retarder.fmi.interfaces import INTERFACES
 
     match bound(tables):
         case TableBook() as lines:
             unit = controller_unit(lines, options.prefix)
-            return {f"{unit.identifier}.fmu": unit.archive()}
-    raise InputError(f"--format {FMU} is for tables with lines, not for aim tables or tables for point sensors; give c")
+            return {f"{unit.identifier}.fmu": unit.archive(INTERFACES[name])}
+    raise InputError(
+        f"--format {name} is for tables with lines, not for aim tables or tables for point sensors; give c"
+    )
 
 
 FORMS: Mapping[str, Form] = {
@@ -84,7 +87,7 @@ FORMS: Mapping[str, Form] = {
     "csv": csv_form,
     "c": c_form,
     **{name: partial(plc_form, name) for name in PLC_NAMES},
-    FMU: fmu_form,
+    **{name: partial(fmu_form, name) for name in FMU_NAMES},
 }
 
 

@@ -43,11 +43,16 @@ class TablesAt:
         """The tables that have lines; `InputError` where there are others, as `for_what` has use for none of them."""
         if self.passages:
             raise InputError(f"{self.path}: its tables are for point sensors; {for_what} takes tables for a radar")
-        if not self.files:
+        self.only_of_stages(for_what)
+        return self.lines
+
+    def only_of_stages(self, for_what: str) -> tuple[StageTable, ...]:
+        """All tables that a controller takes stages from; `InputError` where there are aim tables alone."""
+        if not self.of_stages:
             raise InputError(
                 f"{self.path}: its tables are aim tables, which regulate nothing; {for_what} takes tables of a tune"
             )
-        return self.lines
+        return self.of_stages
 
 
 def tables_at(path: Path, else_there: bool = False) -> TablesAt:

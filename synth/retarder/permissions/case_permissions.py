@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TypeVar
@@ -11,7 +11,7 @@ from plant_models import Plant
 from plant_models.approach import Approach
 from synth.problem.aim import Aim
 from synth.retarder.attempted_case import attempted
-from synth.retarder.class_setup import ClassSetup, class_setup, origin_of, validation_passes
+from synth.retarder.class_setup import ClassSetup, Origin, class_setup, origin_of, validation_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configuration.settings import RegulatorSettings
 from synth.retarder.failed_case import FailedCase, parted
@@ -28,16 +28,34 @@ from synth.retarder.work_queue import run_nested
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import RandomPasses
 from synth.solver.backward_induction import Solution
 from synth.solver.one_blas_thread import one_blas_thread
 
 APPROACH_M = 4.0
 """The approach that is tried where the configuration has none."""
 
-Design = Callable[[], PermissionResult]
-"""Designs, predicts and simulates one permission; raises what `attempted` takes for a failure."""
+Design = Callable[[], PermissionResult | FailedCase]
+"""Designs, predicts and simulates one permission; raises what `attempted` takes for a failure, or returns one."""
 
 Made = TypeVar("Made")
+
+
+@dataclass(frozen=True)
+class SolvedClass:
+    """A cut class with all its targets solved at once: what their tables are made from."""
+
+    config: ResolvedConfig
+    setup: ClassSetup
+    solutions: tuple[Solution, ...]
+
+
+@dataclass(frozen=True)
+class OtherClass:
+    """A cut class solved anew for a permission that changes its configuration or plant, or why it cannot be."""
+
+    permission: Permission
+    solved: SolvedClass | FailedCase
 
 
 @dataclass(frozen=True)
@@ -74,26 +92,54 @@ def permissions_of(config: ResolvedConfig, created: str, workers: int, watcher: 
     origin, passes = origin_of(config.sha256, created), validation_passes(config)
 
     def start(label: str, plant: Plant) -> list[Callable[[], CasePermissions | FailedCase]]:
-        aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
-        setup = attempted(partial(class_setup, config, label, plant, passes, origin), label, 0.0, config)
-        if isinstance(setup, FailedCase):
-            failed = [replace(setup, target_m_s=aim.target_speed_m_s) for aim in aims]
+        solved = solved_class(config, label, plant, passes, origin)
+        if isinstance(solved, FailedCase):
+            failed = [replace(solved, target_m_s=target) for target in config.targets_of(label)]
             return [partial(case_failed, watcher, case) for case in failed]
-        return [partial(told_permissions, watcher, config, setup, each) for each in solutions(setup.design, aims)]
+        others = tuple(other_classes(solved))
+        return [partial(told_permissions, watcher, solved, others, each) for each in range(len(solved.solutions))]
 
     found = run_nested([partial(start, *each) for each in config.plants()], workers)
     return AllPermissions(*parted(case for cases in found for case in cases))
 
 
+def solved_class(
+    config: ResolvedConfig, label: str, plant: Plant, passes: RandomPasses, origin: Origin
+) -> SolvedClass | FailedCase:
+    """All targets of a class solved at once, or why they cannot be."""
+
+    def solve() -> SolvedClass:
+        setup = class_setup(config, label, plant, passes, origin)
+        aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
+        return SolvedClass(config, setup, solutions(setup.design, aims))
+
+    return attempted(solve, label, 0.0, config)
+
+
+def other_classes(solved: SolvedClass) -> Iterator[OtherClass]:
+    """The class with the estimator taken or given, and with the approach taken or given."""
+    config, setup = solved.config, solved.setup
+    plant, regulator = setup.plant, config.regulator
+    ahead = plant.approach.length_m > 0.0
+    approach = Approach() if ahead else Approach(APPROACH_M, plant.approach.entrance_stage)
+    other = replace(config, regulator=regulator.model_copy(update={"estimator": not regulator.estimator}))
+    for permission, changed, changed_plant in (
+        (Permission.NO_ESTIMATOR if regulator.estimator else Permission.ESTIMATOR, other, plant),
+        (Permission.NO_APPROACH if ahead else Permission.APPROACH, config, replace(plant, approach=approach)),
+    ):
+        anew = solved_class(changed, setup.label, changed_plant, setup.passes.passes, setup.origin)
+        yield OtherClass(permission, anew)
+
+
 def told_permissions(
-    watcher: Watcher, config: ResolvedConfig, setup: ClassSetup, solution: Solution
+    watcher: Watcher, solved: SolvedClass, others: tuple[OtherClass, ...], index: int
 ) -> CasePermissions | FailedCase:
-    """All permissions of one case, told of."""
-    make = partial(case_tuned, config, setup, solution)
-    case = attempted(make, setup.label, solution.aim.target_speed_m_s, config)
+    """All permissions of one target of a class, told of."""
+    target_m_s = solved.solutions[index].aim.target_speed_m_s
+    case = attempted(partial(case_tuned, solved, index), solved.setup.label, target_m_s, solved.config)
     if isinstance(case, FailedCase):
         return case_failed(watcher, case)
-    found = case_permissions(case)
+    found = case_permissions(case, designs(case, others, index))
     watcher.done(f"{found.label} to {found.target_speed_m_s:g} m/s: {found.told}")
     return found
 
@@ -104,16 +150,17 @@ def case_failed(watcher: Watcher, case: FailedCase) -> FailedCase:
     return case
 
 
-def case_tuned(config: ResolvedConfig, setup: ClassSetup, solution: Solution) -> CaseTuned:
-    """The table of a solution, and its passes."""
+def case_tuned(solved: SolvedClass, index: int) -> CaseTuned:
+    """The table of one target of a class, and its passes."""
+    setup, solution = solved.setup, solved.solutions[index]
     tuned = tuned_table(setup, solution)
-    return CaseTuned(config, setup, solution.aim, tuned, setup.passes.run(TableController(tuned.table)))
+    return CaseTuned(solved.config, setup, solution.aim, tuned, setup.passes.run(TableController(tuned.table)))
 
 
-def case_permissions(case: CaseTuned) -> CasePermissions:
-    """All permissions of one case; with its reason each that nothing can be designed for."""
+def case_permissions(case: CaseTuned, asked: Iterable[tuple[Permission, Design]]) -> CasePermissions:
+    """All permissions `asked` of one case; with its reason each that nothing can be designed for."""
     results, failed = [], []
-    for permission, design in designs(case):
+    for permission, design in asked:
         found = case.attempt(design)
         if isinstance(found, FailedCase):
             failed.append(FailedPermission(permission, found.reason))
@@ -130,27 +177,21 @@ def case_permissions(case: CaseTuned) -> CasePermissions:
     )
 
 
-def designs(case: CaseTuned) -> Iterator[tuple[Permission, Design]]:
-    """Every permission that can be asked for, with its design."""
-    regulator, plant = case.config.regulator, case.setup.plant
-    kind = Permission.NO_ESTIMATOR if regulator.estimator else Permission.ESTIMATOR
-    other = regulator.model_copy(update={"estimator": not regulator.estimator})
-    yield kind, partial(tuned_anew, case, kind, replace(case.config, regulator=other), plant)
+def designs(case: CaseTuned, others: Iterable[OtherClass], index: int) -> Iterator[tuple[Permission, Design]]:
+    """Every permission that can be asked for, with its design; `index`: of the target among those of the class."""
+    for other in others:
+        yield other.permission, partial(tuned_anew, case, other, index)
     for kind, pressure in ((Permission.ANY_TIME, "gauge"), (Permission.WITHOUT_GAUGE, "none")):
-        sampled = regulator.model_copy(update={"commands": "any_time", "pressure": pressure})
+        sampled = case.config.regulator.model_copy(update={"commands": "any_time", "pressure": pressure})
         yield kind, partial(with_surfaces, case, kind, sampled)
-    ahead = plant.approach.length_m > 0.0
-    kind = Permission.NO_APPROACH if ahead else Permission.APPROACH
-    approach = Approach() if ahead else Approach(APPROACH_M, plant.approach.entrance_stage)
-    yield kind, partial(tuned_anew, case, kind, case.config, replace(plant, approach=approach))
 
 
-def tuned_anew(case: CaseTuned, permission: Permission, config: ResolvedConfig, plant: Plant) -> PermissionResult:
+def tuned_anew(case: CaseTuned, other: OtherClass, index: int) -> PermissionResult | FailedCase:
     """The same case tuned with another configuration or plant, on the same passes."""
-    setup = class_setup(config, case.setup.label, plant, case.setup.passes.passes, case.setup.origin)
-    (solution,) = solutions(setup.design, [case.aim])
-    other = case_tuned(config, setup, solution)
-    return case.result(permission, other.sample, other.tuned.table.predicted.rms_m_s)
+    if isinstance(other.solved, FailedCase):
+        return other.solved
+    anew = case_tuned(other.solved, index)
+    return case.result(other.permission, anew.sample, anew.tuned.table.predicted.rms_m_s)
 
 
 def with_surfaces(case: CaseTuned, permission: Permission, regulator: RegulatorSettings) -> PermissionResult:

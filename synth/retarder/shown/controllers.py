@@ -14,25 +14,25 @@ from synth.retarder.found_book import FoundBook
 from synth.retarder.shown.cases import identity_row
 from synth.retarder.shown.results import table_ratio
 
-CONTROLLERS: Final = (
-    *CASE,
+CONTROLLER: Final = (
     Column("controller", "controller", words=True),
     *LOOP,
     PREDICTED,
     Column("table_ratio", "rms of the table / its rms", form=decimals(3)),
 )
+CONTROLLERS: Final = (*CASE, *CONTROLLER)
 
 
 def controllers(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
     """A row for each controller of each case: the table, the reference, and the classical laws."""
-    rows = [row_of(case, each) for case in found.book.cases for each in case.controllers]
+    cases = found.book.cases
+    rows = [{**identity_row(case), **controller_row(each)} for case in cases for each in case.controllers]
     yield Table("controllers", "Every controller, on the same passes; ratios are paired", CONTROLLERS, rows)
 
 
-def row_of(case: CaseResult, found: Measured) -> Row:
-    """One controller of one case."""
+def controller_row(found: Measured) -> Row:
+    """The figures of `CONTROLLER`."""
     return {
-        **identity_row(case),
         "controller": found.name,
         **loop_row(found.statistics),
         "predicted_rms_m_s": found.predicted_rms_m_s,

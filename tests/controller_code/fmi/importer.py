@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import io
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Final
@@ -15,6 +15,8 @@ OK: Final = 0
 TYPES: Final[dict[str, Any]] = {"Float64": ctypes.c_double, "Int32": ctypes.c_int32, "Boolean": ctypes.c_bool}
 LOG: Final = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
 Value = float | int | bool
+Listed = tuple[str, int, int]
+"""Type, value reference and number of values of a variable."""
 
 
 class RefusedCall(Exception):
@@ -24,31 +26,37 @@ class RefusedCall(Exception):
 class Imported:
     """A unit that is loaded from an archive; `faults` are the sentences that it has logged."""
 
+    PREFIX, FOLDER, TOKEN = "fmi3", "x86_64-linux", "instantiationToken"
+
     def __init__(self, archive: bytes, folder: Path) -> None:
         with zipfile.ZipFile(io.BytesIO(archive)) as packed:
             packed.extractall(folder)
         root = ElementTree.parse(folder / "modelDescription.xml").getroot()
-        self.variables = {
-            each.attrib["name"]: (each.tag, int(each.attrib["valueReference"]), sizes(each))
-            for each in root.find("ModelVariables") or ()
-        }
+        self.variables = self.variables_of(root.find("ModelVariables") or ())
         simulation = root.find("CoSimulation")
         assert simulation is not None
-        self.step_s = float(simulation.get("fixedInternalStepSize", "nan"))
-        library = folder / "binaries" / "x86_64-linux" / f"{simulation.attrib['modelIdentifier']}.so"
+        experiment = root.find("DefaultExperiment")
+        self.step_s = float("nan" if experiment is None else experiment.attrib["stepSize"])
+        library = folder / "binaries" / self.FOLDER / f"{simulation.attrib['modelIdentifier']}.so"
         self.library = ctypes.CDLL(str(library))
-        self.library.fmi3InstantiateCoSimulation.restype = ctypes.c_void_p
-        self.library.fmi3GetVersion.restype = ctypes.c_char_p
+        getattr(self.library, f"{self.PREFIX}GetVersion").restype = ctypes.c_char_p
         self.faults: list[str] = []
-        self._log = LOG(lambda _env, _status, _category, message: self.faults.append(message.decode()))
-        self._token = root.attrib["instantiationToken"].encode()
+        self.kept: list[Any] = []  # what instances may still call
+        self._token = root.attrib[self.TOKEN].encode()
         self.instance = self.instantiate(self._token)
+
+    def variables_of(self, listed: Iterable[ElementTree.Element]) -> dict[str, Listed]:
+        """The variables by name."""
+        return {each.attrib["name"]: (each.tag, int(each.attrib["valueReference"]), sizes(each)) for each in listed}
 
     def instantiate(self, token: bytes) -> ctypes.c_void_p:
         """An instance for `token`; a null pointer where the unit refuses."""
+        log = LOG(lambda _env, _status, _category, message: self.faults.append(message.decode()))
+        self.kept.append(log)
+        self.library.fmi3InstantiateCoSimulation.restype = ctypes.c_void_p
         none, no = ctypes.c_void_p(None), ctypes.c_bool(False)
         found = self.library.fmi3InstantiateCoSimulation(
-            b"one", token, b"", no, no, no, no, none, ctypes.c_size_t(0), none, self._log, none
+            b"one", token, b"", no, no, no, no, none, ctypes.c_size_t(0), none, log, none
         )
         return ctypes.c_void_p(found)
 
@@ -56,7 +64,7 @@ class Imported:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, fault: BaseException | None, at: TracebackType | None) -> None:
-        self.library.fmi3FreeInstance(self.instance)
+        getattr(self.library, f"{self.PREFIX}FreeInstance")(self.instance)
 
     def call(self, name: str, *given: Any) -> None:
         """Call a function of the instance; `RefusedCall` unless it answers fmi3OK."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from synth.retarder.fmi.controller_unit import controller_unit
+from synth.retarder.fmi.interfaces import FMI_3, Interface
 from synth.retarder.fmi.position_unit import position_unit
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.passes import ExitSample
@@ -38,15 +39,16 @@ class LoopOfUnits:
     simulated: ExitSample
 
 
-def units_of(plant: Plant, table: ControllerTable) -> tuple[bytes, bytes]:
+def units_of(plant: Plant, table: ControllerTable, interface: Interface = FMI_3) -> tuple[bytes, bytes]:
     """Both units, controller and position."""
     controller = controller_unit(TableBook((table,)), RETARDER)
-    return controller.archive(), position_unit([plant], "tests", RETARDER).archive()
+    return controller.archive(interface), position_unit([plant], "tests", RETARDER).archive(interface)
 
 
 def loop_of_units(
-    units: tuple[bytes, bytes], plant: Plant, table: ControllerTable, seed: int, count: int, folder: Path
-) -> LoopOfUnits:
+    units: tuple[bytes, bytes], plant: Plant, table: ControllerTable, seed: int, count: int, folder: Path,
+    imported: type[Imported] = Imported,
+) -> LoopOfUnits:  # fmt: skip
     """`count` passes of `plant` under `table` by two `units` (`units_of`), which may hold other tables and cuts too.
 
     They are told what the simulator draws for cut, entry and clock; noise and friction along the path they draw.
@@ -56,7 +58,7 @@ def loop_of_units(
     simulated = loop.run(TableController(table), draws)
     controller, position = units
     ends, lost = [], 0
-    with Imported(position, folder / "position") as there, Imported(controller, folder / "controller") as here:
+    with imported(position, folder / "position") as there, imported(controller, folder / "controller") as here:
         for i in range(count):
             there.begin(
                 **cut_of(plant, len(there.get("axle_offsets_m"))),

@@ -34,6 +34,7 @@ def test_shapes_and_axes(made: tuple[AimedSpeeds, ...]) -> None:
     assert measured.speed_m_s.shape == measured.gap_per_car_m.shape == (2, 3, 21)
 
 
+@pytest.mark.requirement("AIM-06")
 def test_every_cell_keeps_the_share(made: tuple[AimedSpeeds, ...]) -> None:
     for table in made:
         told = table.cuts > 0

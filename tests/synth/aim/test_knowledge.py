@@ -47,6 +47,7 @@ def report(scene: AimScene) -> SceneCuts:
     return scene.draw(LIGHT, 1, 1, 50_000, 20_000)
 
 
+@pytest.mark.requirement("AIM-06")
 @pytest.mark.parametrize("name", KNOWN)
 def test_realised_share_is_the_one_asked_for(design: SceneCuts, report: SceneCuts, name: str) -> None:
     commanded = KNOWN[name].commands(design, thresholds(design), REQUIREMENT).of(report)[:, 0]

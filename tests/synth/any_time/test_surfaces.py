@@ -94,6 +94,7 @@ def test_slopes_and_bends_are_those_of_differences(plant: Plant, chain: SampledC
     assert found.bends[most] == pytest.approx((above - below) / 2e-2, rel=0.02)
 
 
+@pytest.mark.requirement("PRED-02")
 @pytest.mark.parametrize("ahead_m", [0.0, 3.0])
 def test_a_prediction_is_what_passes_find(plant: Plant, ahead_m: float) -> None:
     """From the entrance and from before it, where a stage may be set and no higher one."""

@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 
 from plant_models import Approach, Plant, TrackProfile
+from synth.retarder.configuration.config_file import load_config
 from synth.retarder.estimation.estimator_design import estimator_of
+from synth.retarder.explore.beside import Beside, beside
 from synth.retarder.explore.explore_page import PlayedTable
+from synth.retarder.sensors.passage_table import plausible_motion
+from synth.retarder.served_class import PassageClass, ServedClass, sensors_of
 from tests.controller_code.sample_book import FOUR_AXLES, table_of, with_slopes
 from tests.synth.conftest import pilot_plant
+from tests.tuning_tables.passages.made_tables import table_of as passages_of
 from tuning_tables import Approach as TableApproach
 from tuning_tables import ControllerTable, Decisions, ValidRange
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.sensor_layout import DecidesOn
+from tuning_tables.table_kinds import StageTable
 
 STAGES = 5
 LIMITS_T = (22.0, 28.0)
@@ -52,6 +61,22 @@ def blind_table() -> ControllerTable:
     return replace(measured_table(), decisions=Decisions.AT_ANY_TIME)
 
 
+HEARD_ROWS = ((4.5, 6.0), (4.0, 5.25), (3.0, 4.5))
+"""Of three stages; at every passage."""
+
+
+def heard_table(decides_on: DecidesOn = DecidesOn.EVERY_AXLE) -> PassageTable:
+    """Decides at passages over point sensors."""
+    places = (-APPROACH_M, 1.0, 5.5, 10.0, 14.5, 19.0, 23.5)
+    table = passages_of(decides_on, places, pilot_plant(22.0).cut.axle_offsets_m, HEARD_ROWS)
+    return replace(table, plausible=plausible_motion(sensed_plant(table), sensors_of(table.sensors)))
+
+
+def sensed_plant(table: PassageTable) -> Plant:
+    """The same plant, whose regulator acts from the first sensor of the table on."""
+    return replace(plant_of(measured_table()), approach=Approach(table.approach.length_m, 1))
+
+
 TABLES: Mapping[str, Callable[[], ControllerTable]] = {
     "measured": measured_table,
     "estimated": estimating_table,
@@ -60,7 +85,23 @@ TABLES: Mapping[str, Callable[[], ControllerTable]] = {
 }
 
 
+def passes_beside(table: StageTable, served: ServedClass) -> Beside:
+    """On few passes: pages show figures, whether they are good or not."""
+    usual = load_config(None)
+    return beside(table, served, replace(usual, validation=usual.validation.model_copy(update={"passes": 1000})))
+
+
+@cache
 def played(name: str, infeasible: bool = False) -> PlayedTable:
-    """One of them as the page takes it."""
+    """A table as the page takes it."""
     table = replace(TABLES[name](), id=name)
-    return PlayedTable(table, f"class of {name}", plant_of(table), LIMITS_T, infeasible)
+    served = ServedClass(f"class of {name}", plant_of(table))
+    return PlayedTable(table, served, LIMITS_T, infeasible, passes_beside(table, served))
+
+
+@cache
+def played_passages() -> PlayedTable:
+    """The table for point sensors as the page takes it."""
+    table = replace(heard_table(), id="heard")
+    served = PassageClass("class of heard", sensed_plant(table), sensors_of(table.sensors))
+    return PlayedTable(table, served, LIMITS_T, False, passes_beside(table, served))

@@ -165,7 +165,8 @@ def test_figures_have_the_intervals_of_student_and_wilson() -> None:
 EXITS = """
 const { plant, table: values, count } = given, table = Rule.table(values);
 const setting = { massT: plant.mass_t, noiseMS: plant.sensor.noise_m_s, drive: Drive.drive(plant, false, 1) };
-tell(Array.from({ length: count }, (_, place) => Passes.run(plant, table, setting, Draws.cut(plant, 5, place))));
+const regulator = Laws.byTable(plant, table);
+tell(Array.from({ length: count }, (_, place) => Passes.run(plant, regulator, setting, Draws.cut(plant, 5, place))));
 """
 
 
@@ -174,7 +175,7 @@ def test_many_cuts_leave_as_those_of_the_closed_loop() -> None:
     table = estimating_table()
     plant, rules = plant_of(table), js_rules([table])
     given = {"plant": plant_data(plant, LIMITS_T, STAGES), "table": rules.tables[0], "count": CUTS}
-    found = told_by(rules, ("motion.js", "drive.js", "passes.js", "draws.js"), EXITS, given)
+    found = told_by(rules, ("motion.js", "drive.js", "laws.js", "passes.js", "draws.js"), EXITS, given)
     loop = close_loop(plant, STAGES)
     sample = loop.run(TableController(table), loop.draws(random_passes(1, 0, CUTS, loop.cells)))
     for key, theirs in (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -11,25 +10,48 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import Plant, WeightForce
+from synth.retarder.comparison.baselines import energy_rule
+from synth.retarder.explore.beside import lines_data, played_controller
 from synth.retarder.explore.plant_data import plant_data
-from synth.simulation.closed_loop import TableController, close_loop
+from synth.retarder.served_class import sensors_of
+from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
+from synth.simulation.passage_controller import of_table
+from synth.simulation.passage_loop import PassageLoop, close_passage_loop
+from synth.simulation.passage_sample import PassageTrace
 from synth.simulation.random_passes import RandomPasses, random_passes
 from tests.in_javascript import needs_javascript, packed
-from tests.synth.explore.braked import LIMITS_T, any_time_table, blind_table, estimating_table, measured_table, plant_of
+from tests.synth.explore.braked import (
+    LIMITS_T,
+    STAGES,
+    any_time_table,
+    approached_table,
+    blind_table,
+    estimating_table,
+    heard_table,
+    measured_table,
+    plant_of,
+    sensed_plant,
+)
 from tests.synth.explore.scripts_of_page import told_by
-from tuning_tables import ControllerTable
-from tuning_tables.controller_code.js_rules import js_rules
+from tuning_tables import Decisions
+from tuning_tables.controller_code.js_rules import JsRules, js_passage_rules, js_rules
+from tuning_tables.passages.sensor_layout import DecidesOn
 
-PASSES = 1000
-SCRIPTS = ("motion.js", "drive.js", "passes.js")
+PASSES, FEW = 1000, 150
+SCRIPTS = ("motion.js", "drive.js", "laws.js", "passes.js", "passages.js")
 ASKING = """
-const { plant, table: values, cuts, massT, noiseMS, delayTimes } = given, table = Rule.table(values);
-const drive = Drive.drive(plant, table.at_any_time === 1, delayTimes);
+const { plant, table, lines, cuts, massT, noise, delayTimes } = given;
+const regulator = lines ? Laws.byLines(plant, lines)
+  : plant.sensor.passages ? Passages.byTable(plant, PassageRule.table(table)) : Laws.byTable(plant, Rule.table(table));
+const drive = Drive.drive(plant, regulator.atAnyTime, delayTimes), { run } = plant.sensor.passages ? Passages : Passes;
 tell(cuts.map((each) => {
-  const cut = { ...each, pathZ: floats(each.pathZ), noiseZ: floats(each.noiseZ) }, events = [];
-  const exit = Passes.run(plant, table, { massT, noiseMS, drive }, cut,
-    (time, s, v, kpa, stage) => events.push([time, s, v, kpa, stage]));
-  return { exit, events };
+  const cut = { ...each, pathZ: floats(each.pathZ), noiseZ: floats(each.noiseZ) }, events = [], heard = [];
+  const exit = run(plant, regulator, { massT, noiseMS: noise, noiseS: noise, drive }, cut,
+    (time, s, v, kpa, stage, question) => {
+      events.push([time, s, v, kpa, stage]);
+      if (question) heard.push([question.sensor ?? -1, question.heard ?? -1, question.wanted]);
+    });
+  return { exit, events, heard };
 }));
 """
 
@@ -99,50 +121,71 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_a_pass_is_that_of_python_event_by_event(case: str) -> None:
     table_of_case, plant_for, mass_t, noise_m_s, delay_times = CASES[case]
-    found, expected = both(table_of_case(), plant_for, mass_t, noise_m_s, delay_times, sized_passes(case))
-    assert np.mean([commands for _, _, _, commands in expected]) > 2.0
-    for number, (mine, (events, exit_speed, stalled, commands)) in enumerate(zip(found, expected, strict=True)):
-        assert len(mine["events"]) == len(events), f"pass {number}"
-        np.testing.assert_allclose(np.array(mine["events"]), events, rtol=0.0, atol=1e-6, err_msg=f"pass {number}")
-        assert mine["exit"]["exitMS"] == pytest.approx(exit_speed, abs=1e-6)
-        assert mine["exit"]["stalled"] == stalled
-        assert mine["exit"]["commands"] == commands
+    table = table_of_case()
+    nominal = plant_for(table)
+    loop = close_loop(changed(nominal, mass_t, noise_m_s, delay_times), len(table.stages))
+    rules = js_rules([table])
+    given = {"plant": plant_data(nominal, LIMITS_T, loop.stages), "table": rules.tables[0]}
+    setting = {"massT": mass_t, "noise": noise_m_s, "delayTimes": delay_times}
+    compared(rules, given | setting, loop, TableController(table), sized_passes(case))
+
+
+@needs_javascript
+@pytest.mark.parametrize("decisions", Decisions)
+@pytest.mark.parametrize("lead_s", [0.0, 0.3])
+def test_a_baseline_is_that_of_python_event_by_event(decisions: Decisions, lead_s: float) -> None:
+    plant = silent(plant_of(approached_table()))
+    loop = close_loop(plant, STAGES)
+    law = energy_rule(loop, 3.0, STAGES - 1, 0.9, 0.1, lead_s, 0.1)
+    controller = played_controller(replace(law, decisions=decisions))
+    given = {"plant": plant_data(plant, LIMITS_T, STAGES), "lines": lines_data(controller)}
+    setting = {"massT": plant.cut.mass_t, "noise": plant.sensor.noise_m_s, "delayTimes": 1.0}
+    compared(None, given | setting, loop, controller, PASSES if lead_s else FEW)
+
+
+@needs_javascript
+@pytest.mark.parametrize("decides_on", DecidesOn)
+def test_a_pass_over_point_sensors_is_that_of_python_event_by_event(decides_on: DecidesOn) -> None:
+    table, rules = heard_table(decides_on), js_passage_rules([heard_table(decides_on)])
+    plant, sensors = sensed_plant(table), sensors_of(table.sensors)
+    loop = close_passage_loop(plant, sensors, len(table.pressure_kpa))
+    given = {"plant": plant_data(plant, LIMITS_T, loop.stages, sensors), "table": rules.tables[0]}
+    setting = {"massT": plant.cut.mass_t, "noise": sensors.timer_noise_s, "delayTimes": 1.0}
+    compared(
+        rules,
+        given | setting,
+        loop,
+        of_table(table, tracking=True),
+        PASSES if decides_on is DecidesOn.EVERY_AXLE else FEW,
+    )
 
 
 def sized_passes(case: str) -> int:
     """The thousand passes for the two kinds of commands, fewer for their variants."""
-    return PASSES if case in ("estimated", "any time") else 150
+    return PASSES if case in ("estimated", "any time") else FEW
 
 
-def both(
-    table: ControllerTable,
-    plant_for: Callable[[ControllerTable], Plant],
-    mass_t: float,
-    noise_m_s: float,
-    delay_times: float,
-    count: int,
-) -> tuple[list[Any], list[Any]]:
+def compared(
+    rules: JsRules | None, given: dict[str, Any], loop: ClosedLoop | PassageLoop, controller: Any, count: int
+) -> None:
     """The same passes by the page and by the closed loop."""
-    nominal = plant_for(table)
-    plant = changed(nominal, mass_t, noise_m_s, delay_times)
-    loop = close_loop(plant, len(table.stages))
-    passes = random_passes(7, 0, count, loop.cells)
-    draws, controller = loop.draws(passes), TableController(table)
-    rules = js_rules([table])
-    given = {
-        "plant": plant_data(nominal, LIMITS_T, len(table.stages)),
-        "table": rules.tables[0],
-        "cuts": cuts_of(plant, passes, draws.noise_z),
-        "massT": mass_t,
-        "noiseMS": noise_m_s,
-        "delayTimes": delay_times,
-    }
-    expected = []
-    for i in range(count):
-        one = type(draws)._make(part[i : i + 1] for part in draws)
+    plant = loop.plant
+    radar = loop.radar if isinstance(loop, PassageLoop) else loop
+    passes = random_passes(7, 0, count, radar.cells)
+    draws, commands = loop.draws(passes), 0
+    found = told_by(rules, SCRIPTS, ASKING, given | {"cuts": cuts_of(plant, passes, draws.noise_z)})
+    for number, mine in enumerate(found):
+        one = type(draws)._make(part[number : number + 1] for part in draws)
         trace, sample = loop.follow(controller, one), loop.run(controller, one)
-        events = np.column_stack([trace.time_s, trace.path_m, trace.speed_m_s, trace.overpressure_kpa, trace.stage])[
-            :-1
-        ]
-        expected.append((events, sample.exit_speed_m_s[0], bool(sample.stalled[0]), int(sample.switchings[0])))
-    return told_by(rules, SCRIPTS, ASKING, given), expected
+        theirs = [trace.time_s, trace.path_m, trace.speed_m_s, trace.overpressure_kpa, trace.stage]
+        events = np.column_stack(theirs)[:-1]
+        assert len(mine["events"]) == len(events), f"pass {number}"
+        np.testing.assert_allclose(np.array(mine["events"]), events, rtol=0.0, atol=1e-6, err_msg=f"pass {number}")
+        assert mine["exit"]["exitMS"] == pytest.approx(sample.exit_speed_m_s[0], abs=1e-6)
+        assert mine["exit"]["stalled"] == sample.stalled[0]
+        assert mine["exit"]["commands"] == sample.switchings[0]
+        commands += int(sample.switchings[0])
+        if isinstance(trace, PassageTrace):
+            heard = trace.readings
+            assert mine["heard"] == np.column_stack([heard.told_sensor, heard.believed, heard.stage]).tolist()
+    assert commands > 2 * count

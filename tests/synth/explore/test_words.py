@@ -8,24 +8,26 @@ import numpy as np
 import pytest
 
 from synth.retarder.explore.plant_data import plant_data
+from synth.retarder.served_class import sensors_of
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.logged_passes import drive_pressures_kpa
+from synth.simulation.passage_loop import close_passage_loop
 from synth.simulation.random_passes import random_passes
 from tests.in_javascript import needs_javascript
-from tests.synth.explore.braked import LIMITS_T, TABLES, estimating_table, plant_of
+from tests.synth.explore.braked import LIMITS_T, TABLES, estimating_table, heard_table, plant_of, sensed_plant
 from tests.synth.explore.scripts_of_page import told_by
 from tests.synth.explore.test_passes import cuts_of
 from tuning_tables import ControllerTable, decide_for
-from tuning_tables.controller_code.js_rules import js_rules
+from tuning_tables.controller_code.js_rules import js_passage_rules, js_rules
 
-SCRIPTS = ("motion.js", "drive.js", "passes.js", "words.js")
+SCRIPTS = ("motion.js", "drive.js", "laws.js", "passes.js", "passages.js", "words.js", "passage_words.js")
 TELLING = """
 const { plant, table: values, cuts } = given, table = Rule.table(values), found = [];
 const drive = Drive.drive(plant, table.at_any_time === 1, 1);
 const setting = { massT: plant.mass_t, noiseMS: plant.sensor.noise_m_s, drive };
 for (const [pass, each] of cuts.entries()) {
   const cut = { ...each, pathZ: floats(each.pathZ), noiseZ: floats(each.noiseZ) };
-  Passes.run(plant, table, setting, cut, (time, s, v, kpa, stage, question) => {
+  Passes.run(plant, Laws.byTable(plant, table), setting, cut, (time, s, v, kpa, stage, question) => {
     if (!question) return;
     const steps = question.isAsked && question.known >= 0 ? Words.steps(table, question) : null;
     found.push({ pass, ...question, steps,
@@ -112,3 +114,49 @@ def test_the_pressure_is_that_of_a_gauge_without_noise() -> None:
         stages = np.array([each["wanted"] for each in mine])
         theirs = drive_pressures_kpa(plant, len(table.stages), stages, np.array([0, len(mine)]))
         np.testing.assert_allclose([each["pressureKpa"] for each in mine], theirs, atol=1e-6)
+
+
+HEARING = """
+const { plant, room, cuts } = given, table = PassageRule.table(given.table), found = [];
+const regulator = Passages.byTable(plant, table), drive = Drive.drive(plant, false, 1);
+const setting = { massT: plant.mass_t, noiseS: plant.sensor.timer_noise_s, drive };
+for (const each of cuts) {
+  const cut = { ...each, pathZ: floats(each.pathZ), noiseZ: floats(each.noiseZ) };
+  Passages.run(plant, regulator, setting, cut, (time, s, v, kpa, stage, question) => {
+    if (!question) return;
+    const { deciding, before } = question;
+    const of = deciding < 0 ? [] : PassageWords.switching(table, room, deciding, before);
+    const told = PassageWords.why(plant, table, room, { time, v, question }, (speed) => `${speed.toFixed(2)} m/s`);
+    found.push({ ...question, of, told });
+  });
+}
+tell(found);
+"""
+
+
+@needs_javascript
+def test_words_of_a_pair_of_pulses_are_what_the_rule_does() -> None:
+    table, rules = heard_table(), js_passage_rules([heard_table()])
+    plant, sensors = sensed_plant(table), sensors_of(table.sensors)
+    loop = close_passage_loop(plant, sensors, len(table.pressure_kpa))
+    passes = random_passes(3, 0, 40, loop.radar.cells)
+    given = {
+        "plant": plant_data(plant, LIMITS_T, loop.stages, sensors),
+        "room": dict(rules.room),
+        "table": rules.tables[0],
+        "cuts": cuts_of(plant, passes, loop.draws(passes).noise_z),
+    }
+    found = told_by(rules, SCRIPTS, HEARING, given)
+    assert len([each for each in found if each["wanted"] != each["before"]]) > 50
+    for each in found:
+        before, wanted, speed = each["before"], each["wanted"], each["known"]
+        ends = f"So stage {wanted} is commanded" if wanted != before else "So nothing is commanded."
+        assert each["told"][-1].startswith(ends)
+        if each["deciding"] < 0 or not each["isAsked"]:
+            assert wanted == before
+            continue
+        highest = table.entrance_stage if each["deciding"] < table.before_entrance else len(table.pressure_kpa) - 1
+        row = table.switching_m_s[each["deciding"], before, : max(before, highest)].astype(np.float32)
+        assert [value for value, _ in each["of"]] == row.tolist()
+        beyond = [stage for value, stage in each["of"] if (speed < value if stage < before else speed > value)]
+        assert wanted == max(beyond, key=lambda stage: abs(stage - before), default=before)

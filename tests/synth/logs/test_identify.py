@@ -8,15 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import synth
 from plant_models.pressure_gauge import USUAL_NOISE_KPA
-from scripts.studies.identification.truths import text_of_classes
+from scripts.studies.identification.truths import Yard, text_of_classes
 from synth.cli import main
 from synth.logs.estimate import Estimate
 from synth.logs.fitting_passes import FittingPasses
-from synth.logs.identifiability import Finding
+from synth.logs.identifiability import Finding, findings_of
+from synth.logs.identify import Identified, fit
 from synth.logs.identify_shown import bias_sentences
 from synth.logs.residual_tests import MOTION, ResidualTest, residual_tests, wrong
-from synth.logs.unknowns import BIAS, GAUGE_NOISE, RANGES
+from synth.logs.unknowns import BIAS, GAUGE_NOISE, RANGES, slope_of, unknowns_of
 from synth.retarder.validation.options import ValidateOptions
 from tuning_tables.pass_log.log_files import write_log
 
@@ -26,6 +28,16 @@ def test_the_model_holds_for_its_own_passes(passes: FittingPasses, found: Estima
     assert len(tests) == 5
     assert wrong(tests) == ()
     assert all(abs(test.z) < 4.0 for test in tests)
+
+
+def test_figures_and_frame_are_those_of_the_command(yard: Yard, passes: FittingPasses, found: Estimate) -> None:
+    numbers = fit(passes, found.values, slope_of(unknowns_of(passes, yard.config.parameters)))
+    result = Identified(yard.config, passes, found, findings_of(found), (), (), numbers, numbers)
+    assert list(synth.figures(result)) == ["identify-numbers", "identify-pressures", "identify-friction"]
+    frame = synth.to_pandas(result).set_index("key")
+    for finding in result.findings:
+        ends = frame.loc[finding.key, ["value_low95", "value_high95"]]
+        assert tuple(ends) == finding.interval
 
 
 def test_holm_stops_at_the_first_that_may_be_chance() -> None:

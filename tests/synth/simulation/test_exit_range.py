@@ -85,6 +85,7 @@ def rules(passes: CommonPasses, target_m_s: float) -> list[tuple[str, Regulator]
     return [*found, ("table", TableController(table)), ("released", released(stages, plant.start_m, plant.exit_m))]
 
 
+@pytest.mark.requirement("PRED-08")
 @pytest.mark.parametrize("mass_t", [22.0, 52.0, 85.0])
 def test_no_rule_leaves_the_range_and_none_has_less_than_the_unavoidable_error(
     plant_of: Callable[[float], Plant], mass_t: float

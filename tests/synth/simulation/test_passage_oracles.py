@@ -145,6 +145,7 @@ class IntegratedPass:
         return float(solved.t[-1]), state, there
 
 
+@pytest.mark.requirement("PRED-03")
 @pytest.mark.parametrize("axles", [first_axle, every_axle])
 @pytest.mark.parametrize(("substeps", "off"), [(None, 2e-4), (10, 5e-6)])
 def test_a_pass_agrees_with_an_adaptive_integrator(axles: Axles, substeps: int | None, off: float) -> None:

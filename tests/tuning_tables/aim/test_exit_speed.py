@@ -61,6 +61,7 @@ def by_scipy(table: AimTable, row: int, point: tuple[float, float]) -> float:
     return float(interpolate([float(np.float32(point[axis])) for axis in kept])[0])
 
 
+@pytest.mark.requirement("AIM-01")
 @pytest.mark.parametrize("table", TABLES, ids=lambda table: table.id)
 def test_between_nodes_it_is_scipys_interpolation(table: AimTable) -> None:
     cars, distance, resistance = questions_within(table, 60, 7)
@@ -76,6 +77,7 @@ def test_between_nodes_it_is_scipys_interpolation(table: AimTable) -> None:
     assert compared == np.count_nonzero(~np.isnan(found)) or np.isnan(table.exit_speed_m_s).any()
 
 
+@pytest.mark.requirement("AIM-02")
 @pytest.mark.parametrize("table", TABLES, ids=lambda table: table.id)
 def test_no_answer_exactly_where_a_node_that_counts_has_none(table: AimTable) -> None:
     cars, distance, resistance = questions_within(table, 300, 8)
@@ -107,6 +109,7 @@ def test_at_nodes_it_is_the_speed_of_the_table_to_the_last_bit() -> None:
         assert np.array_equal(aim_exit_speeds(table.held, cars, distance, resistance), speeds_of(table), equal_nan=True)
 
 
+@pytest.mark.requirement("AIM-01")
 def test_it_stays_within_the_nodes_around_it() -> None:
     for table in TABLES:
         nodes, first = table.held.distance_m, table.held.resistance_n_per_kn[0]
@@ -135,6 +138,7 @@ def test_it_does_not_fall_with_the_resistance() -> None:
                 assert np.diff(speeds[~np.isnan(speeds)]).min(initial=0.0) > -2e-6
 
 
+@pytest.mark.requirement("AIM-03", "AIM-04")
 def test_cars_between_two_listed_numbers_take_the_lesser_answer() -> None:
     table = category_table(1.0)  # 1 car: falls, and none at 400 m; from 3 on: rises
     for distance in (20.0, 37.0, 300.0, 350.0):
@@ -151,6 +155,7 @@ def test_cars_between_two_listed_numbers_take_the_lesser_answer() -> None:
         assert aim_exit_speed(table, cars, 100.0) is None
 
 
+@pytest.mark.requirement("AIM-05")
 def test_beyond_the_last_distance_only_a_speed_that_does_not_fall_there_counts() -> None:
     table = category_table(1.0)
     assert table.held.speed_m_s[0, -1, 0] == -1.0
@@ -194,6 +199,7 @@ def test_outside_the_axes() -> None:
     assert aim_exit_speed(table, 8, np.nextafter(20.0, 0.0), 2.2) == table.held.speed_m_s[4, 0, 3]
 
 
+@pytest.mark.requirement("AIM-04")
 @pytest.mark.parametrize(
     ("cars", "distance", "resistance"),
     [

@@ -16,13 +16,11 @@ from tests.tuning_tables.aim.made_tables import category_table, measured_table, 
 from tests.tuning_tables.st.compiler import ASKED_UNDER, BINARY32, ROUNDINGS, Compiler, name_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault, Frame
-from tests.tuning_tables.st.syntax import faults, parse, walk
-from tests.tuning_tables.st.test_syntax import KEYWORDS
+from tests.tuning_tables.st.syntax import faults, parse
 from tuning_tables.aim import AimAxes, AimCategory, AimTable, AimTables
 from tuning_tables.aim.golden_aims import golden_selections
-from tuning_tables.aim.st_source import aim_export, aim_st_files
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
-from tuning_tables.plc_forms.iec import unit_files
+from tuning_tables.aim.st_source import aim_st_files
+from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
 AIM_FILE, SELF_TEST_FILE = "aim_table.st", "aim_self_test.st"
@@ -36,6 +34,7 @@ def loaded(program: Program, number: int) -> Frame:
     return table
 
 
+@pytest.mark.requirement("CODE-02")
 @pytest.mark.parametrize("compiler", ASKED_UNDER, ids=name_of)
 def test_hard_questions_are_answered_as_by_python_to_the_last_bit(compiler: Compiler) -> None:
     aims = sample_set()
@@ -204,22 +203,6 @@ def test_every_wrong_operation_is_found() -> None:
     assert missed == SAME
 
 
-def test_the_text_is_plain_structured_text_without_keywords() -> None:
-    for aims in (sample_set(), small_set(), AimTables((category_table(),))):
-        files = aim_st_files(aims)
-        assert list(files) == [AIM_FILE, SELF_TEST_FILE]
-        for text in files.values():
-            assert faults(parse(text)) == []
-            lines = text.decode("ascii").split("\n")
-            assert lines[-1] == ""
-            assert all(line == line.rstrip() and line.isprintable() and len(line) <= 120 for line in lines)
-            names = {node.text.decode("ascii").upper() for node in walk(parse(text)) if node.type == "identifier"}
-            assert names & set(KEYWORDS.split()) == set()
-            assert all(len(name) <= 32 - 11 and "__" not in name and not name.endswith("_") for name in names)
-            assert max(int(end) for end in re.findall(rb"ARRAY\[0\.\.(\d+)\]", text)) < 999
-        assert files == aim_st_files(AimTables(aims.tables))
-
-
 def test_the_largest_table_is_exported() -> None:
     axes = AimAxes(np.arange(1, 21), np.arange(1.0, 112.0), np.arange(9.0))
     speeds = np.broadcast_to(np.linspace(0.5, 7.0, 111)[:, None], axes.shape).copy()
@@ -229,26 +212,6 @@ def test_the_largest_table_is_exported() -> None:
     assert table.held.speed_m_s.size < 32767  # what an INT counts
     load = aim_st_files(AimTables((table,)), RETARDER, SMALL)[AIM_FILE].decode("ascii")
     assert max(int(each) for each in re.findall(r"ARRAY\[0\.\.(\d+)\] OF \w+ :=", load)) < 999
-
-
-def test_units_in_files_of_their_own_are_the_same_text() -> None:
-    aims, prefix = small_set(), ExportPrefix("Park_2")
-    whole, units = aim_st_files(aims, prefix), unit_files(aim_export(aims, prefix))
-    assert list(whole) == ["park_2_aim_table.st", "park_2_aim_self_test.st"]
-    assert [name.partition("_PARK_2_AIM_")[2] for name in units][:4] == [
-        "TABLE.st",
-        "CATEGORIES.st",
-        "LOAD.st",
-        "SELECT.st",
-    ]
-    joined = "\n".join(text.decode("ascii") for text in units.values())
-    for text in whole.values():
-        blocks = re.findall(r"^FUNCTION_BLOCK.*?^END_FUNCTION_BLOCK$", text.decode("ascii"), re.MULTILINE | re.DOTALL)
-        assert len(blocks) >= 3
-        assert all(block in joined for block in blocks)
-    assert not re.search(r"(?i)\baim_", joined)
-    plain = {name: text.replace(b"PARK_2_AIM_", b"AIM_") for name, text in whole.items()}
-    assert [text.replace(b"park_2_aim_", b"aim_") for text in plain.values()] == list(aim_st_files(aims).values())
 
 
 def test_as_many_tables_as_there_are_categories_are_exported() -> None:

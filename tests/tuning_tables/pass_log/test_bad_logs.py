@@ -62,6 +62,7 @@ def same_cut(table: Table) -> None:
         table[place][0] = "cut-00000"
 
 
+@pytest.mark.requirement("LOG-01")
 @pytest.mark.parametrize(
     ("change", "row", "column", "words"),
     [
@@ -131,6 +132,7 @@ def test_a_file_that_is_no_table_is_refused(tmp_path: Path, change: Callable[[Ta
     assert str(path) in str(refused.value)
 
 
+@pytest.mark.requirement("LOG-02")
 @pytest.mark.parametrize(
     ("column", "factor", "words"),
     [

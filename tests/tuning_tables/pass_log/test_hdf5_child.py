@@ -42,12 +42,14 @@ def test_a_process_of_its_own_reads_the_same(sealed: bytes) -> None:
         assert np.array_equal(there.arrays[name], here.arrays[name], equal_nan=here.arrays[name].dtype.kind == "f")
 
 
+@pytest.mark.requirement("LOG-03")
 def test_an_endless_file_is_refused_in_time(sealed: bytes) -> None:
     """Where a later HDF5 tells the fault itself, this test needs another such byte."""
     with pytest.raises(InvalidLog, match="HDF5 does not come to an end with it in 1 s"):
         columns_by_child(endless(sealed[:-SEAL_BYTES]), least_time_s=1.0)
 
 
+@pytest.mark.requirement("LOG-03")
 def test_every_changed_byte_of_a_sealed_log_is_refused(
     sealed: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -74,6 +74,7 @@ def variant(name: str, target_m_s: float, mass_t: float = 22.0) -> PassageTable:
 BOOK = PassageBook((variant("b", 3.0), variant("a", 2.0), variant("light", 2.5, 21.0), variant("c", 4.0)))
 
 
+@pytest.mark.requirement("CHOICE-01")
 @pytest.mark.parametrize(
     ("category", "axles", "commanded", "status", "number"),
     [

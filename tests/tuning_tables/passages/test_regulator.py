@@ -63,6 +63,7 @@ def test_a_believed_pair_is_decided_by_its_row() -> None:
     assert pulse(table, begun(), 6, 1.0, slow) == 2  # behind the exit nothing is decided
 
 
+@pytest.mark.requirement("PASS-03")
 def test_an_unfinished_change_commands_nothing_but_the_pair_is_known() -> None:
     held, state = held_by(TABLES[0]), begun()
     assert at_pulse(held, state, 3, 1.0, 0.2 / 9.0, 2, False) == 2
@@ -71,6 +72,7 @@ def test_an_unfinished_change_commands_nothing_but_the_pair_is_known() -> None:
     assert state[0] == first_over(TABLES[0], 4)
 
 
+@pytest.mark.requirement("PASS-03")
 @pytest.mark.parametrize("over_base_s", [np.nan, np.inf, -0.1, 0.0, 2.0**-21, 2e6, 1e300, -1e300, 1.0, 0.01])
 def test_a_reading_that_cannot_be_is_a_pair_that_is_not_believed(over_base_s: float) -> None:
     state = begun()
@@ -108,6 +110,7 @@ def test_for_every_input_the_step_is_its_parts_and_compiled_the_same(
         assert 0.0 <= half[2] <= LONGEST_WAIT_S
 
 
+@pytest.mark.requirement("PASS-06")
 @pytest.mark.parametrize(
     ("place", "value"),
     [*itertools.product(range(6), (np.nan, np.inf, -2.0, 3e38)), (0, 0.5), (3, 0.5), (3, 2.000001)],

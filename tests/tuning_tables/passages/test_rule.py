@@ -46,6 +46,7 @@ def restated(row: list[float], stage: int, highest: int, v: float) -> int:
     return stage + up - down
 
 
+@pytest.mark.requirement("PASS-01")
 @given(switching(), st.integers(0, 2), st.data())
 @settings(derandomize=True, max_examples=sized(30, 120), deadline=None)
 def test_the_rule_counts_the_speeds_on_the_way(speeds: Speeds, passage: int, data: st.DataObject) -> None:
@@ -62,6 +63,7 @@ def test_the_rule_counts_the_speeds_on_the_way(speeds: Speeds, passage: int, dat
     assert COMPILED(table, passage, stage, v) == wanted
 
 
+@pytest.mark.requirement("RULE-07")
 @given(switching(), st.integers(-2, 4), st.integers(-2, 7), st.floats(), st.integers(0, 5), st.integers(0, 3))
 @settings(derandomize=True, max_examples=sized(30, 120), deadline=None)
 @example(np.zeros((3, 2, 1), np.float32), 0, 0, 3.5e38, 0, 0)
@@ -80,6 +82,7 @@ def test_no_number_is_an_error_and_compiled_text_gives_the_same(
         assert wanted <= max(stage, entrance)
 
 
+@pytest.mark.requirement("PASS-02")
 @given(switching(), st.integers(0, 2), st.data())
 @settings(derandomize=True, max_examples=sized(20, 80), deadline=None)
 def test_the_stage_wanted_never_falls_with_the_speed(speeds: Speeds, passage: int, data: st.DataObject) -> None:

@@ -33,6 +33,7 @@ def believed(run: TruePass, pulses: Sequence[Pulse]) -> list[int]:
     return found
 
 
+@pytest.mark.requirement("PASS-04")
 @given(true_passes())
 @often
 def test_true_pairs_are_believed_and_taken_for_what_they_are(run: TruePass) -> None:
@@ -133,6 +134,7 @@ def test_what_a_false_pair_costs_with_several_axles(same_speed: bool, most: floa
     assert 0.0 < np.mean(costs) < most
 
 
+@pytest.mark.requirement("PASS-05")
 @given(
     true_passes(),
     st.lists(

@@ -10,7 +10,7 @@ from synth.frame.input_error import InputError
 from synth.retarder.forms.code_options import PLC_NAMES, CodeOptions
 from synth.retarder.forms.plc_forms import PLC_FORMS
 from tests.tuning_tables.plc_forms.exports import KINDS, LONGEST, PARK, exported
-from tests.tuning_tables.st.test_syntax import KEYWORDS
+from tests.tuning_tables.st.test_text import KEYWORDS
 from tuning_tables.errors import IllegalName
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.language.records import Kind

@@ -28,6 +28,7 @@ def content_of(kind: str) -> bytes:
     return content
 
 
+@pytest.mark.requirement("CODE-04")
 @pytest.mark.parametrize("kind", every(3, KINDS))
 def test_the_self_test_in_the_xml_finds_nothing(kind: str) -> None:
     text = structured_text(content_of(kind)).encode("ascii")

@@ -19,6 +19,7 @@ def source_of(kind: str) -> str:
     return b"\n".join(scl_files(exported(kind)).values()).decode("ascii")
 
 
+@pytest.mark.requirement("CODE-04")
 @pytest.mark.parametrize("kind", every(3, KINDS))
 def test_the_self_test_in_the_sources_finds_nothing(kind: str) -> None:
     text = structured_text(source_of(kind)).encode("ascii")

@@ -23,6 +23,7 @@ from tuning_tables.plc_forms.twincat import twincat_files
 EACH = pytest.mark.parametrize("kind", KINDS)
 
 
+@pytest.mark.requirement("CODE-04")
 @pytest.mark.parametrize("kind", every(3, KINDS))
 def test_the_self_test_in_the_objects_finds_nothing(kind: str) -> None:
     text = structured_text(twincat_files(exported(kind))).encode("ascii")

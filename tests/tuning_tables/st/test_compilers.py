@@ -21,6 +21,7 @@ def right(form: Form) -> Outcome:
     return self_tested(form, text_of(form), BINARY32)
 
 
+@pytest.mark.requirement("CODE-10")
 @pytest.mark.parametrize(
     ("form", "compiler"),
     [
@@ -75,12 +76,14 @@ SIDES = pytest.mark.parametrize("is_test", [False, True], ids=["tables", "self-t
 EACH = pytest.mark.parametrize("form", FORMS, ids=lambda form: form.name)
 
 
+@pytest.mark.requirement("CODE-10")
 @EACH
 @SIDES
 def test_no_for_may_turn_once_or_never(form: Form, is_test: bool) -> None:
     assert [loop for block in blocks_of(form, is_test) for loop in short_loops(block)] == []
 
 
+@pytest.mark.requirement("CODE-10")
 @EACH
 @SIDES
 def test_no_literal_in_a_statement_is_rounded_by_real(form: Form, is_test: bool) -> None:

@@ -11,13 +11,8 @@ import pytest
 
 from tests.controller_code.test_correction_code import CORRECTION, asked, right
 from tests.tuning_tables.st.compiler import ASKED_UNDER, Compiler, name_of
-from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.syntax import faults, parse, walk
-from tests.tuning_tables.st.test_syntax import KEYWORDS
-from tuning_tables.export_prefix import ExportPrefix
-from tuning_tables.st_correction import correction_st_files, correction_st_unit_files
-from tuning_tables.st_source import st_files
+from tuning_tables.st_correction import correction_st_files
 
 FILES = correction_st_files(CORRECTION)
 MEMBERS = ("MEAN_M_S", "CORRECTION_M_S", "LEARNT")
@@ -45,6 +40,7 @@ def answers_of(program: Program, questions: npt.NDArray[np.void]) -> npt.NDArray
     return np.stack([np.broadcast_to(each, error.shape).astype(np.float32) for each in found], axis=1)
 
 
+@pytest.mark.requirement("CORR-06")
 @pytest.mark.parametrize("compiler", ASKED_UNDER, ids=name_of)
 def test_every_question_is_answered_as_by_python(compiler: Compiler) -> None:
     with np.errstate(invalid="ignore"):  # a signalling NaN is widened
@@ -79,22 +75,3 @@ def self_tested(text: str) -> int:
     assert block["DONE"].value
     assert (int(block["FIRSTFAILED"].value) >= 0) == (int(block["FAILED"].value) > 0)
     return int(block["FAILED"].value)
-
-
-def test_the_text_is_plain_and_fits_beside_the_tables() -> None:
-    together = b"".join([*FILES.values(), *st_files(shaped_book(3, 1)).values()])
-    assert faults(parse(together)) == []
-    assert "RETARDER_DECIDE" in Program(together).blocks
-    lines = b"".join(FILES.values()).decode("ascii").split("\n")
-    assert all(len(line) <= 120 and line == line.rstrip() for line in lines)
-    names = {node.text.decode("ascii").upper() for node in walk(parse(together)) if node.type == "identifier"}
-    assert names & set(KEYWORDS.split()) == set()
-    longest = b"".join(correction_st_files(CORRECTION, ExportPrefix("TENLETTERS")).values())
-    named = {node.text.decode("ascii") for node in walk(parse(longest)) if node.type == "identifier"}
-    assert all(len(name) <= 32 for name in named), sorted(named, key=len)[-1]
-
-
-def test_a_file_each_unit_holds_the_same() -> None:
-    units = correction_st_unit_files(CORRECTION)
-    assert len(units) == 12
-    assert self_tested(b"\n".join(units.values()).decode("ascii")) == 0

@@ -77,6 +77,7 @@ def decisions(program: Program, readings: npt.NDArray[np.void]) -> npt.NDArray[n
     return found
 
 
+@pytest.mark.requirement("CODE-02")
 def test_hard_readings_are_decided_alike(asked: Questions, program: Program) -> None:
     """Readings on lines and beside them, far off, and no numbers."""
     found = decisions(program, asked.readings)
@@ -95,6 +96,7 @@ def select(program: Program, commands: npt.NDArray[np.void]) -> tuple[npt.NDArra
     return selector["STATUS"].value, cells
 
 
+@pytest.mark.requirement("CODE-02")
 def test_the_choice_is_that_of_python(asked: Questions, program: Program) -> None:
     """Every number of the chosen table: bits, except the sign of 0."""
     statuses, table = select(program, asked.commands)
@@ -114,6 +116,7 @@ def test_every_status_occurs() -> None:
     assert found == {int(status) for status in Status}
 
 
+@pytest.mark.requirement("CODE-02")
 def test_hard_samples_are_estimated_alike(asked: Questions, program: Program) -> None:
     """Speed, alarms and every number of the estimate after each sample of tracks of 100."""
     book = asked.book
@@ -158,6 +161,7 @@ def test_a_loaded_table_has_every_number(asked: Questions, program: Program) -> 
             assert np.array_equal(found, words[place].view(np.float32 if is_real else np.int32)), name
 
 
+@pytest.mark.requirement("CODE-07")
 @pytest.mark.parametrize("stages", [-32768, -1, 0, 6, 32767])
 @pytest.mark.parametrize("powers", [-32768, 0, 5, 32767])
 def test_a_table_that_was_never_loaded_or_is_spoilt_holds(stages: int, powers: int) -> None:

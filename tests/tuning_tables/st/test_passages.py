@@ -13,16 +13,12 @@ import pytest
 
 from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, BEGIN, ON, PAIR, Rows, asked, right
-from tests.controller_code.test_correction_code import CORRECTION
 from tests.effort import FEW, MANY, QUESTIONS, every
 from tests.tuning_tables.st.compiler import ASKED_UNDER, Compiler, name_of
-from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault
-from tests.tuning_tables.st.syntax import faults, parse, walk
-from tests.tuning_tables.st.test_syntax import KEYWORDS
 from tuning_tables import InvalidTable
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_prefix import RETARDER
 from tuning_tables.language.records import st_name
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
@@ -30,14 +26,10 @@ from tuning_tables.passages.sensor_layout import DecidesOn
 from tuning_tables.passages.st_source import (
     SELF_TEST_FILE,
     TABLE_FILE,
-    passage_export,
     passage_st_files,
 )
-from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.programs.tracker import TRACKER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
-from tuning_tables.st_correction import correction_st_files
-from tuning_tables.st_source import st_files
 
 BOOK = passage_book()
 TABLES = BOOK.tables
@@ -93,6 +85,7 @@ def differences(found: Rows, answers: Rows) -> int:
     return int(np.count_nonzero(wrong | (found["tracker"] != answers["tracker"]).any(axis=1)))
 
 
+@pytest.mark.requirement("CODE-02")
 @pytest.mark.parametrize("book", [BOOK, every_axle_book()], ids=["first axle", "every axle"])
 @pytest.mark.parametrize("compiler", ASKED_UNDER, ids=name_of)
 def test_every_question_is_answered_as_by_python(compiler: Compiler, book: PassageBook) -> None:
@@ -197,29 +190,6 @@ def test_a_changed_constant_is_found() -> None:
         other = f"{float(np.nextafter(number, np.float32(np.inf))):.9E}"
         changed = text[:begin] + text[begin:].replace(literal.strip("[],;"), other, 1)
         assert self_tested(f"{changed}\n{test}")[0] >= 1, literal
-
-
-@pytest.mark.long
-def test_the_text_is_plain_and_fits_beside_all_others() -> None:
-    others = [*st_files(shaped_book(3, 1)).values(), *correction_st_files(CORRECTION).values()]
-    together = b"\n".join([*FILES.values(), *others])
-    assert faults(parse(together)) == []
-    assert {"RETARDER_DECIDE", "RETARDER_AT_PULSE"} <= set(Program(together).blocks)
-    lines = b"".join(FILES.values()).decode("ascii").split("\n")
-    assert all(len(line) <= 120 and line == line.rstrip() and "$" not in line for line in lines)
-    names = {node.text.decode("ascii").upper() for node in walk(parse(together)) if node.type == "identifier"}
-    assert names & set(KEYWORDS.split()) == set()
-    longest = b"".join(passage_st_files(BOOK, ExportPrefix("TENLETTERS")).values())
-    named = {node.text.decode("ascii") for node in walk(parse(longest)) if node.type == "identifier"}
-    assert all(len(name) <= 32 for name in named), sorted(named, key=len)[-1]
-    assert b"retarder_" not in longest.lower().replace(b"tenletters", b"")
-
-
-@pytest.mark.long
-def test_a_file_each_unit_holds_the_same() -> None:
-    units = unit_files(passage_export(BOOK, RETARDER, SMALL))
-    assert len(units) == 16 + 4 * len(TABLES) + 3
-    assert self_tested(b"\n".join(units.values()).decode("ascii")) == (0, -1, -1)
 
 
 def test_what_sixteen_bits_do_not_count_is_refused() -> None:

@@ -105,6 +105,7 @@ def another(literal: str) -> str:
     return f"{step:.9E}" if float(literal) else "1.000000000E-01"
 
 
+@pytest.mark.requirement("CODE-06")
 @pytest.mark.parametrize("made", every(2, ["small", "surfaces"]))
 def test_a_small_self_test_finds_every_changed_constant(small_book: TableBook, made: str) -> None:
     """Of a book with approach, slopes and estimators one number of each array, of a small one all."""
@@ -128,6 +129,7 @@ def test_a_small_self_test_finds_every_changed_constant(small_book: TableBook, m
     assert missed == []
 
 
+@pytest.mark.requirement("CODE-06")
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [

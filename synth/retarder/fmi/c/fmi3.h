@@ -34,6 +34,9 @@ typedef void (*fmi3LogMessageCallback)(fmi3InstanceEnvironment, fmi3Status, fmi3
 typedef void (*fmi3AnyCallback)(void); /* the callbacks that these units never call */
 
 /* The name of a function: where units are linked statically, with the prefix that the importing tool gives. */
+#if defined FMI2_FUNCTION_PREFIX && !defined FMI3_FUNCTION_PREFIX
+#define FMI3_FUNCTION_PREFIX FMI2_FUNCTION_PREFIX /* a unit of FMI 2.0 stands on these functions */
+#endif
 #ifdef FMI3_FUNCTION_PREFIX
 #define FMI3_JOINED(prefix, name) prefix##name
 #define FMI3_PREFIXED(prefix, name) FMI3_JOINED(prefix, name)

@@ -204,7 +204,7 @@ FMI3_EXPORT fmi3Status FMI3(EnterInitializationMode)(
 {
     (void)has_tolerance, (void)tolerance, (void)has_end, (void)end_s;
     ((instance *)given)->now.values.time_s = start_s;
-    return lives_on(given, INSTANTIATED, INITIALISING, "fmi3EnterInitializationMode");
+    return lives_on(given, INSTANTIATED, INITIALISING, "EnterInitializationMode");
 }
 
 FMI3_EXPORT fmi3Status FMI3(ExitInitializationMode)(fmi3Instance given)
@@ -212,17 +212,17 @@ FMI3_EXPORT fmi3Status FMI3(ExitInitializationMode)(fmi3Instance given)
     if (begun(given) != fmi3OK) {
         return fmi3Error;
     }
-    return lives_on(given, INITIALISING, STEPPING, "fmi3ExitInitializationMode");
+    return lives_on(given, INITIALISING, STEPPING, "ExitInitializationMode");
 }
 
 FMI3_EXPORT fmi3Status FMI3(EnterStepMode)(fmi3Instance given)
 {
-    return lives_on(given, STEPPING, STEPPING, "fmi3EnterStepMode");
+    return lives_on(given, STEPPING, STEPPING, "EnterStepMode");
 }
 
 FMI3_EXPORT fmi3Status FMI3(Terminate)(fmi3Instance given)
 {
-    return lives_on(given, STEPPING, TERMINATED, "fmi3Terminate");
+    return lives_on(given, STEPPING, TERMINATED, "Terminate");
 }
 
 FMI3_EXPORT fmi3Status FMI3(Reset)(fmi3Instance given)
@@ -251,10 +251,10 @@ FMI3_EXPORT fmi3Status FMI3(DoStep)(fmi3Instance given, double from_s, double st
     *has_event = *terminates = *is_early = false;
     *reached_s = from_s;
     if (unit->now.life != STEPPING) {
-        return refused(unit, "fmi3DoStep: the unit is not initialised, or has been terminated");
+        return refused(unit, "DoStep: the unit is not initialised, or has been terminated");
     }
     if (count == 0) {
-        return refused(unit, "fmi3DoStep: the step is %g s; it must be a whole number of times %g s", step_s,
+        return refused(unit, "DoStep: the step is %g s; it must be a whole number of times %g s", step_s,
             UNIT_PERIOD_S);
     }
     if (within_limits(unit, UNIT_INPUT) != fmi3OK) {
@@ -292,7 +292,7 @@ FMI3_EXPORT fmi3Status FMI3(GetFMUState)(fmi3Instance given, fmi3FMUState *state
         *state = malloc(sizeof(moment));
     }
     if (*state == 0) {
-        return refused(given, "fmi3GetFMUState: there is no memory");
+        return refused(given, "GetFMUState: there is no memory");
     }
     memcpy(*state, &((instance *)given)->now, sizeof(moment));
     return fmi3OK;

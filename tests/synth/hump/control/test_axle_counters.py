@@ -31,6 +31,7 @@ def told(control: HumpControl, *kinds: Kind) -> list[tuple[Kind, int, int, float
     return [(e.kind, e.element, e.cut, e.value) for e in control.log.events if e.kind in kinds]
 
 
+@pytest.mark.requirement("HUMP-04")
 def test_a_cut_that_stays_coupled_is_told_recorded_and_no_longer_awaited() -> None:
     """Cut 2, to track 2, stays on cut 1, to track 1: the switch must then be set for cut 3, to track 1, too."""
     cuts = [record(1, 1), record(2, 2), record(3, 1)]
@@ -84,6 +85,7 @@ def test_the_rest_of_a_cut_may_go_another_way_and_no_counter_waits_for_it(start_
     assert not track.truth.moved_under
 
 
+@pytest.mark.requirement("HUMP-08")
 @pytest.mark.parametrize(
     ("end", "axle", "change", "value"),
     [(ENTRY, 3, 1, 1.0), (ENTRY, 1, -1, -1.0), (1, 2, -1, 1.0), (1, 2, 1, -1.0)],

@@ -31,10 +31,12 @@ from tests.synth.hump.control.made_trains import LONG_M, axle_places, humped, re
 from tests.synth.hump.control.small_hump_trains import TABLE, close_pair, commands, rolling, told
 
 
+@pytest.mark.requirement("HUMP-04")
 def test_a_catch_up_is_told_by_the_counters_too() -> None:
     assert next((e.element, e.cut, e.value) for e in told(close_pair(), Kind.CATCH_UP)) == (1, 2, 1)
 
 
+@pytest.mark.requirement("HUMP-04")
 def test_a_stuck_switch_misroutes_a_cut_and_tells_where_and_why() -> None:
     """Switch 2 lies left and does not move: cut 1 to track 3 goes to track 2."""
     control, _ = humped(TABLE, [record(1, 3)], [rolling(1, 5.0)], [StuckSwitch(2, 0.0, 100.0)])
@@ -74,6 +76,7 @@ def test_a_long_car_over_a_short_section_is_held_by_the_counters_alone() -> None
     assert [(switch, number) for _, switch, number in track.truth.thrown_under] == [(1, 0)]
 
 
+@pytest.mark.requirement("HUMP-01")
 def test_a_falsely_free_section_throws_no_points_under_a_cut() -> None:
     """Cut 1 is on switch 1 from 6.8 s to 12.5 s; the section is told free from 7 s on."""
 
@@ -107,6 +110,7 @@ def test_two_faults_of_one_section_can_deceive() -> None:
         assert not humped(TABLE, cuts, objects, [fault])[1].truth.thrown_under
 
 
+@pytest.mark.requirement("HUMP-01")
 def test_points_are_not_thrown_beside_a_cut_that_stands_short_of_the_fouling_point() -> None:
     """Cut 1 creeps from 60 m to 70 m; its last axle is then at 59.5 m, the fouling points of switch 1 are at 67 m."""
     stands = moving_cut(1, axle_places(1).tolist(), 0.0, [(60.0, 5.0), (70.0, 0.5)])

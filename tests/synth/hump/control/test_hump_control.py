@@ -23,6 +23,7 @@ from tests.synth.hump.control.made_trains import axle_places, humped, record
 from tests.synth.hump.control.small_hump_trains import TABLE, close_pair, commands, rolling, told
 
 
+@pytest.mark.requirement("HUMP-02")
 def test_a_switch_is_set_for_the_next_cut_over_it_as_soon_as_it_is_free() -> None:
     """Cuts to tracks 1, 3, 1, 2: switch 2 is set for cut 2 at once, and for cut 4 when cut 2 has left it."""
     cuts = [record(1, 1), record(2, 3), record(3, 1), record(4, 2)]
@@ -57,6 +58,7 @@ def test_the_signal_shows_hump_until_the_last_cut_is_on_the_first_section() -> N
     assert track.aspects == {201: Aspect.STOP}
 
 
+@pytest.mark.requirement("HUMP-03")
 def test_a_cut_on_an_occupied_switch_follows_its_leader_and_the_switch_stays() -> None:
     control = close_pair(Operation(rules=PUBLISHED_MODEL))
     assert next((e.element, e.cut, e.value) for e in told(control, Kind.NOT_SEPARATED)) == (1, 2, 1)
@@ -66,6 +68,7 @@ def test_a_cut_on_an_occupied_switch_follows_its_leader_and_the_switch_stays() -
     assert control.state.arrived == {1: [2], 2: [2]}
 
 
+@pytest.mark.requirement("HUMP-03")
 def test_a_follower_is_braked_on_the_next_retarder_for_the_least_interval() -> None:
     """Uniform braking from 2.5 m/s over 24 m, 2 s longer: v₂ = 48/(9.6 + 2) − 2.5 m/s, w = (v² − v₂²)/(2·g·24)."""
     control = close_pair()
@@ -142,6 +145,7 @@ def test_a_retarder_brakes_as_its_task_says(task: UniformBraking, told_n: Resist
     assert at == [pytest.approx(begins / 5.0, abs=0.11), pytest.approx(ends / 5.0, abs=0.11)]
 
 
+@pytest.mark.requirement("HUMP-05")
 @pytest.mark.parametrize(("computed", "commanded"), [(9.5, 8.5), (0.1, 0.5), (float("inf"), 8.5), (3.0, 3.0)])
 def test_an_exit_speed_that_cannot_be_is_strobed(computed: float, commanded: float) -> None:
     tasks = {(401, 1): TableBraking(computed)}

@@ -26,6 +26,7 @@ MOST = MachineRecord(**{field: limits(field)[1] for field in WIDTHS})
 RECORDS = st.builds(MachineRecord, **{field: st.integers(*limits(field)) for field in WIDTHS})
 
 
+@pytest.mark.requirement("HUMP-07")
 def test_the_fields_of_s0_make_53_bits() -> None:
     assert sum(WIDTHS.values()) == WORD_BITS == 53
     covered = [shift + bit for field, shift in SHIFTS.items() for bit in range(WIDTHS[field])]
@@ -38,6 +39,7 @@ def test_the_least_record_is_0_and_the_greatest_fills_the_word() -> None:
     assert MOST.word == 2**53 - 1 - 2 ** SHIFTS["rolling_code"]
 
 
+@pytest.mark.requirement("HUMP-07")
 @given(RECORDS)
 def test_a_word_gives_its_record_back(record: MachineRecord) -> None:
     assert 0 <= record.word < 2**53
@@ -100,6 +102,7 @@ def test_rounding_is_at_most_half_a_step(
     assert (made.axle_pairs * 2, made.cars, made.category, made.rolling) == (axles, cars, category, rolling)
 
 
+@pytest.mark.requirement("HUMP-07")
 @pytest.mark.parametrize(
     ("cut", "words"),
     [

@@ -28,6 +28,7 @@ CATCH_UPS = ("catch-ups missed", "catch-ups false")
 UNCOUPLINGS = ("wrong uncouplings missed", "wrong uncouplings false")
 
 
+@pytest.mark.requirement("HUMP-01", "HUMP-04", "HUMP-06")
 @pytest.mark.parametrize("name", SCENES)
 @settings(max_examples=sized(10, 40))
 @given(seed=SEEDS)

@@ -16,6 +16,7 @@ def has_switch(table: RouteTable, track: int, switch: int) -> bool:
     return switch in table.graph.route(table.graph.leads[0], track).positions
 
 
+@pytest.mark.requirement("HUMP-02")
 @pytest.mark.parametrize("seed", range(30))
 def test_the_next_cut_over_a_switch_is_the_first_whose_route_has_it(seed: int) -> None:
     """Also after cuts got other tracks; and a change names the switches of both routes."""

@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from plant_models.hump import Retarder, Route
@@ -20,8 +21,12 @@ from synth.hump.making.short_file import read_short_hump
 from synth.hump.making.short_hump import EXAMPLE
 from synth.hump.making.template import example_short_toml
 from synth.hump.making.track_tree import Fork, Tree, levels_needed, track_tree
+from synth.hump.trains.hump_routes import Mark
+from synth.hump.trains.train_passages import train_passages
+from synth.hump.trains.trial import ConstantSpeed
 from tests.effort import sized
 from tests.synth.hump.making.random_shorts import random_short
+from tests.synth.hump.trains.made_trials import Day
 
 SHORT = """\
 bunches = [5, 6, 5]
@@ -169,3 +174,28 @@ def test_a_made_hump_is_checked_and_trains_run_over_it(tmp_path: Path, capsys: p
 def test_what_a_made_hump_warns_of_is_what_check_warns_of() -> None:
     hump = parse_hump(hump_toml(EXAMPLE, "s.toml"), "hump", "hump.toml")
     assert checked_hump(hump).warnings == ()
+
+
+FLAT = """\
+bunches = [3, 1]
+profile_from_crest = [[0, 6.3], [40, 3], [130, 1], [300, -1]]
+switches_m = [25, 49, 190]
+tracks_from_m = 307
+track_length_m = 285
+[[position]]
+type = "knp-5-bunch"
+from_m = 94
+"""
+
+
+def test_a_long_cut_that_goes_astray_while_it_is_pushed_passes_all_joints_of_its_new_way() -> None:
+    graph = parse_hump(hump_toml(read_short_hump(FLAT, "s.toml"), "s.toml"), "hump", "hump.toml").graph
+    trial = Day(cuts=10, cars_mean=8.0, most_cars=12, program=ConstantSpeed(1.3)).on(graph)
+    trains, _, memory = trial.humped(0, 16)
+    lane, cut = np.nonzero(memory.misrouted_at < memory.time_s.shape[2])
+    came_s = memory.time_s[lane, cut, memory.misrouted_at[lane, cut], Mark.FIRST_IN]
+    assert (came_s < memory.crest_s[lane, cut]).sum() > 10
+    for number in range(16):
+        for way in train_passages(trial.routes, trains, memory, number).ways:
+            came = [passage.in_s[0] for passage in way]
+            assert came == sorted(came)

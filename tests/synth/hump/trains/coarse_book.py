@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -51,14 +52,16 @@ def coarse_classes() -> tuple[TableClass, ...]:
     return table_classes(coarse_tables(), parse_config(PARK, "coarse.toml"), "coarse.toml")
 
 
-def coarse_tables() -> list[ControllerTable]:
+@cache
+def coarse_tables() -> tuple[ControllerTable, ...]:
     """The tables alone."""
-    config, made = parse_config(PARK, "coarse.toml"), []
+    config = parse_config(PARK, "coarse.toml")
+    made: list[ControllerTable] = []
     for label, plant in config.plants():
         setup = class_setup(config, label, plant, validation_passes(config), origin_of(config.sha256, CREATED))
         aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
         made += [from_json(to_json(tuned_table(setup, found).table)) for found in solutions(setup.design, aims)]
-    return made
+    return tuple(made)
 
 
 def estimating(of_class: TableClass) -> TableClass:

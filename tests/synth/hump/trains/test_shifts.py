@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -34,6 +35,12 @@ def shifts_of(share: float = 0.5, trains: int = TRAINS, threads: int = 1) -> Hum
     tracks = dict.fromkeys((1, 2), 1.0)
     day = Day(cuts=12, cars_mean=3.0, most_cars=6, tracks=tracks, program=ConstantSpeed(1.4), threads=threads)
     return replace(day.on("medium"), shift=Shift(trains, share))
+
+
+@cache
+def found_in(shifts: int, trains: int = TRAINS) -> TrainOutcomes:
+    """The trains of so many shifts of `TRAINS` trains, or the same trains in shifts of `trains`."""
+    return shifts_of(trains=trains).batch(0, shifts * TRAINS)
 
 
 class Bookkeeper:
@@ -73,8 +80,8 @@ class Bookkeeper:
 def test_tracks_are_those_of_a_bookkeeper(share: float) -> None:
     """Shift by shift and train by train, where the batch has all shifts side by side."""
     trial = shifts_of(share)
-    found, did = trial.batch(0, 4 * TRAINS), []
-    for shift in range(4):
+    found, did = trial.batch(0, 2 * TRAINS), []
+    for shift in range(2):
         number = shift * TRAINS
         book = None
         for place in range(TRAINS):
@@ -91,7 +98,7 @@ def test_tracks_are_those_of_a_bookkeeper(share: float) -> None:
             assert_same(again(trial, turn, counts), some_of(found, np.array([number + place])))
             did.append(counts)
     balanced(found)
-    assert (found.shift == np.repeat(np.arange(4), TRAINS)).all()
+    assert (found.shift == np.repeat(np.arange(2), TRAINS)).all()
     assert sum(pulled for _, pulled in did) > 0
     assert share < 0.5 or sum(pushed for pushed, _ in did) > 0
 
@@ -103,8 +110,8 @@ def again(trial: HumpTrial, turn: Turn, counts: tuple[int, int]) -> TrainOutcome
 
 
 def test_a_shift_is_the_same_in_any_batch_and_with_any_threads() -> None:
-    whole, trial = shifts_of().batch(0, 6 * TRAINS), shifts_of(threads=2)
-    assert_same(joined([trial.batch(0, TRAINS), trial.batch(TRAINS, 5 * TRAINS)]), whole)
+    whole, trial = found_in(3), shifts_of(threads=2)
+    assert_same(joined([trial.batch(0, TRAINS), trial.batch(TRAINS, 2 * TRAINS)]), whole)
     for number in (0, 13):
         alone = one_train(trial, number)
         assert alone.number == number
@@ -112,7 +119,7 @@ def test_a_shift_is_the_same_in_any_batch_and_with_any_threads() -> None:
 
 
 def test_the_first_train_of_a_shift_is_one_on_tracks_of_its_own() -> None:
-    alone, found = shifts_of(trains=1).batch(0, 3 * TRAINS), shifts_of().batch(0, 3 * TRAINS)
+    alone, found = found_in(3, 1), found_in(3)
     first, others = np.arange(0, 15, TRAINS), np.delete(np.arange(15), np.arange(0, 15, TRAINS))
     for name in ("occupied", "gap_m", "overspeed", "caught", "span_s"):
         np.testing.assert_array_equal(getattr(alone, name)[first], getattr(found, name)[first])
@@ -123,20 +130,20 @@ def test_the_first_train_of_a_shift_is_one_on_tracks_of_its_own() -> None:
 
 
 def test_intervals_are_those_of_whole_shifts() -> None:
-    found = shifts_of().batch(0, 4 * TRAINS)
-    gap = found.gap_m.reshape(4, TRAINS).sum(axis=1), found.judged.reshape(4, TRAINS).sum(axis=1).astype(float)
+    found = found_in(3)
+    gap = found.gap_m.reshape(3, TRAINS).sum(axis=1), found.judged.reshape(3, TRAINS).sum(axis=1).astype(float)
     np.testing.assert_allclose(shift_sums(found, found.gap_m), gap[0])
     told = {figure.name: figure for figure in train_figures(found)}
     figure = told["gap_per_cut"]
     assert (figure.value, figure.low95, figure.high95) == pytest.approx(ratio(*gap), rel=1e-12)
-    assert told["gap_per_cut"].n == 4
+    assert told["gap_per_cut"].n == 3
     assert told["occupied_share"].value == pytest.approx(found.occupied.mean())
     assert told["pulled_per_train"].value == pytest.approx(found.pulled.mean())
-    assert (told["no_room"].value, told["no_room"].n) == (found.no_room.sum() / found.cuts.sum(), 240)
+    assert (told["no_room"].value, told["no_room"].n) == (found.no_room.sum() / found.cuts.sum(), 180)
 
 
 def test_runs_with_and_without_shifts_are_paired_by_shift() -> None:
-    alone, found = shifts_of(trains=1).batch(0, 3 * TRAINS), shifts_of().batch(0, 3 * TRAINS)
+    alone, found = found_in(3, 1), found_in(3)
     (gap,) = (each for each in FIGURES if each.name == "gap_per_cut")
     assert longer_shifts(alone, found) is longer_shifts(found, alone) is found.shift
     assert (shifts_in(alone), shifts_in(found)) == (15, 3)
@@ -150,7 +157,7 @@ def test_runs_with_and_without_shifts_are_paired_by_shift() -> None:
 
 
 def test_the_table_has_a_row_for_each_place() -> None:
-    found = shifts_of().batch(0, 3 * TRAINS)
+    found = found_in(3)
     told = list(rows(found))
     assert [row["trains"] for row in told] == ["1", "2", "3", "4", "5"]
     assert told[1]["occupied_share"].value == pytest.approx(found.occupied[1::TRAINS].mean())

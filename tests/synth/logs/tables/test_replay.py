@@ -51,6 +51,7 @@ def replayed(assumed: Yard, worn: Yard) -> list[Replay]:
     ]
 
 
+@pytest.mark.requirement("LOG-04")
 def test_the_table_that_drove_the_log_commands_the_same_everywhere(assumed: Yard, worn: Yard) -> None:
     passes = fitted(assumed, log_of(assumed, assumed.tables[CASE], 77, 200))
     own = rule_agreement(passes, logged_tables(passes, list(assumed.tables.values())))
@@ -68,6 +69,7 @@ def test_the_table_that_drove_the_log_commands_the_same_everywhere(assumed: Yard
         assert np.array_equal(other.wanted[before][asked_before], passes.log.stage[before][asked_before])
 
 
+@pytest.mark.requirement("LOG-04")
 def test_one_wrong_command_is_found_where_it_is(assumed: Yard) -> None:
     log = log_of(assumed, assumed.tables[CASE], 78, 10)
     stage = log.stage.copy()

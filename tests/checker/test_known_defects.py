@@ -1,0 +1,94 @@
+"""Known defects: the list that ships is in order; `inspect` and `verify` warn of tables that a made-up one concerns."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scripts.documentation.known_defects_page import defects_text
+from synth.cli import main
+from synth.frame import known_defects
+from synth.frame.known_defects import Defect, release
+from tests.tuning_tables.every_kind import smallest_aim, smallest_lines, smallest_points
+from tuning_tables.document import to_document
+
+MADE_UP = Defect(
+    id="RS-0", introduced="0.0.9", fixed=None, kinds=("lines",), unsafe=True, wrong="lines lie 1 m/s too high",
+    effect="cuts leave too fast", detect="validate them", remedy="tune again",
+)  # fmt: skip
+KEYS = [*MADE_UP.__dataclass_fields__]
+
+
+@pytest.fixture(params=[True, False], ids=["unsafe", "safe"])
+def unsafe(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> bool:
+    """Whether the made-up defect, which the program then knows, makes tables unsafe."""
+    listed = {**vars(MADE_UP), "unsafe": request.param}
+    (tmp_path / "defects.json").write_text(json.dumps({"defects": [listed]}), encoding="utf-8")
+    monkeypatch.setattr(known_defects, "PLACE", tmp_path / "defects.json")
+    return bool(request.param)
+
+
+@pytest.mark.requirement("VERIFY-07")
+@pytest.mark.parametrize("name", ["", "book.h5"])
+def test_tables_of_a_version_with_a_defect_are_named(
+    tuned_once: Path, name: str, unsafe: bool, capfd: pytest.CaptureFixture[str]
+) -> None:
+    for words, code in ((("verify", "--passes", "100"), int(unsafe)), (("inspect",), 0)):
+        capfd.readouterr()
+        assert main([*words, str(tuned_once / name)]) == code
+        printed = " ".join(capfd.readouterr().out.split())
+        warning = (
+            f"known defect RS-0{', unsafe' * unsafe}: a version that has it made 2 of these tables: lines lie 1 m/s"
+        )
+        assert warning in printed
+        assert printed.endswith(": nothing found, but made by a version with an unsafe defect") == bool(code)
+        assert main([*words, str(tuned_once / name), "--json"]) == code
+        told = json.loads(capfd.readouterr().out)
+        assert [(each["id"], each["unsafe"], len(each["tables"])) for each in told["known_defects"]] == [
+            ("RS-0", unsafe, 2)
+        ]
+        assert told.get("exit_code", 0) == code
+
+
+@pytest.mark.parametrize(
+    ("made_by", "introduced", "fixed", "is_concerned"),
+    [
+        ("0.1.0", "0.1.0", None, True),
+        ("0.1", "0.1.0", "0.1.1", True),
+        ("0.1.1", "0.1.0", "0.1.1", False),
+        ("0.1.10", "0.1.9", "0.1.11", True),
+        ("0.0.9", "0.1.0", None, False),
+        ("1.0rc1", "1.0", None, True),
+        ("a build of ours", "0.1.0", "0.1.1", True),  # it cannot be told, so it is taken for one that has it
+    ],
+)
+def test_a_defect_concerns_the_versions_that_have_it(
+    made_by: str, introduced: str, fixed: str | None, is_concerned: bool
+) -> None:
+    for kind in ("lines", "passages"):
+        each = Defect(**{**vars(MADE_UP), "introduced": introduced, "fixed": fixed, "kinds": (kind,)})
+        for made in (smallest_lines, smallest_points, smallest_aim):
+            table: dict[str, Any] = to_document(made())
+            table["generator"] = {"name": "retarder-synth", "version": made_by}
+            assert each.concerns(table) == (is_concerned and table["kind"] == kind)
+            assert not each.concerns({**table, "generator": {"name": "another program", "version": made_by}})
+
+
+@pytest.mark.usefixtures("unsafe")
+def test_the_page_has_a_row_for_each() -> None:
+    assert "| RS-0 | from 0.0.9 | lines | " in defects_text()
+
+
+def test_the_list_that_ships_is_in_order() -> None:
+    listed = json.loads(known_defects.PLACE.read_text(encoding="utf-8"))["defects"]
+    assert [each for each in listed if list(each) != KEYS] == []
+    found = known_defects.known_defects()
+    assert len({each.id for each in found}) == len(found)
+    for each in found:
+        assert release(each.introduced)
+        assert each.fixed is None or release(each.introduced) < release(each.fixed)
+        assert set(each.kinds) <= {"lines", "passages", "aim"}
+        assert all(vars(each)[key] for key in KEYS if key not in ("fixed", "unsafe"))
