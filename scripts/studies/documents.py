@@ -3,7 +3,8 @@
 In a checkout docs/studies holds NAME.json, the result of a run with default options, for every study that the
 documentation shows; docs/data/NAME.md holds all its tables, folded (`data_page`). A document shows a table of few rows
 itself: between <!-- study NAME TABLE --> and <!-- end -->. Between <!-- studies --> and <!-- end --> stands the list of
-all studies. Pictures: `document_pictures`; keys of a configuration: `document_keys`.
+all studies. Pictures: `document_pictures`; keys of a configuration: `document_keys`; what crosses
+the cable of `bench`: its `wires`.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from scripts.studies.registry import STUDIES
 from scripts.studies.result import Result, read_result
 from scripts.studies.study import Study
 from synth.frame.input_error import InputError
+from synth.retarder.bench.wires import HEADING, table_rows
 
 PAGES = Path("docs")
 KEPT = PAGES / "studies"
@@ -32,7 +34,8 @@ SOURCES = PAGES / "reference" / "sources.md"
 END = "<!-- end -->"
 
 _MARKED = re.compile(
-    r"<!-- (?:study (?P<study>\S+) (?P<table>\S+)|keys (?P<keys>\S+)|(?P<list>studies)) -->\n(?P<old>.*?)(?=<!-- )",
+    r"<!-- (?:study (?P<study>\S+) (?P<table>\S+)|keys (?P<keys>\S+)|(?P<wires>wires)|(?P<list>studies)) -->\n"
+    r"(?P<old>.*?)(?=<!-- )",
     re.S,
 )
 
@@ -61,6 +64,8 @@ def filled(path: Path, root: Path) -> str:
             raise InputError(f"{path}: the table after {found[0].splitlines()[0]} has no {END} behind it; add it")
         if found["list"]:
             return f"<!-- studies -->\n{listed(path.parent, root)}"
+        if found["wires"]:
+            return f"<!-- wires -->\n{table('wires', HEADING, table_rows()).markdown()}"
         if found["keys"]:
             return f"<!-- keys {found['keys']} -->\n{keys_of(found['keys'], sources)}"
         return (

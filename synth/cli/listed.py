@@ -57,6 +57,15 @@ COMMANDS: Final = (
         "cycles. Exit code 1 if the two responses do not agree.",
     ),
     Listed(
+        "bench",
+        "synth.retarder.bench.command:COMMAND",
+        "synth.retarder.bench.options:BenchOptions",
+        "init",
+        "Play the position in real time to a controller at the end of a cable, and score it.\n\n"
+        "Over Modbus TCP, OPC UA, or both; a browser sees the run. Only this machine can connect unless an address "
+        "says otherwise. Exit code 1 if the exits miss what the tables promise, or the run does not decide it.",
+    ),
+    Listed(
         "explore",
         "synth.retarder.explore.command:COMMAND",
         "synth.retarder.explore.options:ExploreOptions",

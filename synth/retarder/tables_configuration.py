@@ -34,6 +34,13 @@ def configuration_for(path: Path | None, source: Path, tables: Sequence[StageTab
     return load_config(None), BUILT_IN
 
 
+def made_elsewhere(tables: Sequence[StageTable], config: ResolvedConfig, place: str) -> tuple[str, ...]:
+    """A warning where `tables` were made from another configuration than `config`, which messages call `place`."""
+    made = {table.generator.config_sha256 for table in tables}
+    other = f"tables were made from another configuration than {place}; the plant may differ"
+    return () if made == {config.sha256} else (other,)
+
+
 def given_config(text: str, place: str) -> ResolvedConfig | None:
     """The configuration in `text`; None without a file: then the tables tell which one is theirs."""
     from synth.frame.settings.settings_file import BUILT_IN

@@ -13,8 +13,8 @@ from tests.golden.compare import differences
 from tests.golden.orders import INPUTS, ORDERS, Order
 from tests.golden.record import Record, document_of, leaves_of, recorded, records_of, write_inputs
 
-NOT_ASKED = {"study"}
-"""Studies have runs of their own, and go."""
+NOT_ASKED = {"study", "bench"}
+"""Studies have runs of their own, and go; a bench waits for a controller."""
 
 BEFORE = Record(0, "a table\nof 3 rows\n", {"a.png": "01", "old/b.csv": "02"}, {"s.json: rms": 0.25, "s.json: n": 4})
 

@@ -17,15 +17,18 @@ POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsa
 """Of the security of its content."""
 
 
-def scripted_document(title: str, style: str, content: Sequence[Markup], data: object, scripts: Sequence[str]) -> str:
+def scripted_document(
+    title: str, style: str, content: Sequence[Markup], data: object, scripts: Sequence[str], policy: str = POLICY
+) -> str:
     """One document: `content`, then `data` in the element "data", then `scripts` in their order.
 
-    `style` comes behind that of every page. The same arguments give the same text.
+    `style` comes behind that of every page; `policy`: what the browser lets it load. The same arguments give the same
+    text.
     """
     head = element(
         "head",
         element("meta", charset="utf-8"),
-        Markup(f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'),
+        Markup(f'<meta http-equiv="Content-Security-Policy" content="{policy}">'),
         element("meta", name="viewport", content="width=device-width, initial-scale=1"),
         element("title", title),
         element("style", Markup(f"{STYLE}\n{style}")),

@@ -14,7 +14,7 @@ from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import MODEL_ONLY
 from synth.retarder.explore.options import ExploreOptions
-from synth.retarder.tables_configuration import configuration_for, given_config
+from synth.retarder.tables_configuration import configuration_for, given_config, made_elsewhere
 
 if TYPE_CHECKING:
     from synth.retarder.explore.explore_page import PlayedTable
@@ -38,9 +38,7 @@ class Asking:
     @property
     def warnings(self) -> tuple[str, ...]:
         """That the plants may be others than those of the tables."""
-        made = {each.table.generator.config_sha256 for each in self.tables}
-        other = f"tables were made from another configuration than {self.source}; the plant may differ"
-        return () if made == {self.config.sha256} else (other,)
+        return made_elsewhere([each.table for each in self.tables], self.config, self.source)
 
 
 @dataclass(frozen=True)

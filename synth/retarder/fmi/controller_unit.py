@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from synth.retarder.fmi.unit import Unit, c_part
@@ -71,17 +72,22 @@ OUTPUTS: Final = (
 )  # fmt: skip
 
 
+CATEGORY: Final = Variable("category", Kind.INT32, Causality.PARAMETER, "number of the weight category", (1,), low=1,
+                           high=255)  # fmt: skip
+AXLES: Final = Variable("axles", Kind.INT32, Causality.PARAMETER, "axles of the cut", (4,), low=1, high=MOST_AXLES)
+COMMANDED: Final = Variable("commanded_m_s", Kind.FLOAT64, Causality.PARAMETER, "exit speed that is commanded", (0.0,),
+                            "m/s", low=0.0, high=MOST_M_S)  # fmt: skip
+INITIAL_STAGE: Final = Variable("initial_stage", Kind.INT32, Causality.PARAMETER,
+                                "stage that is commanded when the cut comes", (0,), low=0,
+                                high=MOST_STAGES - 1)  # fmt: skip
+
+
 def parameters(book: TableBook) -> tuple[Variable, ...]:
     """What chooses the table; to begin with, the first of the book."""
     first = book.tables[0]
-    category = book.number_of(first.cut.category)
     return (
-        Variable("category", Kind.INT32, Causality.PARAMETER, "number of the weight category", (category,), low=1,
-                 high=255),
-        Variable("axles", Kind.INT32, Causality.PARAMETER, "axles of the cut", (len(first.cut.axle_offsets_m),),
-                 low=1, high=MOST_AXLES),
-        Variable("commanded_m_s", Kind.FLOAT64, Causality.PARAMETER, "exit speed that is commanded",
-                 (float(first.target_speed_m_s),), "m/s", low=0.0, high=MOST_M_S),
-        Variable("initial_stage", Kind.INT32, Causality.PARAMETER, "stage that is commanded when the cut comes", (0,),
-                 low=0, high=MOST_STAGES - 1),
-    )  # fmt: skip
+        replace(CATEGORY, start=(book.number_of(first.cut.category),)),
+        replace(AXLES, start=(len(first.cut.axle_offsets_m),)),
+        replace(COMMANDED, start=(float(first.target_speed_m_s),)),
+        INITIAL_STAGE,
+    )

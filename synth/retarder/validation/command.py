@@ -15,7 +15,7 @@ from synth.frame.processors import available
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY
-from synth.retarder.tables_configuration import configuration_for, given_config
+from synth.retarder.tables_configuration import configuration_for, given_config, made_elsewhere
 from synth.retarder.validation.options import ValidateOptions
 
 if TYPE_CHECKING:
@@ -92,10 +92,8 @@ def resolve(asked: Asked[ResolvedConfig | None, ValidateOptions]) -> AskedPasses
 
 def head(asked: AskedPasses) -> Head:
     """What is said of the configuration, with a word about tables that another one made."""
-    config, source = asked.rehearsal.config, asked.rehearsal.source
-    made = {table.generator.config_sha256 for table in asked.tables}
-    other = f"tables were made from another configuration than {source}; the plant may differ"
-    return head_of(config, () if made == {config.sha256} else (other,))
+    rehearsal = asked.rehearsal
+    return head_of(rehearsal.config, made_elsewhere(asked.tables, rehearsal.config, rehearsal.source))
 
 
 def steps(asked: AskedPasses) -> Steps:

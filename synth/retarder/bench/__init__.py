@@ -1,0 +1,1 @@
+"""The simulated position in real time at the other end of a controller's cable."""
