@@ -63,7 +63,8 @@ def used(python: str, wheel: Path, limits: Path, work: Path) -> str:
     programs = environment(python, work / "bare", wheel, "-c", limits)
     program = programs / "retarder-synth"
     ran([program, "qualify", "-o", "qualified", "-q"], work)
-    checks = json.loads((work / "qualified" / "summary.json").read_text(encoding="utf-8"))["tables"]["checks"]
+    tables = json.loads((work / "qualified" / "summary.json").read_text(encoding="utf-8"))["tables"]
+    checks, content = tables["checks"], tables["versions"][0]["sha256"]
     if checks[0]["outcome"] != "passed":
         raise ReleaseFault(f"{python}: {checks[0]['what']}: {checks[0]['found']}")
     ran([program, "tune", "qualified/estimated/configuration.toml", "-o", "tuned", "-q"], work)
@@ -74,7 +75,9 @@ def used(python: str, wheel: Path, limits: Path, work: Path) -> str:
     (table,) = (work / "export-json").glob("*.json")
     answer = ran([alone / "python", "-I", "-c", NUMPY_ALONE, table], work).strip()
     version = re.sub(r"\s+", " ", ran([programs / "python", "--version"], work)).strip()
-    return f"{version}: {len(checks)} checks, {', '.join(counted(checks))}; with numpy alone: {answer}"
+    return (
+        f"{version}: {len(checks)} checks, {', '.join(counted(checks))}; content {content}; with numpy alone: {answer}"
+    )
 
 
 def counted(checks: list[dict[str, str]]) -> Iterator[str]:

@@ -10,6 +10,7 @@ from synth.cli.qualification.options import QualifyOptions
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.settings.output import OutputSettings
+from synth.retarder.exit_figures import NOT_CERTIFIED
 
 if TYPE_CHECKING:
     from synth.cli.qualification.qualified import Qualified
@@ -20,7 +21,7 @@ LIMITS_OF_USE: Final = (
     "the model is true of your retarder, only the track says.",
     "The independent program shares no code with the rest, but its authors.",
     "No compiler, processor or runtime of the controller itself took part: run the self-test there.",
-    "The tool is not certified and claims no safety integrity.",
+    NOT_CERTIFIED,
 )
 
 

@@ -1,4 +1,4 @@
-"""The compiled kernels against their plain text, and the predictions that they make against simulated passes."""
+"""The small books as the compiled kernels make them, and as their plain text does."""
 
 from __future__ import annotations
 
@@ -27,5 +27,5 @@ def plain_checks(books: Sequence[Tuned], plain: Sequence[Tuned]) -> Iterator[Che
             continue
         names = sorted(book.content.keys() | other.content.keys())
         unlike = [name for name in names if book.content.get(name) != other.content.get(name)]
-        found = f"{len(names)} files; {f'other bytes: {chr(44).join(unlike)}' if unlike else 'all equal'}"
-        yield checked(what, how, found, limit, not unlike)
+        told = f"other bytes: {', '.join(unlike)}" if unlike else "all equal"
+        yield checked(what, how, f"{len(names)} files; {told}", limit, not unlike)
