@@ -17,7 +17,7 @@ ENTRY: Final = (sys.executable, "-P", "-c", "from synth.cli import script; scrip
 EPOCH: Final = "1700000000"
 """The creation date of all files that are made, in seconds since 1970, so that equal tables are equal files."""
 
-LONGEST_S: Final = 900.0
+LONGEST_S: Final = 3600.0
 
 
 @dataclass(frozen=True)
