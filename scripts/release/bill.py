@@ -24,7 +24,7 @@ def billed(root: Path, python: str, bare: Path, work: Path, into: Path) -> str:
     """Write the bill of the environment `bare` in CycloneDX, and the licences; `ReleaseFault` where one is unknown."""
     programs = environment(python, work / "bill", TOOL)
     path = into / BILL
-    program = [programs / "cyclonedx-py", "environment", "--output-reproducible", "--of", "JSON"]
+    program: list[str | Path] = [programs / "cyclonedx-py", "environment", "--output-reproducible", "--of", "JSON"]
     ran([*program, "--pyproject", root / "pyproject.toml", "-o", path, bare / "bin" / "python"], work)
     components: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["components"]
     unknown = [each["name"] for each in components if not each.get("licenses")]
