@@ -102,7 +102,8 @@ def imports() -> nx.DiGraph:
         for other in found.find_modules_directly_imported_by(module)
         if other in modules and other != module
     )
-    graph.add_edges_from(("cli", each.place.split(".")[1]) for each in (*COMMANDS, *HUMP))
+    listed = {each.place.split(".")[1] for each in (*COMMANDS, *HUMP)}
+    graph.add_edges_from(("cli", room) for room in listed if room != "cli")
     return graph
 
 

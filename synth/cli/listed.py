@@ -48,6 +48,16 @@ COMMANDS: Final = (
         "configuration.",
     ),
     Listed(
+        "qualify",
+        "synth.cli.qualification.command:COMMAND",
+        "synth.cli.qualification.options:QualifyOptions",
+        "",
+        "Check this installation, and leave a page and a JSON document for a safety case.\n\n"
+        "Files against their hashes, kernels against their plain text, a small tune against kept bytes, the second "
+        "program, the second simulator, and the self-tests with the compilers that are found. Exit code 1 if a check "
+        "failed; what could not be checked is told.",
+    ),
+    Listed(
         "loop",
         "synth.retarder.loops.command:COMMAND",
         "synth.retarder.loops.options:LoopOptions",

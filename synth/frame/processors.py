@@ -1,8 +1,13 @@
-"""How many processors there are to work on."""
+"""The processors that there are to work on: how many, and what they are."""
 
 from __future__ import annotations
 
 import os
+import platform
+from pathlib import Path
+from typing import Final
+
+CPUINFO: Final = Path("/proc/cpuinfo")
 
 
 def available() -> int:
@@ -10,3 +15,12 @@ def available() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+def processor_name(cpuinfo: Path = CPUINFO) -> str:
+    """The processor's own name for itself where the system tells it, else its kind."""
+    if cpuinfo.is_file():
+        for line in cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()

@@ -63,6 +63,7 @@ ORDERS: tuple[Order, ...] = (
     Order("tune any-time.toml --workers 1", "any-time"),
     Order(f"validate {BOOK} {PARK} --log log.h5 --log-passes 150", "validated"),
     Order(f"verify {BOOK}", "verified"),
+    Order("qualify", "qualified"),
     Order(f"inspect {BOOK} {PARK}", "pictures"),
     Order(f"explore {BOOK} {PARK}", "explored"),
     Order(f"loop {BOOK} {PARK}", "loops"),

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import time
-from pathlib import Path
 
-from scripts.studies.timing.machine import processor_name, this_machine
 from scripts.studies.timing.turns import Ratio, Times, in_turns, speed_against, timed
 
 
@@ -28,11 +26,3 @@ def test_ratios_are_of_one_round() -> None:
     base, other = Times((2.0, 8.0, 3.0), (0.0,) * 3), Times((1.0, 4.0), (0.0,) * 2)
     assert speed_against(base, other) == Ratio(2.0, 2.0, 2.0, 2)
     assert Ratio(17.46, 15.8, 123.4, 15).cell == "17.5 (15.8 to 123, n = 15)"
-
-
-def test_the_processor_names_itself(tmp_path: Path) -> None:
-    told = tmp_path / "cpuinfo"
-    told.write_text("processor : 0\nmodel name\t: A Processor of 3 GHz\n", encoding="utf-8")
-    assert processor_name(told) == "A Processor of 3 GHz"
-    assert processor_name(tmp_path / "none")
-    assert this_machine().cores >= 1

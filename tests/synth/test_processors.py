@@ -1,12 +1,13 @@
-"""Commands find out how many threads to take on every system."""
+"""Commands find out on every system how many threads to take, and what the processor is."""
 
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 
-from synth.frame.processors import available
+from synth.frame.processors import available, processor_name
 
 
 def test_as_many_as_this_process_may_use(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -20,3 +21,10 @@ def test_all_where_the_system_does_not_tell(monkeypatch: pytest.MonkeyPatch) -> 
     assert available() == 8
     monkeypatch.setattr(os, "cpu_count", lambda: None)
     assert available() == 1
+
+
+def test_the_processor_names_itself(tmp_path: Path) -> None:
+    told = tmp_path / "cpuinfo"
+    told.write_text("processor : 0\nmodel name\t: A Processor of 3 GHz\n", encoding="utf-8")
+    assert processor_name(told) == "A Processor of 3 GHz"
+    assert processor_name(tmp_path / "none")

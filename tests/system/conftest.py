@@ -10,34 +10,10 @@ from pathlib import Path
 import pytest
 
 from synth.cli import main
+from synth.cli.qualification.tuned import ESTIMATED, problem
 from tests.corpus import Corpus, Recipe
 
-CLASS = """\
-[position]
-name = "rnz-2m-park"
-[entry]
-high_m_s = 4.0
-[targets]
-exit_speeds_m_s = [1.5]
-[grid]
-path_step_m = 1.0
-speed_step_m_s = 0.04
-transient_step_s = 0.05
-friction_scenarios = 3
-resistance_scenarios = 1
-[fit]
-degree = 2
-[validation]
-passes = 1000
-[acceptance]
-prediction_ratio_low = 0.8
-prediction_ratio_high = 1.35
-[output]
-csv = true
-[[cut]]
-car = "gondola-4"
-mass_t = 22
-"""
+CLASS = f"[output]\ncsv = true\n{problem(ESTIMATED)}"
 """A park retarder, one light class and one target: solved in two seconds."""
 
 

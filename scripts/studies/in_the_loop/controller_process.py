@@ -15,13 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scripts.studies.in_the_loop.held_words import table_words
+from synth.cli.qualification.c_code import CONTRACT as CONTRACT
 from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SelfTestSize
 from tuning_tables.table_book import TableBook
-
-CONTRACT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-ffreestanding")
-"""What the exported files must compile with (design/03-interfaces.md)."""
 
 EXPORTED = ("retarder_table.c", "retarder_self_test.c")
 TIMEOUT_S = 300.0

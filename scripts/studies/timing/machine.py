@@ -6,9 +6,8 @@ import os
 import platform
 from dataclasses import dataclass
 from importlib.metadata import version
-from pathlib import Path
 
-CPUINFO = Path("/proc/cpuinfo")
+from synth.frame.processors import available, processor_name
 
 
 @dataclass(frozen=True)
@@ -37,18 +36,9 @@ def this_machine() -> Machine:
     return Machine(
         processor=processor_name(),
         system=f"{platform.system()} {platform.machine()}",
-        cores=len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
+        cores=available(),
         load_before=round(os.getloadavg()[0], 2),
         python=platform.python_version(),
         numpy=version("numpy"),
         numba=version("numba"),
     )
-
-
-def processor_name(cpuinfo: Path = CPUINFO) -> str:
-    """The processor's own name for itself where the system tells it, else its kind."""
-    if cpuinfo.is_file():
-        for line in cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines():
-            if line.startswith("model name"):
-                return line.partition(":")[2].strip()
-    return platform.processor() or platform.machine()

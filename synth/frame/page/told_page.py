@@ -77,7 +77,8 @@ def sections(
         content = chapter_content(chapter, pictures)
         if content:  # all of it may stand on the first screen
             yield anchor_of(chapter), chapter.heading, content
-    yield "parameters", "Parameters", parameter_section(told.head.parameters)
+    if told.head.parameters:
+        yield "parameters", "Parameters", parameter_section(told.head.parameters)
     if told.limits_of_use:
         yield "limits", "Limits of use", element("ul", *(element("li", each) for each in told.limits_of_use))
     yield "files", "Files", file_table(hashes)

@@ -1,0 +1,1 @@
+"""All checks of a release, and the files that are released: `scripts/release_check`."""

@@ -1,0 +1,123 @@
+"""Each check passes on a sound book, fails on one with a fault, and says why it could not be made."""
+
+from __future__ import annotations
+
+import json
+import platform
+import shutil
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from synth.cli.qualification import structured_text
+from synth.cli.qualification.c_code import COMPILERS, c_checks, fault_check, self_test
+from synth.cli.qualification.check import Outcome
+from synth.cli.qualification.golden import OTHER_PROCESSOR, Golden, golden_check, golden_of, kept
+from synth.cli.qualification.kernels import plain_checks, tune_checks
+from synth.cli.qualification.program import Ran
+from synth.cli.qualification.second_program import (
+    CODE,
+    loop_check,
+    planted,
+    planted_checks,
+    prediction_check,
+    verify_check,
+    with_other_number,
+)
+from synth.cli.qualification.tuned import ESTIMATED, KINDS, MEASURED, Tuned
+
+Books = Mapping[str, Tuned]
+FAILED = Tuned(ESTIMATED, Path("nowhere"), Ran(70, "", "a fault"), {})
+
+
+def with_rms(book: Tuned, factor: float) -> Tuned:
+    """A book whose table predicts another rms."""
+    name, content = next(iter(book.tables.items()))
+    document = json.loads(content)
+    document["predicted"]["rms_m_s"] *= factor
+    return replace(book, content={**book.content, name: json.dumps(document).encode()})
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_kept_bytes_are_those_that_are_made(books: Books, kind: str) -> None:
+    """Who changes tables on purpose runs `tests.qualification.keep`. Only processors of x86 are kept."""
+    check = golden_check(books[kind], kept()[kind])
+    assert check.outcome is Outcome.PASSED, check.found
+    if platform.machine() == "x86_64":
+        assert check.found.startswith("the bytes of processors"), f"{check.found}; python -m tests.qualification.keep"
+
+
+@pytest.mark.parametrize(("factor", "outcome"), [(0.5, Outcome.PASSED), (1.5, Outcome.FAILED)])
+def test_other_bytes_are_held_to_the_figures(books: Books, factor: float, outcome: Outcome) -> None:
+    book = books[MEASURED]
+    golden = Golden({"of some kind": "0" * 64}, golden_of(book).rms_m_s)
+    check = golden_check(with_rms(book, 1.0 + factor * OTHER_PROCESSOR), golden)
+    assert check.outcome is outcome
+    assert "other bytes" in check.found
+
+
+def test_the_version_that_wrote_a_table_changes_no_hash(books: Books) -> None:
+    book = books[MEASURED]
+    name, content = next(iter(book.tables.items()))
+    document = json.loads(content)
+    document["generator"]["version"] = "9.9"
+    other = replace(book, content={**book.content, name: json.dumps(document).encode()})
+    assert other.sha256 == book.sha256 != with_rms(book, 1.01).sha256
+
+
+def test_an_unequal_file_of_the_plain_text_is_told(books: Books) -> None:
+    book = books[MEASURED]
+    (check,) = plain_checks([book], [replace(book, content={**book.content, "book.h5": b""})])
+    assert check.outcome is Outcome.FAILED
+    assert check.found.endswith("other bytes: book.h5")
+    assert [check.outcome for check in plain_checks([book], [book])] == [Outcome.PASSED]
+
+
+def test_a_tune_that_failed_is_told_and_nothing_is_said_of_its_book() -> None:
+    (check,) = tune_checks([FAILED])
+    assert (check.outcome, check.found) == (Outcome.FAILED, "exit code 70: a fault")
+    others = [
+        *plain_checks([FAILED], [FAILED]), prediction_check(FAILED), verify_check(FAILED), loop_check(FAILED),
+        *planted_checks(FAILED), *c_checks(FAILED), *structured_text.st_checks(FAILED),
+    ]  # fmt: skip
+    assert {check.outcome for check in others} == {Outcome.NOT_CHECKED}
+
+
+def test_the_second_program_confirms_a_book_and_finds_what_is_planted(books: Books) -> None:
+    for check in (verify_check(books[MEASURED]), *planted_checks(books[ESTIMATED])):
+        assert check.outcome is Outcome.PASSED, check.found
+    unchanged = planted("nothing", "", books[ESTIMATED], {})
+    assert unchanged.outcome is Outcome.FAILED
+
+
+def test_a_prediction_outside_its_limits_fails(books: Books) -> None:
+    assert prediction_check(books[MEASURED]).outcome is Outcome.PASSED
+    assert prediction_check(with_rms(books[MEASURED], 1.2)).outcome is Outcome.FAILED
+
+
+@pytest.mark.skipif(shutil.which(COMPILERS[0]) is None, reason="no C compiler")
+def test_the_self_test_of_c_is_run_and_finds_a_changed_number(books: Books, tmp_path: Path) -> None:
+    code = {Path(name).name: content for name, content in books[ESTIMATED].content.items() if name.startswith("c/")}
+    assert self_test(COMPILERS[0], "-O0", code, tmp_path / "sound") == "fault 0 at 0"
+    assert fault_check(COMPILERS[0], code, tmp_path).outcome is Outcome.PASSED
+    broken = {**code, Path(CODE).name: b"#error"}
+    assert "#error" in self_test(COMPILERS[0], "-O0", broken, tmp_path / "broken")
+
+
+def test_one_number_is_changed(books: Books) -> None:
+    code = books[ESTIMATED].content[CODE]
+    other = with_other_number(code)
+    assert len(other) == len(code)
+    assert sum(a != b for a, b in zip(other, code, strict=True)) == 1
+
+
+def test_compilers_that_are_not_there_are_told(books: Books, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "")
+    found = [*c_checks(books[ESTIMATED]), *structured_text.st_checks(books[ESTIMATED])]
+    assert [(check.outcome, check.found) for check in found] == [
+        (Outcome.NOT_CHECKED, "not on PATH: gcc, clang"),
+        (Outcome.NOT_CHECKED, "not on PATH: iec2c"),
+    ]
+    assert all(check.remedy for check in found)
