@@ -45,6 +45,11 @@ def mutant(content: bytes, dice: random.Random, text: bool) -> bytes:
     return content
 
 
+def changed_text(content: bytes, dice: random.Random) -> bytes:
+    """The mutant of a text."""
+    return mutant(content, dice, text=True)
+
+
 def bytes_changed(content: bytes, dice: random.Random) -> bytes:
     """A bit is flipped; or bytes in a row are replaced, taken out, put in, or moved; or the end is cut off."""
     at, size = dice.randrange(len(content) + 1), dice.choice((1, 1, 2, 4, 8, 40))
