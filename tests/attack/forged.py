@@ -20,6 +20,7 @@ Edit = Callable[[h5py.File, str, random.Random], None]
 FLOATS: Final = (0.0, -0.0, -1.0, float("nan"), float("inf"), -float("inf"), 1e308, 1e30, 5e-324, 1.0, 1e9)
 TEXTS: Final = (b"", b"x", b"x" * 3000, b"../../etc/passwd", b"a\nb", b"\xff", b"a\x00b", b"=1+1", "\u202e".encode())
 DTYPES: Final = ("<f4", "<f8", ">f8", "<f2", "<i1", "<i4", ">i8", "<u8", "|b1", "S5", "S70", "<c16")
+MOST: Final = 2**24
 SIZES: Final = (2**20, 2**28, 2**34, 2**60)
 """Entries that a dataset claims to have."""
 
@@ -39,6 +40,8 @@ def forged(content: bytes, dice: random.Random) -> bytes:
     image = io.BytesIO(content[:-SEAL_BYTES] if sealed else content)
     with h5py.File(image, "r+") as file:
         for _ in range(dice.choice((1, 1, 1, 2, 3))):
+            if any(isinstance(each, h5py.Dataset) and (each.size or 0) > MOST for each in map(file.get, file)):
+                break  # it claims more than may be read to change it once more
             name = dice.choice(sorted(file))
             dice.choice(EDITS if isinstance(file.get(name), h5py.Dataset) else (attribute,))(file, name, dice)
         with suppress(TypeError, OSError, RuntimeError, MemoryError):  # what is no column any more has no sum
@@ -148,9 +151,7 @@ def link(file: h5py.File, name: str, dice: random.Random) -> None:
         case 4:
             file[name] = np.dtype("<f8")
         case 5:
-            other = dice.choice(others)
-            if other in file:
-                file[name] = file[other]
+            file[name] = file.get(dice.choice(others)) or file["/"]
         case 6:
             layout = h5py.VirtualLayout(shape=kept[0], dtype="<f8")
             file.create_virtual_dataset(name, layout, fillvalue=dice.choice((0.0, 1.0)))
@@ -165,7 +166,7 @@ def storage(file: h5py.File, name: str, dice: random.Random) -> None:
 
 def attribute(file: h5py.File, name: str, dice: random.Random) -> None:
     """An attribute, of the file or of the dataset, is another one, missing or new."""
-    owner = dice.choice((file, file[name])) if name in file else file
+    owner = dice.choice((file, file.get(name) or file))
     key = dice.choice((*sorted(set(owner.attrs) - {"payload_sha256"}), "surplus"))
     value = dice.choice(
         (None, 0, -1, 2, 2**63 - 1, 1.5, float("nan"), "", "x", "x" * 5000, b"\xff", "a\nb", [1, 2], ["m", "s"], [])

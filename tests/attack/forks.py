@@ -7,13 +7,15 @@ import resource
 import signal
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from synth.cli import main
+from tests.golden.orders import ORDERS
+from tests.golden.record import recorded, write_inputs
 
 FEWEST_S: Final = 0.002
 """Between two looks at the process."""
@@ -47,6 +49,15 @@ class Limits:
     file_bytes: int | None = None
 
 
+def prepared(folder: Path) -> None:
+    """Run the golden commands in `folder`, but those whose results are there."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_inputs(folder)
+    for order in ORDERS:
+        if order.output and not (folder / order.output).exists():
+            recorded(order, folder)
+
+
 def warmed(words: Sequence[str], folder: Path) -> int:
     """Give the command in this process, so that its forks have loaded all that it needs; its exit code."""
     before = Path.cwd()
@@ -58,18 +69,12 @@ def warmed(words: Sequence[str], folder: Path) -> int:
         os.chdir(before)
 
 
-def forked(
-    words: Sequence[str],
-    folder: Path,
-    stroke: Stroke | None = None,
-    limits: Limits | None = None,
-    before: Callable[[], None] | None = None,
-) -> Ended:
-    """Give the command `words` in `folder`; `before` is called in its process first."""
+def forked(words: Sequence[str], folder: Path, stroke: Stroke | None = None, limits: Limits | None = None) -> Ended:
+    """Give the command `words` in `folder`."""
     out, err = folder / ".out", folder / ".err"
     started, child = time.monotonic(), os.fork()
     if child == 0:
-        run(words, folder, (out, err), limits or Limits(), before)
+        run(words, folder, (out, err), limits or Limits())
     ends = [(started + (limits or Limits()).clock_s, signal.SIGKILL)]
     ends += [] if stroke is None else [(started + stroke.after_s, stroke.number)]
     while True:
@@ -85,9 +90,7 @@ def forked(
     return Ended(code, out.read_text(errors="replace"), err.read_text(errors="replace"), seconds)
 
 
-def run(
-    words: Sequence[str], folder: Path, streams: Sequence[Path], limits: Limits, before: Callable[[], None] | None
-) -> None:
+def run(words: Sequence[str], folder: Path, streams: Sequence[Path], limits: Limits) -> None:
     """The child: it never returns."""
     code = 99
     try:
@@ -97,8 +100,6 @@ def run(
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
         os.chdir(folder)
         limit(limits)
-        if before is not None:
-            before()
         code = main(list(words))
         sys.stdout.flush()
         sys.stderr.flush()

@@ -1,7 +1,7 @@
-"""Kill every command at random moments: `python -m tests.attack.kills --kills 20`.
+"""Kill every command at random moments: `python -m tests.attack.kills FOLDER --kills 20`.
 
 What is killed leaves each of its files whole or not at all; the same command then makes the same bytes as one that
-nobody disturbed. The inputs come from a folder in which the golden commands were run (`tests.golden`).
+nobody disturbed. The inputs are what the golden commands leave in a folder, where they are run once.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from typing import Final
 from synth.frame.held_directory import LOCK
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import LEFTOVER, SUMMARY
-from tests.attack.forks import Ended, Limits, Stroke, contents, forked, warmed
+from tests.attack.forks import Ended, Limits, Stroke, contents, forked, prepared, warmed
 from tests.golden.orders import ORDERS, Order
 from tests.golden.record import SURROUNDINGS
 
@@ -50,6 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Print a line for each command; 1 if there is a fault."""
     asked = parser().parse_args(arguments)
     os.environ |= SURROUNDINGS
+    prepared(asked.inputs)
     chosen = [
         each for each in ORDERS if each.output and any(each.words.startswith(word) for word in asked.only or ("",))
     ]
@@ -67,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def parser() -> argparse.ArgumentParser:
     """What may be asked for."""
     asked = argparse.ArgumentParser(prog="python -m tests.attack.kills", description=__doc__)
-    asked.add_argument("inputs", type=Path, help="a folder in which the golden commands were run")
+    asked.add_argument("inputs", type=Path, help="a folder that keeps what the golden commands leave")
     asked.add_argument("--only", action="append", default=None, help="commands that begin so; may be given repeatedly")
     asked.add_argument("--kills", type=int, default=20, help="of each command")
     asked.add_argument("--by", choices=tuple(ENDS), default="kill", help="how each is disturbed")

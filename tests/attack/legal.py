@@ -32,6 +32,8 @@ NUMBER: Final = r"-?\d[\d.]*(?:e[+-]?\d+)?"
 LIMITS: Final = re.compile(rf"; ({NUMBER}) to ({NUMBER});")
 WORDS: Final = re.compile(r"; (?:one of )?([\w-]+(?:, [\w-]+)* or [\w-]+|[\w-]+(?:, [\w-]+)+)(?:,|;|$)")
 NO_FIGURE: Final = re.compile(r"\b(?:nan|NaN|[Ii]nf|Infinity)\b")
+NO_NUMBER: Final = re.compile(r"\bnan\b", re.IGNORECASE)
+"""In a sheet, where inf says never."""
 EFFORT: Final = re.compile(
     "passes|seed|path_step_m|speed_step_m_s|transient_step_s|.*_scenarios|path_levels|degree|number|cuts|design_cuts|"
     "draws|sobol_points|simulated_requests|shift_trains|threads|choices|step_m_s"
@@ -200,12 +202,13 @@ def faults_of(ended: Ended, folder: Path) -> Iterator[str]:
             yield f"{len(line)} letters: {line[:LONGEST]!r}"
         elif NO_FIGURE.search(line):
             yield f"printed: {line}"
-    if ended.code == 2 and not ended.err.startswith("retarder-synth: "):
+    if ended.code == 2 and not ended.err.splitlines()[-1].startswith("retarder-synth: "):
         yield f"refused without a sentence: {ended.err!r}"
     if ended.code in (0, 1):
         for name, content in contents(folder / "out").items():
             if "golden" not in name and name.endswith((".json", ".csv", ".html", ".toml", ".svg", ".xml")):
-                found = NO_FIGURE.search(without_script(content.decode()))
+                wrong = NO_NUMBER if name.endswith(".csv") else NO_FIGURE
+                found = wrong.search(without_script(content.decode()))
                 if found:
                     yield f"{name} has {found[0]}: {content.decode()[max(found.start() - 80, 0) : found.end() + 40]!r}"
 

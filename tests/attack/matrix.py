@@ -1,4 +1,4 @@
-"""Every command with every kind of file: `python -m tests.attack.matrix FOLDER`, in which the golden commands were run.
+"""Every command with every kind of file: `python -m tests.attack.matrix FOLDER`, where the golden commands are run once.
 
 Wrong kinds are refused in one sentence, and no command takes for right what is none: a run that ends well is listed.
 """
@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Final
 
 from tests.attack.attempt import LONGEST
-from tests.attack.forks import Ended, Limits, forked
+from tests.attack.forks import Ended, Limits, forked, prepared
 from tests.golden.record import SURROUNDINGS
 
 FILE: Final = "{}"
@@ -54,6 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Print every fault, and each run that ended well; 1 if there is a fault."""
     asked = parser().parse_args(arguments)
     os.environ |= SURROUNDINGS
+    prepared(asked.inputs)
     counts: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -79,7 +80,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def parser() -> argparse.ArgumentParser:
     """What may be asked for."""
     asked = argparse.ArgumentParser(prog="python -m tests.attack.matrix", description=__doc__)
-    asked.add_argument("inputs", type=Path, help="a folder in which the golden commands were run")
+    asked.add_argument("inputs", type=Path, help="a folder that keeps what the golden commands leave")
     asked.add_argument("--number", type=int, default=10_000, help="of pairs, drawn at random; all unless given")
     asked.add_argument("--seed", type=int, default=0)
     return asked
@@ -125,7 +126,7 @@ def nonsense(folder: Path) -> Iterator[str]:
         "x" * 300,
         "x/" * 3000,
         "a\u202eb",
-        "\ud800",
+        "\udcff",
         "~",
         "a\x01b",
     )

@@ -75,10 +75,15 @@ def in_document(document: dict[str, Any], dice: random.Random) -> dict[str, Any]
     return document
 
 
+def whole_number(digits: str) -> float:
+    """As canonical JSON tells it: beyond 2^53 it is a float."""
+    return int(digits) if abs(int(digits)) < 2**53 else float(digits)
+
+
 def sealed_change(content: bytes, dice: random.Random) -> bytes:
     """A table whose document is changed."""
     try:
-        return sealed(in_document(json.loads(content), dice))
+        return sealed(in_document(json.loads(content, parse_int=whole_number), dice))
     except (ValueError, TypeError):  # no JSON can hold it
         return content
 
