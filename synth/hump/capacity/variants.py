@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
@@ -75,8 +74,8 @@ def key_values(words: str) -> KeyValues:
 def value_of(word: str) -> Any:
     """A number, a truth value, or the word itself."""
     try:
-        found = tomllib.loads(f"value = {word}")["value"]
-    except (ValueError, RecursionError):  # no TOML, a number of thousands of digits, thousands of brackets
+        found = toml_tree(f"value = {word}", "--set")["value"]
+    except InputError:
         return word
     return found if isinstance(found, bool | int | float | str) else word
 
