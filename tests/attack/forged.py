@@ -43,7 +43,9 @@ def forged(content: bytes, dice: random.Random) -> bytes:
             if any(isinstance(each, h5py.Dataset) and (each.size or 0) > MOST for each in map(file.get, file)):
                 break  # it claims more than may be read to change it once more
             name = dice.choice(sorted(file))
-            dice.choice(EDITS if isinstance(file.get(name), h5py.Dataset) else (attribute,))(file, name, dice)
+            edit = dice.choice(EDITS if isinstance(file.get(name), h5py.Dataset) else (attribute,))
+            with suppress(KeyError, OSError, RuntimeError, TypeError, ValueError):  # HDF5 refuses this one after that
+                edit(file, name, dice)
         with suppress(TypeError, OSError, RuntimeError, MemoryError):  # what is no column any more has no sum
             correct_payload(file, {})
     body = image.getvalue()
@@ -90,13 +92,12 @@ def dtype(file: h5py.File, name: str, dice: random.Random) -> None:
     """All entries are of another type."""
     kept = as_stored(file, name)
     values = np.ones(file[name].shape, dtype=dice.choice(DTYPES))
-    made = {
+    others: dict[int, Callable[[], Any]] = {
         0: lambda: np.full(file[name].shape, "x", dtype=h5py.string_dtype()),
         1: lambda: np.full(file[name].shape, file.ref, dtype=h5py.ref_dtype),
         2: lambda: np.zeros(file[name].shape, dtype=[("a", "<f8"), ("b", "<i4")]),
-        3: lambda: h5py.Empty("<f8"),
-    }.get(dice.randrange(10), lambda: values)
-    replaced(file, name, made(), kept)
+    }
+    replaced(file, name, others.get(dice.randrange(10), lambda: values)(), kept)
 
 
 def shape(file: h5py.File, name: str, dice: random.Random) -> None:

@@ -1,4 +1,4 @@
-"""Every command with every kind of file: `python -m tests.attack.matrix FOLDER`, where the golden commands are run once.
+"""Every command with every kind of file: `python -m tests.attack.matrix FOLDER`; golden commands are run there once.
 
 Wrong kinds are refused in one sentence, and no command takes for right what is none: a run that ends well is listed.
 """

@@ -68,7 +68,7 @@ def test_a_damaged_hdf5_log_is_told(tmp_path: Path, place: int) -> None:
         read_events(path)
 
 
-def claims(shape: tuple[int], **storage: Any) -> Callable[[h5py.File], None]:
+def claims(shape: tuple[int, ...], **storage: Any) -> Callable[[h5py.File], None]:
     def edit(file: h5py.File) -> None:
         file.create_dataset("data", shape=shape, dtype="<f8", **storage)
 
