@@ -75,7 +75,7 @@ def forked(words: Sequence[str], folder: Path, stroke: Stroke | None = None, lim
     started, child = time.monotonic(), os.fork()
     if child == 0:
         run(words, folder, (out, err), limits or Limits())
-    ends = [(started + (limits or Limits()).clock_s, signal.SIGKILL)]
+    ends: list[tuple[float, int]] = [(started + (limits or Limits()).clock_s, signal.SIGKILL)]
     ends += [] if stroke is None else [(started + stroke.after_s, stroke.number)]
     while True:
         pid, status = os.waitpid(child, os.WNOHANG)

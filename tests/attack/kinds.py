@@ -34,7 +34,7 @@ from synth.retarder.configuration.point_sensors.template import default_sensors_
 from synth.retarder.sensors.tune_command import COMMAND as SENSORS_TUNE
 from synth.retarder.sweep.command import COMMAND as SWEEP_RUN
 from synth.retarder.tune_options import TuneOptions
-from tests.attack.attempt import Kind, Reading
+from tests.attack.attempt import Changed, Kind, Reading
 from tests.attack.forged import forged
 from tests.attack.mutants import mutant
 from tests.attack.railml_attributes import attribute_kind
@@ -210,6 +210,9 @@ def mapping_kind() -> Kind:
     return Kind("mapping.toml", files, "mapping.toml", read, elsewhere=f"{CONFIGURATION}|{OF_THE_LOG}")
 
 
+EMPTY: Final = (Changed(b"", "it is empty", Reading.NONE),)
+"""Where half of all random changes make another sound file, one that makes none."""
+
 KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "hump": lambda: file_kind("hump.toml", SMALL.encode(), partial(read_hump_file, name="hump.toml")),
     "railml": lambda: file_kind("hump.railml", railml(), partial(read_hump_file, name="hump.railml")),
@@ -227,7 +230,7 @@ KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "foreign-hdf5": lambda: log_kind("log.h5", foreign_hdf5(), Reading.ANY),
     "trains": trains_kind,
     "railml-attributes": lambda: attribute_kind(railml()),
-    "forged-log": lambda: replace(log_kind("log.h5", log_as("log.h5"), Reading.ANY), change=forged),
-    "forged-foreign": lambda: replace(log_kind("log.h5", foreign_hdf5(), Reading.ANY), change=forged),
+    "forged-log": lambda: replace(log_kind("log.h5", log_as("log.h5"), Reading.ANY), change=forged, first=EMPTY),
+    "forged-foreign": lambda: replace(log_kind("log.h5", foreign_hdf5(), Reading.ANY), change=forged, first=EMPTY),
     **STORED,
 }
