@@ -66,25 +66,41 @@ def stored_array(file: h5py.File, column: Column, most_bytes: int, source: str) 
 def require_axis(file: h5py.File, axis: str, length: int, source: str) -> None:
     """The scale of `axis` numbers its `length` entries from 0; raises `DamagedTable` naming `source` and the axis."""
     dataset = _own_dataset(file, axis, source)
-    plain = _filters(dataset) == [] and dataset.dtype == AXIS_DTYPE and dataset.shape == (length,)
-    # Allocated to the full: otherwise the rest would be made up when read.
-    plain = plain and dataset.id.get_storage_size() == length * AXIS_DTYPE.itemsize
+    plain = dataset.shape == (length,) and _is_plain(dataset, AXIS_DTYPE)
     if not plain or not np.array_equal(dataset[()], np.arange(length)):
         raise DamagedTable(f"{source}: {axis} does not number {length} entries from 0; export the book again.")
+
+
+def plain_column(file: h5py.File, name: str, dtype: str, source: str) -> npt.NDArray[Any]:
+    """The values of the dataset `name`, which has one axis, this type and no filter, and lies in the file itself.
+
+    Raises `DamagedTable` naming `source` and the dataset for any other.
+    """
+    dataset = _own_dataset(file, name, source)
+    if dataset.ndim != 1 or not _is_plain(dataset, np.dtype(dtype)):
+        raise DamagedTable(f"{source}: {name} is not stored as the export does it, a plain column; export it again.")
+    values: npt.NDArray[Any] = dataset[()]
+    return values
+
+
+def _is_plain(dataset: h5py.Dataset, dtype: np.dtype[Any]) -> bool:
+    """Whether it is of that type, without filters, and allocated to the full: the rest would be made up when read."""
+    n_bytes = dataset.dtype.itemsize * math.prod(map(int, dataset.shape or ()))
+    return _filters(dataset) == [] and dataset.dtype == dtype and dataset.id.get_storage_size() == n_bytes
 
 
 def _own_dataset(file: h5py.File, name: str, source: str) -> h5py.Dataset:
     """The dataset `name`, known to lie in the file itself, values and all."""
     # Asked before the link is followed.
     if not isinstance(file.get(name, getlink=True), h5py.HardLink):
-        raise DamagedTable(f"{source}: {name} is a link to elsewhere, but it must be in the book itself.")
+        raise DamagedTable(f"{source}: {name} is a link to elsewhere, but it must be in the file itself.")
     dataset = file[name]
     if isinstance(dataset, h5py.Dataset):
         creation = dataset.id.get_create_plist()
         # Asked before the shape, for which HDF5 may open the sources of a virtual dataset.
         if creation.get_layout() != h5py.h5d.VIRTUAL and creation.get_external_count() == 0:
             return dataset
-    raise DamagedTable(f"{source}: {name} is no dataset whose values are in the book itself; export the book again.")
+    raise DamagedTable(f"{source}: {name} is no dataset whose values are in the file itself; export it again.")
 
 
 def _filters(dataset: h5py.Dataset) -> list[int]:

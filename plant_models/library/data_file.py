@@ -112,13 +112,15 @@ def number_or_pairs(raw: object) -> Value | None:
 def parse_toml(text: str) -> dict[str, Any]:
     """The parsed text; `PlantError` names the line of a syntax error."""
     try:
-        return tomllib.loads(text)
+        found = tomllib.loads(text)
+        repr(found)  # a hexadecimal number is read in any length, but not told
     except tomllib.TOMLDecodeError as error:
         raise PlantError(f"not valid TOML: {error}") from None
     except RecursionError:
         raise PlantError("its lists or tables are nested too deeply; no type needs more than four levels") from None
     except ValueError:  # Python turns no longer text into a whole number
         raise PlantError("a number in it has thousands of digits; whole numbers have at most 19") from None
+    return found
 
 
 def take_string(table: dict[str, Any], key: str) -> str:

@@ -16,7 +16,7 @@ from typing import Final
 
 from synth.cli import told
 from synth.frame.terminal.telling import MACHINE_FAULT, OK, UNFORESEEN
-from tests.attack.mutants import mutant
+from tests.attack.mutants import Change, changed_text
 
 LONGEST: Final = 700
 """Letters of one sentence."""
@@ -62,15 +62,15 @@ class Changed:
 @dataclass(frozen=True)
 class Kind:
     """A kind of input: `files` in a folder, of which `attacked` is changed; `read` takes the folder and tells what was
-    read. `code`: with which it is refused. `elsewhere`: pattern of sentences that need not name the attacked
-    file. `first`: changed files that are tried before random ones.
+    read. `change`: what is done to it at random. `code`: with which it is refused. `elsewhere`: pattern of sentences
+    that need not name the attacked file. `first`: changed files that are tried before random ones.
     """
 
     name: str
     files: Mapping[str, bytes]
     attacked: str
     read: Callable[[Path], str]
-    text: bool = True
+    change: Change = changed_text
     code: int = 2
     allowed: Reading = Reading.ANY
     elsewhere: str = NEVER
@@ -81,7 +81,7 @@ class Kind:
         if number < len(self.first):
             return self.first[number]
         dice = random.Random(f"{self.name} {seed} {number}")
-        return Changed(mutant(self.files[self.attacked], dice, self.text), "random", self.allowed)
+        return Changed(self.change(self.files[self.attacked], dice), "random", self.allowed)
 
     def put_into(self, folder: Path, attacked: bytes | None = None) -> None:
         """Write the files, the attacked one with this content if it is given."""

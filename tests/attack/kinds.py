@@ -6,7 +6,7 @@ import hashlib
 import io
 import tempfile
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -34,8 +34,11 @@ from synth.retarder.configuration.point_sensors.template import default_sensors_
 from synth.retarder.sensors.tune_command import COMMAND as SENSORS_TUNE
 from synth.retarder.sweep.command import COMMAND as SWEEP_RUN
 from synth.retarder.tune_options import TuneOptions
-from tests.attack.attempt import Kind, Reading
+from tests.attack.attempt import Changed, Kind, Reading
+from tests.attack.forged import forged
+from tests.attack.mutants import mutant
 from tests.attack.railml_attributes import attribute_kind
+from tests.attack.stored import STORED
 from tests.attack.trains import trains_kind
 from tests.plant_models.hump.small_hump import SMALL
 from tests.synth.hump.making.test_hump_make import SHORT
@@ -190,8 +193,8 @@ def file_kind(name: str, content: bytes, read: Callable[[Path], str]) -> Kind:
 
 def log_kind(name: str, content: bytes, allowed: Reading) -> Kind:
     """A log by itself."""
-    text, read = name.endswith(".csv"), partial(read_log, name=name)
-    return Kind(name, {name: content}, name, read, text, allowed=allowed, elsewhere=CONFIGURATION)
+    change, read = partial(mutant, text=name.endswith(".csv")), partial(read_log, name=name)
+    return Kind(name, {name: content}, name, read, change, allowed=allowed, elsewhere=CONFIGURATION)
 
 
 def list_kind() -> Kind:
@@ -206,6 +209,9 @@ def mapping_kind() -> Kind:
     read = partial(read_log, name="foreign.csv", mapping="mapping.toml")
     return Kind("mapping.toml", files, "mapping.toml", read, elsewhere=f"{CONFIGURATION}|{OF_THE_LOG}")
 
+
+EMPTY: Final = (Changed(b"", "it is empty", Reading.NONE),)
+"""Where half of all random changes make another sound file, one that makes none."""
 
 KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "hump": lambda: file_kind("hump.toml", SMALL.encode(), partial(read_hump_file, name="hump.toml")),
@@ -224,4 +230,7 @@ KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "foreign-hdf5": lambda: log_kind("log.h5", foreign_hdf5(), Reading.ANY),
     "trains": trains_kind,
     "railml-attributes": lambda: attribute_kind(railml()),
+    "forged-log": lambda: replace(log_kind("log.h5", log_as("log.h5"), Reading.ANY), change=forged, first=EMPTY),
+    "forged-foreign": lambda: replace(log_kind("log.h5", foreign_hdf5(), Reading.ANY), change=forged, first=EMPTY),
+    **STORED,
 }

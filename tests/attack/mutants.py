@@ -15,7 +15,17 @@ QUOTED: Final = re.compile(rb'"[^"\n]*"')
 
 NUMBERS: Final = (
     *(b"0", b"-0.0", b"-1", b"nan", b"inf", b"-inf", b"1e308", b"-1e308", b"1e999", b"1e-320", b"1e99999999"),
-    *(b"9223372036854775807", b"9223372036854775808", b"9" * 30, b"9" * 5000, b"0x10", b"1_000", b"007", b"1,5"),
+    *(
+        b"9223372036854775807",
+        b"9223372036854775808",
+        b"9" * 30,
+        b"9" * 5000,
+        b"0x" + b"f" * 5000,
+        b"0x10",
+        b"1_000",
+        b"007",
+        b"1,5",
+    ),
     *(b"true", b'""', b"[]", b"{}", b"[[]]", b"1979-05-27", b""),
 )
 TEXTS: Final = (
@@ -43,6 +53,11 @@ def mutant(content: bytes, dice: random.Random, text: bool) -> bytes:
     for _ in range(dice.choice((1, 1, 1, 2, 3))):
         content = dice.choice(changes)(content, dice)
     return content
+
+
+def changed_text(content: bytes, dice: random.Random) -> bytes:
+    """The mutant of a text."""
+    return mutant(content, dice, text=True)
 
 
 def bytes_changed(content: bytes, dice: random.Random) -> bytes:

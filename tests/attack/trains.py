@@ -8,6 +8,7 @@ import random
 import zipfile
 from collections.abc import Iterator
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -57,7 +58,7 @@ def trains_kind() -> Kind:
         files={"inputs/config.toml": CONFIG.encode(), "trains.npz": content},
         attacked="trains.npz",
         read=read_trains,
-        text=False,
+        change=partial(mutant, text=False),
         code=3,
         allowed=Reading.SAME,
         first=tuple(forged(content)),

@@ -205,6 +205,7 @@ def test_unknown_names_get_a_hint() -> None:
             r"stage_pressures_kpa ends at 600; the supply of 500 kPa cannot reach it",
         ),
         ("[force]", "[force", r"not valid TOML: .*line"),
+        ("value = 12.475", f"value = 0x{'f' * 5000}", "thousands of digits"),
     ],
 )
 def test_damaged_retarder_file_is_refused_by_name_and_key(old: str, new: str, message: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 import shutil
 from collections.abc import Callable
@@ -17,7 +18,10 @@ from synth.retarder.sweep.sweep_directory import SWEEP, SweepDirectory
 from synth.retarder.sweep.unit_answer import answer
 from synth.retarder.sweep.unit_result import from_bytes, to_bytes
 from tests.sweep.conftest import Ran, contents, events, run
+from tests.tuning_tables.every_kind import altered, places
 from tuning_tables import DamagedTable
+from tuning_tables.canonical import canonical_json
+from tuning_tables.seal import SEAL_BYTES, seal_of
 
 
 def test_a_result_is_read_back_as_it_was(serial: Path) -> None:
@@ -37,6 +41,17 @@ def test_every_flipped_bit_and_every_cut_of_a_result_is_noticed(serial: Path) ->
     for length in (0, 1, len(content) // 2, len(content) - 1):
         with pytest.raises(DamagedTable):
             from_bytes(content[:length], "x")
+
+
+def test_what_is_no_result_is_refused_under_a_right_seal(serial: Path) -> None:
+    content = next((serial / "sweep" / "units").iterdir()).read_bytes()
+    document = json.loads(content[:-SEAL_BYTES])
+    asked = [path for path in places(document) if "table" not in path]
+    for path in asked:
+        body = canonical_json(altered(document, path, {}))
+        with pytest.raises(DamagedTable, match=r"^x: sealed, but no result of a sweep \("):
+            from_bytes(body + seal_of(body), "x")
+    assert len(asked) > 30
 
 
 def test_a_damaged_result_is_computed_again(

@@ -17,6 +17,7 @@ LONG = "x" * 100_000
 
 CONFIGURATIONS = {
     "thousands of digits": (CLASS.replace("degree = 2", f"degree = {DIGITS * 11}"), "thousands of digits"),
+    "hexadecimal digits": (CLASS.replace("degree = 2", f"degree = 0x{'f' * 5000}"), "thousands of digits"),
     "hundreds of digits": (CLASS.replace("degree = 2", f"degree = {DIGITS}"), "fit.degree is 99999"),
     "nested lists": (f"x = {'[' * 3000}{']' * 3000}\n", "nested too deeply"),
     "nested inline tables": ("x = " + "{a=" * 3000 + "1" + "}" * 3000, "nested too deeply"),

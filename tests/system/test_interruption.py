@@ -100,12 +100,13 @@ def test_killed_tunes_leave_nothing_half_done(tuned: Path, one_class: Path) -> N
 
 
 @pytest.mark.requirement("CMD-06")
-def test_ctrl_c_ends_at_once_with_one_line(one_class: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_it_at_once_with_one_line(one_class: Path, tmp_path: Path, number: int) -> None:
     tune = start(one_class, tmp_path)
     while not (tmp_path / "tables").exists():
         time.sleep(0.01)
     time.sleep(0.05)
-    tune.send_signal(signal.SIGINT)
+    tune.send_signal(number)
     told = time.monotonic()
     _, said = tune.communicate(timeout=60)
     assert tune.returncode == 130

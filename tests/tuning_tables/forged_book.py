@@ -25,7 +25,7 @@ def forge(path: Path, edit: Edit, known: Arrays = NOTHING_KNOWN) -> None:
     """
     with h5py.File(path, "r+") as file:
         edit(file)
-        _correct_payload(file, known)
+        correct_payload(file, known)
     reseal(path)
 
 
@@ -54,7 +54,7 @@ def put(file: h5py.File, name: str, values: npt.ArrayLike) -> None:
         dataset.attrs[key] = attributes[key]
 
 
-def _correct_payload(file: h5py.File, known: Arrays) -> None:
+def correct_payload(file: h5py.File, known: Arrays) -> None:
     """Only where there is a payload to speak of: all columns, and attributes that JSON can hold."""
     attributes = {name: value.item() if isinstance(value, np.generic) else value for name, value in file.attrs.items()}
     attributes.pop("payload_sha256", None)

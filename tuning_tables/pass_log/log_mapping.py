@@ -104,6 +104,7 @@ def read_mapping(path: str | os.PathLike[str]) -> LogMapping:
     source = os.fspath(path)
     try:
         tree = tomllib.loads(read_regular_file(path, LARGEST_MAPPING_BYTES).decode())
+        repr(tree)  # a hexadecimal number is read in any length, but not told
     except DamagedTable as fault:
         raise InvalidLog(str(fault)) from fault
     except (ValueError, RecursionError) as fault:  # no UTF-8, no TOML, or a number of thousands of digits

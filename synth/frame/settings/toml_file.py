@@ -77,6 +77,7 @@ def read_toml(text: str, file: str) -> ReadToml:
     the limits."""
     try:
         found = syntax_faults(text, file)
+        repr(found.tree)  # a hexadecimal number is read in any length, but not told
     except RecursionError:
         raise InputError(f"{file}: its lists or tables are nested too deeply; at most {DEEPEST} are allowed") from None
     except ValueError:  # Python turns no longer text into a whole number

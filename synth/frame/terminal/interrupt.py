@@ -1,4 +1,4 @@
-"""Ctrl-C while threads or processes compute: this process ends at once and leaves no unfinished file."""
+"""Ctrl-C or SIGTERM while threads or processes compute: this process ends at once and leaves no unfinished file."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from synth.frame.terminal.telling import INTERRUPTED, leave, say
 
@@ -16,9 +16,13 @@ if TYPE_CHECKING:
     from synth.frame.results_directory import ResultsDirectory
 
 
+ENDING: Final = (signal.SIGINT, signal.SIGTERM)
+"""Signals by which a user, or a scheduler of jobs, asks a run to end."""
+
+
 @contextlib.contextmanager
 def interruptible(directory: ResultsDirectory | None = None, result: str = "book") -> Iterator[None]:
-    """Within, Ctrl-C ends the process with code 130, after removing unfinished files from `directory`.
+    """Within, these signals end the process with code 130, after removing unfinished files from `directory`.
 
     Not by an exception: it would wait for threads that compute for seconds and cannot be told to stop.
     """
@@ -27,7 +31,8 @@ def interruptible(directory: ResultsDirectory | None = None, result: str = "book
         return
 
     def end(number: int, frame: FrameType | None) -> None:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        for each in ENDING:
+            signal.signal(each, signal.SIG_IGN)
         if directory is not None:
             with contextlib.suppress(OSError):
                 directory.remove_leftovers()
@@ -38,11 +43,12 @@ def interruptible(directory: ResultsDirectory | None = None, result: str = "book
             sys.stdout.flush()
         leave(INTERRUPTED)
 
-    before = signal.signal(signal.SIGINT, end)
+    before = {each: signal.signal(each, end) for each in ENDING}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for each, handler in before.items():
+            signal.signal(each, handler)
 
 
 @contextlib.contextmanager

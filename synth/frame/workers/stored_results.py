@@ -1,4 +1,4 @@
-"""Results that earlier runs have stored, a file under a seal for each order: what of them is there and whole."""
+"""Results that earlier runs have stored, a file for each order: what of them is there and whole."""
 
 from __future__ import annotations
 
@@ -6,24 +6,29 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from synth.frame.workers.engine import OrderOfKind, Watcher
-from tuning_tables import DamagedTable
-from tuning_tables.seal import unsealed
+from tuning_tables import TableError
 
 
 def missing_of(
-    orders: Sequence[OrderOfKind], file_of: Callable[[str], Path], watcher: Watcher
+    orders: Sequence[OrderOfKind],
+    file_of: Callable[[str], Path],
+    read: Callable[[OrderOfKind], object],
+    watcher: Watcher,
 ) -> tuple[OrderOfKind, ...]:
-    """The orders without a whole result; `file_of`: the file of a result by the key of its order."""
-    return tuple(order for order in orders if not is_whole(file_of(order.key), watcher))
+    """The orders without a whole result of their own.
 
+    `file_of`: the file of a result by the key of its order; `read`: reads the result of an order, and raises
+    `TableError` where that is damaged or another one's, which is told.
+    """
 
-def is_whole(path: Path, watcher: Watcher) -> bool:
-    """Whether a sealed file is at `path` and no byte of it has changed; a damaged one is told of."""
-    try:
-        unsealed(path.read_bytes(), str(path))
-    except FileNotFoundError:
-        return False
-    except DamagedTable:
-        watcher.note(f"{path} is damaged; what it held is computed again")
-        return False
-    return True
+    def is_whole(order: OrderOfKind) -> bool:
+        try:
+            read(order)
+        except FileNotFoundError:
+            return False
+        except TableError:
+            watcher.note(f"{file_of(order.key)} is damaged; what it held is computed again")
+            return False
+        return True
+
+    return tuple(order for order in orders if not is_whole(order))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
+from math import prod
 from typing import Final
 
 from synth.frame.command import Asked
@@ -56,9 +57,10 @@ def asked_capacity(asked: Asked[TrialFile, CapacityOptions]) -> AskedCapacity:
     axis = axis_of(options, base)
     values = key_values_of(options, base)
     require_other_keys(values)
+    curves = prod(len(each.values) for each in values)
+    if curves > MOST_CURVES:
+        raise InputError(f"hump capacity: --set and --exit-std ask for {curves} curves; at most {MOST_CURVES}")
     chosen = variants(values)
-    if len(chosen) > MOST_CURVES:
-        raise InputError(f"hump capacity: --set and --exit-std ask for {len(chosen)} curves; at most {MOST_CURVES}")
 
     def trial_at(variant: Variant, value: float) -> AskedTrial:
         changes = {**variant.changes, axis.key: value}

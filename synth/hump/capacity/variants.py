@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
@@ -18,6 +17,9 @@ Changes = Mapping[str, Any]
 
 LISTED: Final = "position"
 """The key of tables that are told by their number."""
+
+MOST_DOTS, MOST_DIGITS = 8, 4
+"""In a key, and in the number of a position: no trial has more, and a word of any length may be typed."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ def key_values(words: str) -> KeyValues:
     """What 'KEY=A,B' says; values are those of TOML, other words are text. `InputError`."""
     key, _, values = words.partition("=")
     key = key.strip()
-    if not key or not values:
+    if not key or not values or key.count(".") > MOST_DOTS:
         raise InputError(f"--set is {words!r}; it must be a key and its values, as in weather.head_wind_mean_m_s=0,6")
     return KeyValues(key, (key,), tuple(value_of(each.strip()) for each in values.split(",")))
 
@@ -72,9 +74,10 @@ def key_values(words: str) -> KeyValues:
 def value_of(word: str) -> Any:
     """A number, a truth value, or the word itself."""
     try:
-        return tomllib.loads(f"value = {word}")["value"]
-    except tomllib.TOMLDecodeError:
+        found = toml_tree(f"value = {word}", "--set")["value"]
+    except InputError:
         return word
+    return found if isinstance(found, bool | int | float | str) else word
 
 
 def changed_text(text: str, place: str, changes: Changes) -> str:
@@ -103,7 +106,7 @@ def table_at(tree: Tree, path: Sequence[str], key: str) -> Any:
 
 def numbered(tables: list[dict[str, Any]], number: str, key: str) -> dict[str, Any]:
     """The table of the position with this number."""
-    if not number.isdecimal():
+    if not number.isdecimal() or len(number) > MOST_DIGITS:
         raise InputError(f"--set {key}: behind position comes its number, as in position.2.exit_std_m_s")
     for table in tables:
         if table.get("number") == int(number):

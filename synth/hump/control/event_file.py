@@ -56,22 +56,23 @@ def read_events(path: str | os.PathLike[str]) -> tuple[Event, ...]:
     """The events in the file at `path`. `InputError` for what is no unbroken log; `OSError` where it cannot be read."""
     import h5py
 
+    from tuning_tables.stored_array import plain_column
+
     source = os.fspath(path)
     try:
         body = unsealed(read_regular_file(Path(path), LARGEST_FILE_BYTES), source)
-    except TableError as fault:
-        raise InputError(str(fault)) from None
-    try:
         with h5py.File(io.BytesIO(body), "r") as file:
             if file.attrs["format"] != FORMAT or file.attrs["schema_version"] != VERSION:
                 raise InputError(f"{source}: this is no {FORMAT} of version {VERSION}; give a log of a hump")
-            columns = [file[name][()].tolist() for name in DATASETS]
+            columns = [plain_column(file, name, DATASETS[name][0], source).tolist() for name in DATASETS]
         return tuple(
             Event(time, element, cut, Kind(kind), value)
             for time, element, cut, kind, value in zip(*columns, strict=True)
         )
     except InputError:
         raise
+    except TableError as fault:
+        raise InputError(str(fault)) from None
     # What is wrong with a file under a right seal surfaces in h5py as one of a dozen types.
     except Exception as fault:
         reason = excerpt(" ".join(str(fault).split()), 200)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -45,12 +45,16 @@ class BatchFiles:
 
     def store(self, key: str, found: TrainOutcomes) -> None:
         """Write a batch, complete or not at all; raises `OSError`."""
-        self.directory.store(self.name(key), to_npz(found, self.trial))
+        self.directory.store(self.name(key), to_npz(found, self._only(key)))
 
-    def stored(self, key: str, count: int) -> TrainOutcomes:
-        """A batch of `count` trains; `FileNotFoundError`, or `DamagedTable` where a byte has changed."""
-        path = self.file(key)
-        return from_npz(path.read_bytes(), str(path), self.trial, count)
+    def stored(self, order: BatchOrder) -> TrainOutcomes:
+        """The batch of an order; `FileNotFoundError`, or `DamagedTable` where it is not what was stored for it."""
+        path = self.file(order.key)
+        return from_npz(path.read_bytes(), str(path), self._only(order.key), order.count)
+
+    def _only(self, key: str) -> TrialTrains:
+        """The trains of one batch: its file says of which, so that it is not taken for another's."""
+        return replace(self.trial, trains_sha256=key)
 
 
 @dataclass(frozen=True)
@@ -63,7 +67,7 @@ class TrialRun:
 
     def outcomes(self) -> TrainOutcomes:
         """Those of all its trains, from the stored batches."""
-        return joined([self.files.stored(order.key, order.count) for order in self.orders])
+        return joined([self.files.stored(order) for order in self.orders])
 
 
 def run_of(
@@ -82,7 +86,12 @@ def run_trials(runs: Sequence[TrialRun], engine: Callable[[int], Engine], watche
     """
     owner = {order.key: (run, order) for run in runs for order in run.orders}
     orders = [order for _, order in owner.values()]
-    missing = missing_of(orders, lambda key: owner[key][0].files.file(key), watcher)
+    missing = missing_of(
+        orders,
+        lambda key: owner[key][0].files.file(key),
+        lambda order: owner[order.key][0].files.stored(order),
+        watcher,
+    )
     watcher.begin(len(orders) - len(missing))
     with closing(engine(len(missing)).answers(missing, lambda order: None)) as answers:
         for answer in answers:

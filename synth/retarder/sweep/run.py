@@ -43,7 +43,8 @@ def task_of(file: SweepFile, directory: HeldSweep, watcher: Watcher) -> Task:
             directory.results.require_own_below(condition.name)
     created = directory.ledger().created or creation_time()
     plan = plan_of(file, created)
-    missing = missing_of([unit.order for unit in plan.units], directory.unit_file, watcher)
+    orders = [unit.order for unit in plan.units]
+    missing = missing_of(orders, directory.unit_file, lambda order: directory.stored(order.key), watcher)
     keys = {order.key for order in missing}
     left = [unit for unit in plan.units if unit.order.key in keys]
     return Task(file, plan, created, tuple(sorted(left, key=lambda unit: -unit.work)))  # equal ones as in the plan

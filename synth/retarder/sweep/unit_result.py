@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
-from typing import Any, cast
+from functools import cache
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
 
 from synth.retarder.failed_case import FailedCase
 from synth.retarder.judgement import Judgement
@@ -13,6 +15,7 @@ from synth.simulation.exit_statistics import BrakePower, ExitStatistics
 from tuning_tables import ControllerTable, DamagedTable, TableError
 from tuning_tables.canonical import canonical_json
 from tuning_tables.document import from_document, to_document
+from tuning_tables.excerpt import excerpt
 from tuning_tables.seal import seal_of, unsealed
 
 FORMAT, VERSION = "retarder-sweep-unit", 5
@@ -67,34 +70,57 @@ def to_bytes(result: UnitResult) -> bytes:
     return body + seal_of(body)
 
 
+@dataclass(frozen=True)
+class StoredRow:
+    """A row as it stands in the file: the table as its document, the judgement beside it."""
+
+    table: dict[str, Any]
+    statistics: ExitStatistics
+    brake_power: BrakePower
+    missed: tuple[str, ...]
+    undecided: tuple[str, ...]
+
+    def row(self, source: str) -> Row:
+        """The row; `TableError` where the document is no table."""
+        table = from_document(self.table, source, (ControllerTable,))
+        return Row(table, self.statistics, self.brake_power, Judgement(self.missed, self.undecided))
+
+
+@dataclass(frozen=True)
+class StoredUnit:
+    """All that stands in the file, by the names that it has there."""
+
+    format: str
+    version: int
+    key: str
+    condition: str
+    label: str
+    rows: tuple[StoredRow, ...]
+    gaps: tuple[Gap, ...]
+    refused: tuple[FailedCase, ...]
+
+
+@cache
+def stored_form() -> TypeAdapter[StoredUnit]:
+    """What reads and checks the file; it is made once, as that lasts longer than to read a file."""
+    return TypeAdapter(StoredUnit)
+
+
 def from_bytes(content: bytes, source: str) -> UnitResult:
     """The result in a unit's file; `DamagedTable` for anything that is not, byte for byte, what `to_bytes` wrote."""
     body = bytes(unsealed(content, source))
     try:
-        match cast(dict[str, Any], json.loads(body)):
-            case {"format": str(kind), "version": int(number), **found} if (kind, number) == (FORMAT, VERSION):
-                return UnitResult(
-                    key=found["key"],
-                    condition=found["condition"],
-                    label=found["label"],
-                    rows=tuple(row_from(row, source) for row in found["rows"]),
-                    gaps=tuple(Gap(**gap) for gap in found["gaps"]),
-                    refused=tuple(FailedCase(**each) for each in found["refused"]),
-                )
+        stored = stored_form().validate_json(body, strict=True)
+        rows = tuple(row.row(source) for row in stored.rows)
+        result = UnitResult(stored.key, stored.condition, stored.label, rows, stored.gaps, stored.refused)
+        if to_bytes(result) == content:
+            return result
+        reason = "it is of another version, has other members, or is written otherwise"
+    except ValidationError as fault:
+        first = fault.errors(include_url=False)[0]
+        reason = f"{'.'.join(map(str, first['loc']))}: {first['msg']}"
     except TableError:
         raise
-    except (KeyError, TypeError, ValueError) as fault:
-        raise DamagedTable(f"{source}: sealed, but no result of a sweep ({fault}).") from None
-    raise DamagedTable(f"{source}: sealed, but of another format or version.")
-
-
-def row_from(row: dict[str, Any], source: str) -> Row:
-    """One row of the file."""
-    judgement = Judgement(tuple(row["missed"]), tuple(row["undecided"]))
-    statistics, power = ExitStatistics(**with_tuples(row["statistics"])), BrakePower(**with_tuples(row["brake_power"]))
-    return Row(from_document(row["table"], source, (ControllerTable,)), statistics, power, judgement)
-
-
-def with_tuples(figures: dict[str, Any]) -> dict[str, Any]:
-    """Figures with the ends of intervals as tuples."""
-    return {name: tuple(value) if isinstance(value, list) else value for name, value in figures.items()}
+    except ValueError as fault:
+        reason = str(fault)
+    raise DamagedTable(f"{source}: sealed, but no result of a sweep ({excerpt(reason, 200)}).")

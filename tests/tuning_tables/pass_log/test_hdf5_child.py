@@ -145,3 +145,13 @@ def test_a_name_that_is_no_text_is_told(tmp_path: Path) -> None:
         file["cut_id"][1] = b"cut-\xf8"
     with pytest.raises(InvalidLog, match=r"column cut_id, pass 2: 'cut-.*' is no name; write one"):
         read_logs([path], None, None)
+
+
+def test_a_large_chunk_that_was_never_stored_is_told_as_such(sealed: bytes) -> None:
+    """HDF5 2 then asks for memory of any size."""
+    image = io.BytesIO(sealed[:-SEAL_BYTES])
+    with h5py.File(image, "r+") as file:
+        del file["pressure_kpa"]
+        file.create_dataset("pressure_kpa", shape=(2**20,), dtype="<f8", chunks=(2**20,), fillvalue=1.0)
+    with pytest.raises(InvalidLog, match="column pressure_kpa: some of its values are not there"):
+        stored_columns(image.getvalue())

@@ -99,6 +99,7 @@ def test_a_foreign_log_is_read_by_a_mapping(tmp_path: Path) -> None:
         ("units = 3", "units is 3; it must be a table"),
         ("[units", "no TOML file"),
         (f"decimal = {'9' * 5000}", "no TOML file (Exceeds the limit"),
+        (f"decimal = 0x{'f' * 5000}", "no TOML file (Exceeds the limit"),
     ],
 )
 def test_a_mapping_with_unknown_entries_is_refused(tmp_path: Path, text: str, sentence: str) -> None:

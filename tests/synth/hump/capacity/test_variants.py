@@ -41,16 +41,23 @@ def test_without_a_key_it_is_the_trial_as_it_is() -> None:
 
 def test_values_are_those_of_toml_and_other_words_are_text() -> None:
     assert key_values("a.b=1,0.5,true,pair-by-pair").values == (1, 0.5, True, "pair-by-pair")
+    for word in ("1979-05-27", "9" * 5000, "[" * 5000, "[1]"):
+        assert key_values(f"a.b={word}").values == (word,)
 
 
-@pytest.mark.parametrize("words", ["weather", "=1", "weather.x="])
+@pytest.mark.parametrize("words", ["weather", "=1", "weather.x=", f"{'a.' * 5000}b=1"])
 def test_what_is_no_key_with_values_is_refused(words: str) -> None:
     with pytest.raises(InputError, match="must be a key and its values"):
         key_values(words)
 
 
 @pytest.mark.parametrize(
-    ("key", "said"), [("position.first.exit_std_m_s", "its number"), ("hump.x", "hump is no table of keys")]
+    ("key", "said"),
+    [
+        ("position.first.exit_std_m_s", "its number"),
+        (f"position.{'9' * 5000}.exit_std_m_s", "its number"),
+        ("hump.x", "hump is no table of keys"),
+    ],
 )
 def test_a_key_that_cannot_be_is_refused(key: str, said: str) -> None:
     with pytest.raises(InputError, match=said):

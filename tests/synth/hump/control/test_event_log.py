@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -18,6 +20,7 @@ from synth.hump.control.event_file import read_events, write_events
 from synth.hump.control.event_log import EventLog, to_log_csv
 from synth.hump.control.hump_state import CHANGES, Counters, HumpState, replayed
 from tests.synth.hump.control.judged_trains import Scene, random_humping
+from tests.tuning_tables.forged_book import reseal
 
 EVENTS = st.builds(
     Event,
@@ -62,6 +65,40 @@ def test_a_damaged_hdf5_log_is_told(tmp_path: Path, place: int) -> None:
     content[place] ^= 1
     path.write_bytes(content)
     with pytest.raises(InputError, match=r"log\.h5"):
+        read_events(path)
+
+
+def claims(shape: tuple[int, ...], **storage: Any) -> Callable[[h5py.File], None]:
+    def edit(file: h5py.File) -> None:
+        file.create_dataset("data", shape=shape, dtype="<f8", **storage)
+
+    return edit
+
+
+def lies_elsewhere(file: h5py.File) -> None:
+    file["data"] = h5py.ExternalLink("other.h5", "/data")
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lies_elsewhere,
+        claims((2**26,), chunks=(2**20,), fillvalue=1.0),
+        claims((2**40,)),
+        claims((2**26,), chunks=(2**20,), compression="gzip"),
+        claims((2, 2)),
+    ],
+)
+def test_a_column_that_does_not_lie_in_the_file_is_refused_before_it_takes_memory(
+    tmp_path: Path, edit: Callable[[h5py.File], None]
+) -> None:
+    path = tmp_path / "log.h5"
+    write_events(random_humping(6, Scene()).control.log.events, path)
+    with h5py.File(path, "r+") as file:
+        del file["data"]
+        edit(file)
+    reseal(path)
+    with pytest.raises(InputError, match=r"log\.h5: data is "):
         read_events(path)
 
 
