@@ -16,9 +16,15 @@ from synth.hump.configuration.counted_trains import CountedTrains
 
 MOST_POSITIONS: Final = 1000
 
-PositionName = Annotated[
-    str, Field(min_length=1, max_length=63, pattern=r"^[^/\\.][^/\\]*$"), AfterValidator(printable)
-]
+
+def file_name(text: str) -> str:
+    """Validator: `text` itself; `ValueError` where it cannot be the name of a file."""
+    if text.startswith(".") or set(text) & set('/\\:*?"<>|'):
+        raise ValueError('it must not begin with a dot, nor hold any of / \\ : * ? " < > |, as a file has that name')
+    return text
+
+
+PositionName = Annotated[str, Field(min_length=1, max_length=63), AfterValidator(printable), AfterValidator(file_name)]
 """Also the name of a file."""
 
 

@@ -43,7 +43,7 @@ REPAIRS: Final = (
     Column("is_ahead", "ahead for sure", spare=1),
     Column("why", "not priced because", words=True, spare=1),
     Column("advice", "what to do", words=True, spare=3),
-    Column("cause", "name", words=True, spare=4),
+    Column("cause", "cause", words=True, spare=4),
 )
 
 EVIDENCE: Final = (

@@ -133,6 +133,8 @@ def watched_position(run_length: float, asked: AskedPosition, kept: KeptWatch) -
 
 def passes_of(asked: AskedPosition) -> tuple[PassLog | None, tuple[str, ...]]:
     """The sound passes in the logs of a position, and a sentence for each file and pass that is left out."""
+    if not asked.logs.exists():
+        return None, (f"{asked.logs}: there is no such file or folder",)
     try:
         loaded = read_logs([asked.logs], asked.mapping, asked.config.retarder.position.top_stage)
     except InvalidLog as fault:
