@@ -26,13 +26,14 @@ GAUGE = PressureGauge(2.0, 1.0)
 @dataclass(frozen=True)
 class Change:
     """What happens to the position: `cause` is what the watch is to name; `changed` plant; what sensor and gauge
-    show too much."""
+    show too much; `is_of_drive`: it is sought only with a gauge on the drive."""
 
     title: str
     cause: str
     changed: Callable[[Plant], Plant]
     bias_m_s: float = 0.0
     gauge_off_kpa: float = 0.0
+    is_of_drive: bool = False
 
 
 LIGHT = "Л"
@@ -54,13 +55,13 @@ CHANGES = (
     Change("friction of category Л −30 %", f"friction of {LIGHT}", of_light(friction(0.7, 1.0))),
     Change("spread of friction ×2", "friction spread", friction(1.0, 2.0)),
     Change("rolling resistance +50 %", "rolling resistance", times("cut.rolling_resistance.mean_n_per_kn", 1.5)),
-    Change("fill constant +50 %", "fill constant", times(asked.FILL, 1.5)),
-    Change("brake delay ×2", "brake delay", times(asked.BRAKE_DELAY, 2.0)),
-    Change("release delay ×2", "release delay", times(asked.RELEASE_DELAY, 2.0)),
-    Change("dead band +50 %", "dead band", times(asked.DEAD_BAND, 1.5)),
-    Change("touch pressure +30 %", "touch pressure", times(asked.TOUCH_PRESSURE, 1.3)),
+    Change("fill constant +50 %", "fill constant", times(asked.FILL, 1.5), is_of_drive=True),
+    Change("brake delay ×2", "brake delay", times(asked.BRAKE_DELAY, 2.0), is_of_drive=True),
+    Change("release delay ×2", "release delay", times(asked.RELEASE_DELAY, 2.0), is_of_drive=True),
+    Change("dead band +50 %", "dead band", times(asked.DEAD_BAND, 1.5), is_of_drive=True),
+    Change("touch pressure +30 %", "touch pressure", times(asked.TOUCH_PRESSURE, 1.3), is_of_drive=True),
     Change("sensor noise ×2", "sensor noise", times(asked.NOISE, 2.0)),
-    Change("gauge offset +10 kPa", "gauge offset", lambda plant: plant, gauge_off_kpa=10.0),
+    Change("gauge offset +10 kPa", "gauge offset", lambda plant: plant, gauge_off_kpa=10.0, is_of_drive=True),
 )
 """One at least of each cause that the watch knows; sizes are assumed."""
 

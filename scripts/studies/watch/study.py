@@ -45,11 +45,11 @@ class Options:
 
     classes: int = option(4, "cut classes of the built-in configuration", (1, 10))
     passes: int = option(4000, "passes in order", (40, 10**6))
-    changed_passes: int = option(800, "passes with each change", (40, 10**6))
-    repetitions: int = option(300, "of each change", (2, 10**5))
+    changed_passes: int = option(500, "passes with each change", (40, 10**6))
+    repetitions: int = option(200, "of each change", (2, 10**5))
     calm_passes: int = option(2_000_000, "drawn for false alarms", (1000, 10**9))
     night_passes: int = option(200, "of each position in the night of the yard", (100, 10_000))
-    trains: int = option(200, "that its faults are priced on", (20, 100_000))
+    trains: int = option(100, "that its faults are priced on", (20, 100_000))
     seed: int = option(23, "of the random numbers", (0, 2**31))
 
 
@@ -81,7 +81,7 @@ def run(options: Options, tell: Tell) -> Watched:
         for of, run_length in (("one position", RUN_LENGTH), (YARD, YARD_RUN_LENGTH)):
             calm.append(false_alarms(calm_pool, of, run_length, gauge, options.calm_passes, rng))
         for change, log in zip(CHANGES, seen[1:], strict=True):
-            if change.gauge_off_kpa and not gauge:
+            if change.is_of_drive and not gauge:
                 continue
             found.append(repeated(change, gauge, calm_pool, judge.evidence(log), options.repetitions, rng))
         tell(f"drawn, gauge: {gauge}")

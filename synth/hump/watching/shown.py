@@ -159,7 +159,8 @@ def evidence(found: WatchedYard) -> Iterator[Exhibit]:
     yield Table("evidence", "What was measured", EVIDENCE, list(evidence_rows(found)))
     yield Sentence(
         "Passes are numbered as the watch on a position counts them. The mean exit error is exit speed less target; "
-        "that of before is of the passes that are still kept, 100 at least where so many were watched."
+        "that of before is of the passes that are still kept, 100 at least where so many were watched. The first "
+        f"{MOST_CHARTS} of the list have charts."
     )
     for rank, each in enumerate(found.repairs[:MOST_CHARTS], start=1):
         title = f"Position {each.position.asked.name}: charts of the watch"

@@ -100,6 +100,7 @@ def watched_yard(asked: AskedYard, directory: ResultsDirectory, progress: Progre
             directory.store(state_file(each.asked), to_npz(each.night.kept, each.asked.config.sha256))
             positions.append(each)
             progress.done(f"{each.asked.name}: {each.night.new} new passes")
+    directory.retain(*directory.names_below(FOLDER))  # of positions that the file left out this time
     if not any(each.night.kept.watched for each in positions):
         raise InputError(*(sentence for each in positions for sentence in each.not_read[:1]))
     repairs = sorted(repairs_in(asked, positions, progress), key=lambda each: each.order)
