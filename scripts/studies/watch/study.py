@@ -12,6 +12,7 @@ import numpy as np
 from scipy.stats import beta, chi2
 
 from scripts.studies.options import option
+from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
 from scripts.studies.tuned_table import tuned_table
 from scripts.studies.watch.findings import FalseAlarms, Found, Watched
@@ -44,12 +45,12 @@ class Options:
     """How much is done."""
 
     classes: int = option(4, "cut classes of the built-in configuration", (1, 10))
-    passes: int = option(4000, "passes in order", (40, 10**6))
-    changed_passes: int = option(500, "passes with each change", (40, 10**6))
-    repetitions: int = option(200, "of each change", (2, 10**5))
+    passes: int = option(2000, "passes in order", (40, 10**6))
+    changed_passes: int = option(300, "passes with each change", (40, 10**6))
+    repetitions: int = option(100, "of each change", (2, 10**5))
     calm_passes: int = option(2_000_000, "drawn for false alarms", (1000, 10**9))
     night_passes: int = option(200, "of each position in the night of the yard", (100, 10_000))
-    trains: int = option(100, "that its faults are priced on", (20, 100_000))
+    trains: int = option(60, "that its faults are priced on", (20, 100_000))
     seed: int = option(23, "of the random numbers", (0, 2**31))
 
 
@@ -58,10 +59,10 @@ def run(options: Options, tell: Tell) -> Watched:
     config = load_config(None)
     plants = config.plants()
     chosen = [plants[i] for i in np.unique(np.linspace(0, len(plants) - 1, options.classes).astype(int)).tolist()]
-    tables = []
-    for label, plant in chosen:
-        targets = config.targets_of(label)
-        tables.append((plant, tuned_table(config, plant, targets[len(targets) // 2])))
+    targets = [config.targets_of(label) for label, _ in chosen]
+    middle = [(plant, of[len(of) // 2]) for (_, plant), of in zip(chosen, targets, strict=True)]
+    tuned = side_by_side(lambda each: tuned_table(config, *each), middle)
+    tables = [(plant, table) for (plant, _), table in zip(middle, tuned, strict=True)]
     tell(f"{len(tables)} tables tuned")
     amounts = [options.passes] + [options.changed_passes] * len(CHANGES)
     logs = [
