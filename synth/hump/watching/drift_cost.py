@@ -7,6 +7,7 @@ train has errors drawn anew, with replacement, from those measured, so that few 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Final
 
 import numpy as np
@@ -30,6 +31,9 @@ FEWEST_ERRORS: Final = 10
 
 HIDDEN_EVENTS: Final = 3.69
 """So many events may be expected, and none is seen with a chance of 2.5 % (Poisson)."""
+
+SUMMED: Final = ("value", "residual", "slope", "least")
+"""What adds up where figures do."""
 
 
 @frozen_arrays
@@ -115,12 +119,13 @@ class Difference:
         half = max(self.least, half_width(self.residual, self.by_passes))
         return Interval(self.value, self.value - half, self.value + half, self.trains)
 
-    def plus(self, weight: float, other: Difference) -> Difference:
-        """With `weight` times another one of the same drift."""
-        value, residual, slope, least = (
-            getattr(self, name) + weight * getattr(other, name) for name in ("value", "residual", "slope", "least")
-        )
-        return replace(self, value=value, residual=residual, slope=slope, least=least)
+    def times(self, weight: float) -> Difference:
+        """With a weight."""
+        return replace(self, **{name: weight * getattr(self, name) for name in SUMMED})
+
+    def plus(self, other: Difference) -> Difference:
+        """Together with another one of the same drift."""
+        return replace(self, **{name: getattr(self, name) + getattr(other, name) for name in SUMMED})
 
     def above(self, other: Difference) -> bool:
         """Whether it is larger than that of another drift for sure; both are of the same trains."""
@@ -150,11 +155,8 @@ class DriftCost:
             (weights.overspeed, self.overspeeds_per_hour),
             (weights.gap_m, self.gap_m_per_hour),
         )
-        nothing = self.cars_lost_per_hour.plus(-1.0, self.cars_lost_per_hour)
-        worse = nothing
-        for weight, part in parts:
-            worse = worse.plus(weight, part) if part.value > 0.0 else worse
-        return worse if worse is not nothing else replace(nothing, least=self.cars_lost_per_hour.least)
+        worse = [part.times(weight) for weight, part in parts if part.value > 0.0]
+        return reduce(Difference.plus, worse) if worse else self.cars_lost_per_hour
 
 
 def drift_cost(retarder: Retarder, before_m_s: Floats, since_m_s: Floats, trains: int) -> DriftCost | None:

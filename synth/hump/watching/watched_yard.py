@@ -30,6 +30,7 @@ FOLDER: Final = "state"
 
 NO_TRIAL: Final = "the file of the yard names no hump trial"
 NO_RETARDER: Final = "the position has no number in the hump"
+NO_PASS: Final = "no position has a pass that was not stopped by hand; give logs of some"
 FEW_PASSES: Final = "too few exits with a target are known on both sides of its beginning"
 
 
@@ -102,7 +103,7 @@ def watched_yard(asked: AskedYard, directory: ResultsDirectory, progress: Progre
             progress.done(f"{each.asked.name}: {each.night.new} new passes")
     directory.retain(*directory.names_below(FOLDER))  # of positions that the file left out this time
     if not any(each.night.kept.watched for each in positions):
-        raise InputError(*(sentence for each in positions for sentence in each.not_read[:1]))
+        raise InputError(*([sentence for each in positions for sentence in each.not_read[:1]] or [NO_PASS]))
     repairs = sorted(repairs_in(asked, positions, progress), key=lambda each: each.order)
     return WatchedYard(asked, tuple(positions), tuple(repairs))
 
