@@ -72,7 +72,7 @@ class NormalHumpPosition:
 
 def error_uniform(arrivals: Arrivals) -> Floats:
     """What the exit errors of the cuts are drawn by, uniform in (0, 1): the same whatever law they have."""
-    return keyed_uniform(arrivals.seed, Purpose.POSITION_ERROR, arrivals.keys, 1)[0]
+    return np.asarray(keyed_uniform(arrivals.seed, Purpose.POSITION_ERROR, arrivals.keys, 1)[0])
 
 
 def passed_with(arrivals: Arrivals, errors_m_s: Floats, full_brake_head_m: Floats) -> Passed:

@@ -108,7 +108,8 @@ def _of_friction(passes: FittingPasses, slope_key: str) -> Iterator[Cause]:
         "friction spread", "spread of friction from cut to cut", (asked.COMMON_CV,), TIMES, *geometric(1.4, 3),
         Remedy.RETUNE, NEW_TABLES,
     )  # fmt: skip
-    keys = tuple(asked.RESISTANCE + passes.plants[number][0] for number in sorted(set(passes.class_of.tolist())))
+    classes = sorted(set(passes.class_of.tolist()))
+    keys = tuple(dict.fromkeys(asked.RESISTANCE + passes.plants[number][1].cut.category for number in classes))
     yield Cause("rolling resistance", "rolling resistance", keys, TIMES, *geometric(1.25, 4), Remedy.RETUNE, NEW_TABLES)
 
 
