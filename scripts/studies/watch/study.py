@@ -1,4 +1,4 @@
-"""After how many passes a drift is found and named, and how often an alarm is false.
+"""After how many passes a drift is found and named, how often an alarm is false, and what a yard repairs first.
 
 Passes in order and with each change are simulated once. A repetition draws some in order, then changed ones, with
 replacement; so it is a sequence of independent passes, and costs no simulation.
