@@ -42,7 +42,7 @@ REPAIRS: Final = (
     Column("weight_per_hour", "all that is worse", "cars/h", decimals(2), spare=1),
     Column("is_ahead", "ahead for sure", spare=1),
     Column("why", "not priced because", words=True, spare=1),
-    Column("advice", "what to do", words=True, spare=3),
+    Column("remedy", "remedy", words=True),
     Column("cause", "cause", words=True, spare=4),
 )
 
@@ -108,7 +108,7 @@ def repairs(found: WatchedYard) -> Iterator[Exhibit]:
         },
         brief=True,
     )
-    for each in found.repairs[:MOST_NAMED]:
+    for each in found.repairs:
         yield Sentence(f"{each.position.asked.name}: {told(each)}. {advice(each.drift)}", to_do=True)
     if found.repairs:
         yield Table("repairs", "What to repair first", REPAIRS, list(repair_rows(found)), brief=True)
@@ -149,7 +149,7 @@ def repair_rows(found: WatchedYard) -> Iterator[Row]:
             "weight_per_hour": None if each.weight is None else each.weight.told,
             "is_ahead": found.is_ahead(place),
             "why": each.why or None,
-            "advice": advice(each.drift),
+            "remedy": each.drift.diagnosis.first.cause.remedy.value,
             "cause": each.drift.diagnosis.first.cause.name,
         }
 
