@@ -24,6 +24,7 @@ from synth.hump.configuration.settings import HumpTrialSettings
 from synth.hump.configuration.template import usual_trial
 from synth.hump.making.short_file import NEEDED
 from synth.hump.making.short_hump import EXAMPLE
+from synth.hump.watching.settings import EXAMPLE as YARD
 from synth.retarder.configuration.config_template import known_of
 from synth.retarder.configuration.point_sensors.settings import DEFAULT_WHEEL_SENSOR, PointSensorSettings
 from synth.retarder.configuration.resolved_config import resolve
@@ -36,6 +37,7 @@ DECLARED: Final[dict[str, Callable[[], tuple[Section, Usual]]]] = {
     "hump": lambda: (HumpTrialSettings(), usual_trial()),
     "short-hump": lambda: (EXAMPLE.model_copy(update=dict.fromkeys((*NEEDED, "tracks", "position"))), NOTHING),
     "sweep": lambda: (SweepTable(), NOTHING),
+    "yard": lambda: (YARD.model_copy(update={"position": None}), NOTHING),
     "tune": lambda: (Settings(), known_of(resolve(Settings(), "the default configuration"))),
     "sensors": lambda: (
         PointSensorSettings.model_construct(path_m=()),

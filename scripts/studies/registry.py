@@ -242,8 +242,9 @@ POSITION_STUDIES: tuple[Study, ...] = (
     ),
     Study(
         "watch",
-        "After how many passes is a drift found and named, and how often is the alarm a false one?",
-        90.0,
+        "After how many passes is a drift found and named, how often is the alarm a false one, and what is repaired "
+        "first?",
+        150.0,
         "how-to/watch.md#how-it-was-shown",
         "scripts.studies.watch.study",
         "scripts.studies.watch.picture",

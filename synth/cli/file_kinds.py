@@ -186,6 +186,12 @@ FILE_KINDS: Final = (
         "synth.hump.making.short_hump:ShortHump",
         "synth.hump.making.template:example_short_toml",
     ),
+    declared(
+        "yard",
+        "Yard that hump watch watches",
+        "synth.hump.watching.settings:YardWatchSettings",
+        "synth.hump.watching.template:example_yard_toml",
+    ),
     FileKind("hump", "Hump file", hump_text, hump_schema, "humps"),
     of_library("position", "Position of retarders", "positions"),
     of_library("retarder", "Type of retarder", "retarders"),

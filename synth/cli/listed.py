@@ -202,6 +202,15 @@ HUMP: Final = (
         "Differences from the first run are paired by train, so they are known better than the figures themselves.",
     ),
     Listed(
+        "hump watch",
+        "synth.hump.watching.command:COMMAND",
+        "synth.hump.watching.options:YardWatchOptions",
+        "init yard",
+        "Watch all positions of a yard, night by night: what to repair first, and what it costs.\n\n"
+        "Goes on from the run before, so a timer can start it. Exit code 1 if a position has drifted, or has no new "
+        "passes.",
+    ),
+    Listed(
         "hump speed",
         "synth.hump.trains.speed_command:COMMAND",
         "synth.hump.trains.trial_options:SpeedOptions",

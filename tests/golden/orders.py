@@ -19,6 +19,16 @@ SENSORS = """\
 path_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]
 """
 DUMPER = CLASS.replace("rnz-2m-park", "rnz-2m-dumper").replace("[1.5]", "[2.0]").replace("high_m_s = 4.0", "")
+YARD = """\
+trial = "trial.toml"
+logs = "validated/log.h5"
+config = "park.toml"
+[cost]
+number = 20
+[[position]]
+name = "421"
+retarder = 421
+"""
 
 INPUTS: Mapping[str, str] = {
     "park.toml": CLASS + SECOND_CLASS,
@@ -30,6 +40,7 @@ INPUTS: Mapping[str, str] = {
     "aim.toml": AIM,
     "short.toml": SHORT,
     "trial.toml": TRIAL,
+    "yard.toml": YARD,
     "computer.toml": COMPUTER,
 }
 """The configurations, by the names of their files."""
@@ -102,5 +113,6 @@ ORDERS: tuple[Order, ...] = (
     Order("hump design trial.toml --speed 1.5", "design"),
     Order("hump capacity trial.toml --speeds 1.7,2.6 --exit-std 0.3,0.1 --trains 2", "capacity"),
     Order("hump speed trial.toml", "speed"),
+    Order("hump watch yard.toml", "watched-yard"),
     Order("computer computer.toml", "computed"),
 )

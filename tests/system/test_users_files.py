@@ -39,10 +39,10 @@ LIBRARY = 'library = ["types/"]\n'
 TABLE = "gondola-4-22t-to-1.5-m-s"
 INPUTS = (
     "yard.toml", "points.toml", "own.toml", "sweep.toml", "aim.toml", "computer.toml", "trial.toml", "hump.toml",
-    "short.toml",
+    "short.toml", "positions.toml",
     "train.csv", "book.h5", "table.json", "log.csv", "log.h5", "mapping.toml",
 )  # fmt: skip
-READ_BY = {"own.toml": OWN_CAR, "sweep.toml": OWN_CAR, "trial.toml": "hump.toml"}
+READ_BY = {"own.toml": OWN_CAR, "sweep.toml": OWN_CAR, "trial.toml": "hump.toml", "positions.toml": "log.csv"}
 """What else is read where an input is."""
 
 
@@ -87,6 +87,7 @@ DIRECTORIES = (
     Writing(("hump", "draw", "hump.toml"), "hump-hump.svg"),
     Writing(("hump", "export", "hump.toml", "--format", "railml"), "hump.railml"),
     Writing(("hump", "make", "short.toml"), "report.html"),
+    Writing(("hump", "watch", "positions.toml"), "sheets/positions.csv"),
     Writing(("identify", "log.csv", "--config", "own.toml", "--mapping", "mapping.toml"), "config.toml"),
     Writing(("watch", "log.csv", "--config", "yard.toml", "--reference", "log.h5"), "sheets/passes.csv"),
     Writing(("retune", "log.csv", "--config", "yard.toml", "--table", "book.h5"), "book.h5"),
@@ -121,6 +122,7 @@ def inputs(tuned_once: tuple[Path, int], tmp_path_factory: pytest.TempPathFactor
         "trial.toml": 'hump = "hump.toml"\n[trains]\nnumber = 2\n[aim]\ndesign_cuts = 200\n',
         "hump.toml": hump_text(Path("medium")),
         "short.toml": example_short_toml(),
+        "positions.toml": 'logs = "log.csv"\n[[position]]\nname = "1"\n',
         "train.csv": "cut,cars,axles,mass_t,category,track\n1,1,4,22,Л,1\n2,1,4,22,Л,2\n",
         "mapping.toml": '[columns]\ncut_id = "cut_id"\n',
     }

@@ -9,6 +9,8 @@ import numpy as np
 
 from plant_models import Plant
 from plant_models.pressure_gauge import PressureGauge
+from scripts.studies.plant_changes import friction, times
+from synth.logs import unknowns as asked
 from synth.logs.drift.causes import Cause
 from synth.logs.drift.evidence import Evidence, evidence_of
 from synth.logs.fitting_passes import fitting_passes
@@ -23,45 +25,45 @@ GAUGE = PressureGauge(2.0, 1.0)
 
 @dataclass(frozen=True)
 class Change:
-    """What happens to the position: `cause` is what the watch is to name; `changed` plant; bias of the sensor, m/s."""
+    """What happens to the position: `cause` is what the watch is to name; `changed` plant; what sensor and gauge
+    show too much; `is_of_drive`: it is sought only with a gauge on the drive."""
 
     title: str
     cause: str
     changed: Callable[[Plant], Plant]
     bias_m_s: float = 0.0
+    gauge_off_kpa: float = 0.0
+    is_of_drive: bool = False
 
 
-def with_friction(factor: float) -> Callable[[Plant], Plant]:
-    """The plant with so many times the force of its brake."""
-
-    def changed(plant: Plant) -> Plant:
-        force = plant.position.force
-        (name,) = (each for each in vars(force) if each.startswith("slope_kn_per_kpa"))
-        weaker = replace(force, **{name: factor * getattr(force, name)})  # type: ignore[type-var]
-        return replace(plant, position=replace(plant.position, force=weaker))
-
-    return changed
+LIGHT = "Л"
+"""A weight category of the built-in configuration."""
 
 
-def with_exhaust(factor: float) -> Callable[[Plant], Plant]:
-    """The plant that exhausts so many times as slowly."""
-
-    def changed(plant: Plant) -> Plant:
-        drive = plant.position.pneumatics
-        slower = replace(drive, exhaust_time_constant_s=factor * drive.exhaust_time_constant_s)
-        return replace(plant, position=replace(plant.position, pneumatics=slower))
-
-    return changed
+def of_light(changed: Callable[[Plant], Plant]) -> Callable[[Plant], Plant]:
+    """The change for cuts of one category alone."""
+    return lambda plant: changed(plant) if plant.cut.category == LIGHT else plant
 
 
 IN_ORDER = Change("none", "", lambda plant: plant)
 
 CHANGES = (
-    Change("friction −30 %", "friction", with_friction(0.7)),
-    Change("friction −10 %", "friction", with_friction(0.9)),
-    Change("exhaust constant +50 %", "exhaust constant", with_exhaust(1.5)),
+    Change("friction −30 %", "friction", friction(0.7, 1.0)),
+    Change("friction −10 %", "friction", friction(0.9, 1.0)),
+    Change("exhaust constant +50 %", "exhaust constant", times(asked.EXHAUST, 1.5)),
     Change("sensor bias +0.1 m/s", "sensor bias", lambda plant: plant, 0.1),
+    Change("friction of category Л −30 %", f"friction of {LIGHT}", of_light(friction(0.7, 1.0))),
+    Change("spread of friction ×2", "friction spread", friction(1.0, 2.0)),
+    Change("rolling resistance +50 %", "rolling resistance", times("cut.rolling_resistance.mean_n_per_kn", 1.5)),
+    Change("fill constant +50 %", "fill constant", times(asked.FILL, 1.5), is_of_drive=True),
+    Change("brake delay ×2", "brake delay", times(asked.BRAKE_DELAY, 2.0), is_of_drive=True),
+    Change("release delay ×2", "release delay", times(asked.RELEASE_DELAY, 2.0), is_of_drive=True),
+    Change("dead band +50 %", "dead band", times(asked.DEAD_BAND, 1.5), is_of_drive=True),
+    Change("touch pressure +30 %", "touch pressure", times(asked.TOUCH_PRESSURE, 1.3), is_of_drive=True),
+    Change("sensor noise ×2", "sensor noise", times(asked.NOISE, 2.0)),
+    Change("gauge offset +10 kPa", "gauge offset", lambda plant: plant, gauge_off_kpa=10.0, is_of_drive=True),
 )
+"""One at least of each cause that the watch knows; sizes are assumed."""
 
 
 def simulated(
@@ -79,7 +81,7 @@ def simulated(
         shifted = replace(active(table), coefficients=coefficients)
         classes.append(LoggedClass(change.changed(plant), TableController(shifted), table.target_speed_m_s))
     log = mixed_log(classes, [max(1, passes // len(classes))] * len(classes), seed, gauge)
-    return replace(log, speed_m_s=log.speed_m_s + change.bias_m_s)
+    return replace(log, speed_m_s=log.speed_m_s + change.bias_m_s, pressure_kpa=log.pressure_kpa + change.gauge_off_kpa)
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,12 +25,14 @@ class Arrivals:
 
     The pass begins when the first axle is at the entrance, with `entry_m_s`, and ends `path_m` later, when the last
     axle is at the exit; there a cut that nothing brakes has `unbraked_exit_m_s`, 0 if it stops before. `commanded_m_s`:
-    the exit speed ordered. `category`: place among the weight categories. `resistance_n_per_kn`: basic resistance and
-    air at the mean speed between entry and order; `unbraked_resistance_n_per_kn`: at that of the unbraked pass. `seed`,
-    `train`, `cut`: whose random numbers they have; `rows` is the caller's.
+    the exit speed ordered. `retarder`: number of the element. `category`: place among the weight categories.
+    `resistance_n_per_kn`: basic resistance and air at the mean speed between entry and order;
+    `unbraked_resistance_n_per_kn`: at that of the unbraked pass. `seed`, `train`, `cut`: whose random numbers they
+    have; `rows` is the caller's.
     """
 
     rows: Ints
+    retarder: Ints
     entry_m_s: Floats
     unbraked_exit_m_s: Floats
     path_m: Floats

@@ -74,6 +74,13 @@ class HumpRoutes:
         """Most elements of a route."""
         return int(self.vertex.shape[1])
 
+    @cached_property
+    def retarder_numbers(self) -> Ints:
+        """Numbers of the elements of the positions, (routes, positions); −1 where a route has fewer."""
+        rows = np.arange(len(self.routes))[:, None]
+        numbers = np.array(self.numbers)[self.vertex[rows, self.retarder]]
+        return read_only(np.where(self.retarder >= 0, numbers, -1))
+
     @property
     def positions(self) -> int:
         """Most positions of a route."""

@@ -203,6 +203,7 @@ class OneCut:
         passed = self.hump.positions[position].passed(
             Arrivals(
                 rows=rows,
+                retarder=routes.retarder_numbers[self.routes[held], position],
                 train=self.trains.numbers[lanes],
                 cut=np.full(len(lanes), self.cut),
                 position=position,

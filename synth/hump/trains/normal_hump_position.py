@@ -66,9 +66,19 @@ class NormalHumpPosition:
 
     def passed(self, arrivals: Arrivals) -> Passed:
         """See `HumpPosition`."""
-        z = ndtri(keyed_uniform(arrivals.seed, Purpose.POSITION_ERROR, arrivals.keys, 1)[0])
-        unbraked = arrivals.unbraked_exit_m_s
-        taken = 2.0 * arrivals.reduced_gravity_m_s2 * self.full_brake_head_m(arrivals)
-        least = np.sqrt(np.maximum(unbraked**2 - taken, SLOWEST_M_S**2))
-        exit_m_s = np.minimum(np.maximum(arrivals.commanded_m_s + self.std_m_s * z, least), unbraked)
-        return Passed(exit_m_s, evenly_braked_s(arrivals, exit_m_s), np.zeros(len(arrivals), dtype=np.int64))
+        z = ndtri(error_uniform(arrivals))
+        return passed_with(arrivals, self.std_m_s * z, self.full_brake_head_m(arrivals))
+
+
+def error_uniform(arrivals: Arrivals) -> Floats:
+    """What the exit errors of the cuts are drawn by, uniform in (0, 1): the same whatever law they have."""
+    return np.asarray(keyed_uniform(arrivals.seed, Purpose.POSITION_ERROR, arrivals.keys, 1)[0])
+
+
+def passed_with(arrivals: Arrivals, errors_m_s: Floats, full_brake_head_m: Floats) -> Passed:
+    """Passes that end `errors_m_s` above the command, within what brake and track allow."""
+    unbraked = arrivals.unbraked_exit_m_s
+    taken = 2.0 * arrivals.reduced_gravity_m_s2 * full_brake_head_m
+    least = np.sqrt(np.maximum(unbraked**2 - taken, SLOWEST_M_S**2))
+    exit_m_s = np.minimum(np.maximum(arrivals.commanded_m_s + errors_m_s, least), unbraked)
+    return Passed(exit_m_s, evenly_braked_s(arrivals, exit_m_s), np.zeros(len(arrivals), dtype=np.int64))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from synth.logs import unknowns as asked
@@ -55,6 +55,11 @@ class Cause:
     advice: str
     category: str = ""
 
+    @property
+    def as_watched(self) -> Cause:
+        """The same with those sizes alone that charts are kept of: an eighth of the work."""
+        return replace(self, sizes=(self.watched[0], self.scale.neutral, self.watched[1]))
+
     def moved(self, values: Values, size: float) -> dict[str, float]:
         """`values` after a drift by `size`."""
         return dict(values) | {key: self.scale.moved(values[key], size) for key in self.keys}
@@ -103,7 +108,8 @@ def _of_friction(passes: FittingPasses, slope_key: str) -> Iterator[Cause]:
         "friction spread", "spread of friction from cut to cut", (asked.COMMON_CV,), TIMES, *geometric(1.4, 3),
         Remedy.RETUNE, NEW_TABLES,
     )  # fmt: skip
-    keys = tuple(asked.RESISTANCE + passes.plants[number][0] for number in sorted(set(passes.class_of.tolist())))
+    classes = sorted(set(passes.class_of.tolist()))
+    keys = tuple(dict.fromkeys(asked.RESISTANCE + passes.plants[number][1].cut.category for number in classes))
     yield Cause("rolling resistance", "rolling resistance", keys, TIMES, *geometric(1.25, 4), Remedy.RETUNE, NEW_TABLES)
 
 

@@ -71,15 +71,16 @@ def steps_of(evidence: Evidence) -> Floats:
     return np.minimum(np.array(columns).T, MOST)
 
 
-def charts_of(evidence: Evidence) -> Charts:
+def charts_of(evidence: Evidence, run_length: float = RUN_LENGTH) -> Charts:
     """All charts along the passes."""
     kinds = kinds_of(evidence.causes)
-    return Charts(kinds, page_sums(steps_of(evidence)), limit_of(len(kinds)))
+    return Charts(kinds, page_sums(steps_of(evidence)), limit_of(len(kinds), run_length))
 
 
-def page_sums(steps: Floats) -> Floats:
-    """S = max(0, S + step) along the first axis, S = 0 before: the running sum less its lowest value so far."""
-    total = np.cumsum(steps, axis=0)
+def page_sums(steps: Floats, before: Floats | float = 0.0) -> Floats:
+    """S = max(0, S + step) along the first axis, S = `before` ahead of it: the running sum less its lowest value so
+    far."""
+    total = before + np.cumsum(steps, axis=0)
     lowest = np.minimum(np.minimum.accumulate(total, axis=0), 0.0)
     return np.asarray(total - lowest)
 

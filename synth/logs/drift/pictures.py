@@ -33,10 +33,10 @@ LEAST_REACH_M_S = 0.05
 BEGINNING, ALARM = "beginning of the drift", "alarm"
 
 
-def control_charts(found: Watch) -> Figure:
+def control_charts(found: Watch, title: str = "Charts of the watch") -> Figure:
     """All charts over the number of the pass; beginning and alarm of a drift are marked."""
     height, below = 3.0, 1.3 * len(found.exits)
-    figure = new_figure(10.0, 1.5 + height + below, "Charts of the watch", subject(found))
+    figure = new_figure(10.0, 1.5 + height + below, title, subject(found))
     place(figure, left=0.85, right=2.9, bottom=0.6, top=0.9, h=0.5)
     panels = figure.subplots(1 + len(found.exits), 1, squeeze=False, height_ratios=[height] + [1.3] * len(found.exits))
     draw_sums(panels[0, 0], found)

@@ -16,8 +16,9 @@ CAPTION: Final = (
     "of the others the highest is drawn at each pass. An alarm is where a sum reaches the dashed limit, and nowhere "
     "else. Lower panels: exit speed less target of each pass, by weight category, and the median of the last 25. They "
     "decide nothing, so they have no limits. Triangles: the brake was full to the end, so the cut may have left too "
-    "fast whatever the table. Hollow marks at an edge: beyond the panel; sheets/passes.csv has the value."
+    "fast whatever the table. Hollow marks at an edge: beyond the panel."
 )
+IN_SHEET: Final = " Every pass is in sheets/passes.csv."
 MARKED: Final = " Vertical lines: the beginning of the drift (dotted) and the alarm (solid)."
 
 CAUSES: Final = (
@@ -136,7 +137,7 @@ def sentences(found: Watch, drift: Drift) -> Iterator[str]:
     cause, second = first.cause, diagnosis.gains[1]
     low, high = (f"{number(found, each)}" for each in diagnosis.begins95)
     since = f"since pass {place(found, first.begin)}, between passes {low} and {high}"
-    size = f"{cause.told(drift.size.size)} [{cause.told(drift.size.low95)}, {cause.told(drift.size.high95)}]"
+    size = size_told(drift)
     next_best = f"{second.cause.title} ({second.cause.told(second.size)})"
     if diagnosis.decided:
         yield f"Drift: {cause.title} {size} {since}."
@@ -146,6 +147,12 @@ def sentences(found: Watch, drift: Drift) -> Iterator[str]:
     yield f"Something drifted {since}; which cannot be decided yet."
     yield (f"Most likely: {cause.title} ({size}), only {diagnosis.odds:.3g} times as likely as {next_best}.")
     yield cost_sentence(drift)
+
+
+def size_told(drift: Drift) -> str:
+    """'-30 % [-32 %, -28 %]'."""
+    cause, size = drift.diagnosis.first.cause, drift.size
+    return f"{cause.told(size.size)} [{cause.told(size.low95)}, {cause.told(size.high95)}]"
 
 
 def advice(drift: Drift) -> str:
@@ -216,7 +223,7 @@ def charts(found: Watch) -> Iterator[Exhibit]:
     yield Chart(
         "watch",
         "Charts of the watch",
-        CAPTION if found.drift is None else CAPTION + MARKED,
+        CAPTION + IN_SHEET + ("" if found.drift is None else MARKED),
         lambda: _pictures().control_charts(found),
     )
     yield Table("charts", "Supposed drifts", CHARTS, list(chart_rows(found)))

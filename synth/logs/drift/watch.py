@@ -89,19 +89,26 @@ def watch(passes: FittingPasses, values: Mapping[str, float], slope_key: str, th
     kept = passes.taken(number_of)
     causes = causes_of(kept, values, slope_key)
     evidence = evidence_of(kept, values, causes, slope_key, threads)
-    charts = charts_of(evidence)
-    errors = evidence.exit_m_s - kept.log.target_m_s
+    return explained(kept, number_of, evidence, charts_of(evidence), values, slope_key)
+
+
+def explained(
+    passes: FittingPasses, number_of: Ints, evidence: Evidence, charts: Charts, values: Mapping[str, float],
+    slope_key: str,
+) -> Watch:  # fmt: skip
+    """The watch on `passes` whose `evidence` and `charts` are known: what is behind the first alarm."""
+    errors = evidence.exit_m_s - passes.log.target_m_s
     found = diagnosed(evidence, charts)
     if found is None:
-        return Watch(kept, number_of, evidence, charts, errors, None)
-    first, last = found.first, min(found.alarm + FURTHER, len(kept) - 1)
-    with_it = kept.taken(np.arange(first.begin, last + 1))
+        return Watch(passes, number_of, evidence, charts, errors, None)
+    first, last = found.first, min(found.alarm + FURTHER, len(passes) - 1)
+    with_it = passes.taken(np.arange(first.begin, last + 1))
     size = drift_size(with_it, values, first.cause, slope_key, first.size)
     if first.cause.keys == (asked.BIAS,):
         # The filter took the readings for true.
-        errors = np.where(np.arange(len(kept)) >= first.begin, errors - size.size, errors)
+        errors = np.where(np.arange(len(passes)) >= first.begin, errors - size.size, errors)
     drift = Drift(found, size, last, cost_of(errors[: first.begin]), cost_of(errors[first.begin :]))
-    return Watch(kept, number_of, evidence, charts, errors, drift)
+    return Watch(passes, number_of, evidence, charts, errors, drift)
 
 
 def cost_of(errors_m_s: Floats) -> ExitCost:

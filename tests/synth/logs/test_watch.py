@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from scripts.studies.tuned_table import tuned_table
-from scripts.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, Change, simulated
+from scripts.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, LIGHT, Change, simulated
 from synth.cli import main
 from synth.frame.results_directory import results_directory
 from synth.logs import unknowns as asked
@@ -99,6 +99,15 @@ def test_passes_stopped_by_hand_are_left_out(config: ResolvedConfig, table: Cont
 def some(config: ResolvedConfig, table: ControllerTable) -> tuple[FittingPasses, dict[str, float], str]:
     passes = fitting_passes(day(config, table, IN_ORDER, 2).taken(np.arange(5)), config.plants(), "the test")
     return passes, *configured(passes, config.parameters)
+
+
+def test_every_cause_of_the_study_is_watched(config: ResolvedConfig, table: ControllerTable) -> None:
+    """But for the friction of one category: all passes here are of one."""
+    passes, values, slope_key = some(config, table)
+    causes = causes_of(passes, values, slope_key)
+    assert {change.cause for change in CHANGES} - {f"friction of {LIGHT}"} <= {cause.name for cause in causes}
+    for cause, ratios in zip(causes, evidence_of(passes, values, causes, slope_key).ratios, strict=True):
+        assert np.abs(ratios[:, [0, -1]]).min() > 0.0, cause.name
 
 
 def test_ratios_are_those_of_the_likelihood(config: ResolvedConfig, table: ControllerTable) -> None:

@@ -88,6 +88,7 @@ def coming(
     gained = fall - path.drag_m_s2_per_n_kn * resistance_n_kn * plant.exit_m
     return Arrivals(
         rows=np.arange(n),
+        retarder=np.full(n, 401),
         entry_m_s=entry_m_s,
         unbraked_exit_m_s=np.sqrt(np.maximum(entry_m_s**2 + 2.0 * gained, 0.0)),
         path_m=np.full(n, plant.exit_m),

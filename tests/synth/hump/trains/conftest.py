@@ -23,6 +23,7 @@ def arriving(
     """One gondola of each of n trains, cut 4 of it."""
     return Arrivals(
         rows=np.arange(n),
+        retarder=np.full(n, 401),
         entry_m_s=np.full(n, entry_m_s),
         unbraked_exit_m_s=np.full(n, unbraked_m_s),
         path_m=np.full(n, 37.45),

@@ -1,0 +1,98 @@
+"""A watch that goes on night by night finds what a watch on all passes finds; what it keeps is whole or refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+import pytest
+
+from scripts.studies.identification.truths import Yard
+from synth.logs.drift import kept_watch
+from synth.logs.drift.baseline import configured
+from synth.logs.drift.charts import limit_of, page_sums
+from synth.logs.drift.kept_file import from_npz, to_npz
+from synth.logs.drift.kept_watch import KeptWatch, WatchedNight, watched_night
+from synth.logs.drift.watch import watch
+from synth.logs.fitting_passes import FittingPasses, fitting_passes
+from tuning_tables import DamagedTable
+from tuning_tables.pass_log.pass_log import PassLog
+
+RUN_LENGTH = 10_000.0
+BEGIN = 50
+NIGHTS = ((0, 30), (30, 61), (61, 80))
+
+
+@pytest.fixture(scope="module")
+def biased(passes: FittingPasses) -> PassLog:
+    """The sensor shows 0.1 m/s too much from a pass on."""
+    log = passes.log
+    return replace(log, speed_m_s=log.speed_m_s + np.where(log.pass_of_row >= BEGIN, 0.1, 0.0))
+
+
+def nights(yard: Yard, log: PassLog, kept: KeptWatch) -> list[WatchedNight]:
+    """The watch on a log that comes in three parts, and what it keeps goes through its file."""
+    found = []
+    for begin, end in NIGHTS:
+        part = log.taken(np.arange(begin, end))
+        found.append(watched_night(kept, part, yard.config, "the test", RUN_LENGTH))
+        kept = from_npz(to_npz(found[-1].kept, "sha"), "the state", "sha")
+    return found
+
+
+def test_nights_are_one_watch(yard: Yard, biased: PassLog, monkeypatch: pytest.MonkeyPatch) -> None:
+    passes = fitting_passes(biased, yard.config.plants(), "the test")
+    values, slope_key = configured(passes, yard.config.parameters)
+    whole = watch(passes, values, slope_key)
+    assert whole.drift is not None
+    assert whole.drift.diagnosis.first.cause.name == "sensor bias"
+    begun = KeptWatch(values=MappingProxyType(values))
+    *before, last = nights(yard, biased, begun)
+    assert [each.found for each in before[:1]] == [None]
+    assert last.found is not None
+    assert last.limit == limit_of(len(whole.charts.kinds), RUN_LENGTH)
+    assert last.found.charts.sums == pytest.approx(whole.charts.sums, abs=1e-9)
+    assert last.found.drift is not None
+    assert last.found.drift.diagnosis.alarm == whole.drift.diagnosis.alarm
+    assert last.found.drift.size == whole.drift.size
+    monkeypatch.setattr(kept_watch, "LEAST_KEPT", 8)  # what is forgotten is not missed
+    monkeypatch.setattr(kept_watch, "MOST_KEPT", 20)
+    *before, last = nights(yard, biased, begun)
+    assert before[0].kept.first == NIGHTS[0][1] - 20
+    assert last.found is not None
+    assert last.found.drift is not None
+    assert last.found.number_of[last.found.drift.diagnosis.first.begin] == BEGIN
+
+
+def test_a_pass_that_comes_twice_counts_once(yard: Yard, passes: FittingPasses) -> None:
+    one = watched_night(KeptWatch(), passes.log, yard.config, "the test", RUN_LENGTH)
+    assert (one.new, one.found) == (len(passes), None)
+    renamed = replace(passes.log, cut_id=tuple(f"again/{each}" for each in passes.log.cut_id))
+    two = watched_night(one.kept, renamed, yard.config, "the test", RUN_LENGTH)
+    assert two.new == 0
+    assert to_npz(two.kept, "sha") == to_npz(one.kept, "sha")
+    assert watched_night(two.kept, None, yard.config, "the test", RUN_LENGTH).highest == one.highest
+
+
+def test_what_is_kept_is_whole_or_refused(yard: Yard, passes: FittingPasses) -> None:
+    kept = watched_night(KeptWatch(), passes.log, yard.config, "the test", RUN_LENGTH).kept
+    content = to_npz(kept, "sha")
+    read = from_npz(content, "the state", "sha")
+    assert to_npz(read, "sha") == content
+    other = from_npz(content, "the state", "of new tables")
+    assert (other.watched, other.log, len(other.seen)) == (0, None, len(passes))
+    assert watched_night(other, passes.log, yard.config, "the test", RUN_LENGTH).new == 0
+    for damaged in (content[:-1], content.replace(b"sha", b"shb", 1)):
+        with pytest.raises(DamagedTable, match="the state"):
+            from_npz(damaged, "the state", "sha")
+
+
+def test_sums_go_on_where_they_ended() -> None:
+    steps = np.random.default_rng(3).normal(-0.1, 1.0, (60, 4))
+    whole = page_sums(steps)
+    plain = np.zeros(4)
+    for step, told in zip(steps, whole, strict=True):
+        plain = np.maximum(plain + step, 0.0)
+        assert told == pytest.approx(plain, abs=1e-9)
+    assert page_sums(steps[25:], whole[24]) == pytest.approx(whole[25:], abs=1e-9)
