@@ -14,7 +14,8 @@ from packaging.utils import canonicalize_name
 from scripts.release.step import ReleaseFault, ran
 
 LOCKED: Final = re.compile(r"^([\w.-]+)==([\w.+!-]+)", re.MULTILINE)
-HEADING: Final = re.compile(r"^## \[([^]]+)\]", re.MULTILINE)
+HEADING: Final = re.compile(r"^## \[([^]]+)\] - \d{4}-\d\d-\d\d$", re.MULTILINE)
+"""Of a release; one that has no day yet is none."""
 CITED: Final = re.compile(r"^version: (\S+)$", re.MULTILINE)
 
 
