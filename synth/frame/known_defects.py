@@ -37,11 +37,15 @@ class Defect:
     remedy: str
 
     def concerns(self, table: Document) -> bool:
-        """Whether a version with this defect made the table; so it is taken where the version is none of ours."""
+        """Whether a version with this defect made the table."""
         made_by = table["generator"]
         if made_by["name"] != OWN or table["kind"] not in self.kinds:
             return False
-        told = release(made_by["version"])
+        return self.is_in(made_by["version"])
+
+    def is_in(self, version: str) -> bool:
+        """Whether this version of the program has it; so it is taken where the version is none of ours."""
+        told = release(version)
         is_fixed = self.fixed is not None and told >= release(self.fixed)
         return not told or (told >= release(self.introduced) and not is_fixed)
 

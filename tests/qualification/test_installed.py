@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import subprocess
+from dataclasses import replace
 from importlib.metadata import Distribution, PathDistribution
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import pytest
 
 from synth.cli.qualification import installed
 from synth.cli.qualification.check import Outcome
+from synth.frame.known_defects import Defect
 
 FILES = {"synth/a.py": b"a = 1\n", "synth/b.toml": b"b = 2\n"}
 
@@ -55,6 +57,15 @@ def test_a_changed_file_is_told(package: Distribution, tmp_path: Path, change: o
     check = installed.program_check()
     assert (check.outcome, check.found.partition("; ")[2]) == (Outcome.FAILED, told)
     assert installed.own_content().sha256 != before
+
+
+def test_only_an_unsafe_defect_of_this_version_fails(package: Distribution) -> None:
+    safe = Defect("D-1", "0.9", "1.1", ("lines",), False, "it is slow", "none", "look", "wait")
+    assert installed.defect_check(()).found == "version 1.0: none"
+    assert installed.defect_check((safe,)).outcome is Outcome.PASSED
+    assert installed.defect_check((safe,)).found == "version 1.0: D-1: it is slow"
+    assert installed.defect_check((replace(safe, unsafe=True),)).outcome is Outcome.FAILED
+    assert installed.defect_check((replace(safe, unsafe=True, fixed="1.0"),)).outcome is Outcome.PASSED
 
 
 def git(folder: Path, *words: str) -> None:

@@ -21,6 +21,7 @@ from urllib.request import url2pathname
 
 from synth.cli.qualification.check import Check, checked, not_checked
 from synth.cli.qualification.program import process
+from synth.frame.known_defects import Defect
 
 PROGRAM: Final = "retarder-synth"
 PACKAGES: Final = ("plant_models", "synth", "tuning_tables")
@@ -111,6 +112,15 @@ def program_check() -> Check:
     wrong = [*own.changed, *added]
     said = f"{own.name} {own.version}, {own.files} files; {few(wrong) or 'none differs'}"
     return checked(WHAT, HOW, said, LIMIT, not wrong)
+
+
+def defect_check(known: tuple[Defect, ...]) -> Check:
+    """Whether this version has one of the `known` defects that is unsafe."""
+    version = distribution(PROGRAM).version
+    found = [f"{each.id}{', unsafe' if each.unsafe else ''}: {each.wrong}" for each in known if each.is_in(version)]
+    safe = not any(each.unsafe for each in known if each.is_in(version))
+    said = f"version {version}: {'; '.join(found) or 'none'}"
+    return checked("Known defects", "the list of defects that comes with the program", said, "none is unsafe", safe)
 
 
 def site_of(found: Distribution) -> Path:

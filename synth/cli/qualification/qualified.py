@@ -12,11 +12,19 @@ from typing import Final
 from synth.cli.qualification.c_code import c_checks
 from synth.cli.qualification.check import Check, Outcome
 from synth.cli.qualification.golden import golden_checks
-from synth.cli.qualification.installed import Installed, libraries, library_check, own_content, program_check
+from synth.cli.qualification.installed import (
+    Installed,
+    defect_check,
+    libraries,
+    library_check,
+    own_content,
+    program_check,
+)
 from synth.cli.qualification.kernels import plain_checks, tune_checks
 from synth.cli.qualification.second_program import loop_check, planted_checks, prediction_check, verify_check
 from synth.cli.qualification.structured_text import st_checks
 from synth.cli.qualification.tuned import ESTIMATED, MEASURED, tuned_twice
+from synth.frame.known_defects import known_defects
 
 STEPS: Final = 6
 
@@ -43,7 +51,7 @@ def qualified(done: Callable[[str], None]) -> Qualified:
         done(step)
 
     found = libraries()
-    add("files", (program_check(), library_check(found)))
+    add("files", (program_check(), library_check(found), defect_check(known_defects())))
     with tempfile.TemporaryDirectory(prefix="retarder-synth-") as folder, ThreadPoolExecutor(2) as pool:
         usual, plain = tuned_twice(Path(folder))
         books = {book.kind: book for book in usual}
