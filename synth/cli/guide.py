@@ -68,7 +68,7 @@ HUMP: Final = CommandGuide(
         "simulate": Shown("hump simulate my-trial.toml --trains 1000 -o out/mine", "how-to/hump-trials.md"),
         "speed": Shown("hump speed my-trial.toml --train 3", "how-to/hump-trials.md"),
         "capacity": Shown("hump capacity my-trial.toml --exit-std 0.35,0.2,0.05", "how-to/hump-trials.md"),
-        "watch": Shown("hump watch my-yard.toml -o out/yard", "how-to/watch.md#all-positions-of-a-yard"),
+        "watch": Shown("hump watch my-yard.toml -o out/yard", "how-to/watch.md"),
         "compare": Shown("hump compare out/today out/new -o out/compared", "how-to/hump-trials.md"),
     },
 )

@@ -18,7 +18,7 @@ DOCS = ROOT / "docs"
 
 MOST_WORDS = 60_000
 NOT_READ = re.compile(
-    r"<!-- (study|keys|members|studies).*?<!-- end -->|^```.*?^```|^\[[\w-]+\]: \S+$", re.DOTALL | re.MULTILINE
+    r"<!-- (study|keys|members|studies|wires).*?<!-- end -->|^```.*?^```|^\[[\w-]+\]: \S+$", re.DOTALL | re.MULTILINE
 )
 """Tables that follow from something else, listings, and where a name in brackets leads to."""
 
