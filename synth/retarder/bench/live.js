@@ -75,7 +75,7 @@ function tell(now) {
     : `no cut yet: waiting for a controller; ${traffic.connected} connected`;
   byId("tiles").replaceChildren(
     tile(last ? `stage ${last[4]}` : "–", last ? `in force at ${last[0].toFixed(1)} m` : "in force"),
-    tile(speed(now.rms_m_s), `rms of the exit error after ${now.ended} cuts`),
+    tile(speed(now.rms_m_s), `rms of the exit error of the cuts that left: ${now.ended}`),
     tile(speed(now.by_table_m_s), `the table on these cuts; it promises ${speed(now.promised_m_s)}`),
     tile(`${now.unanswered} of ${now.samples}`, "samples without an answer in time"),
     tile(`${traffic.refused}`, `of ${traffic.requests} requests refused; ${traffic.impossible} of a stage that is not there`));
