@@ -7,6 +7,9 @@ from dataclasses import dataclass, replace
 from plant_models.errors import require_between
 from synth.problem.criterion import SQUARED_ERROR_CRITERION, Criterion
 
+OVERSPEED_M_S = 0.3
+"""An exit that is faster than the target by more than this is an over-speed."""
+
 
 @dataclass(frozen=True)
 class Aim:

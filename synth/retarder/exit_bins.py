@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.problem.aim import OVERSPEED_M_S
 from synth.retarder.tuned_case import TunedCase
-from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.solver.exit_density import ExitDensity
 
 NARROW_M_S: Final = 0.01

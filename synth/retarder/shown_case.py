@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.problem.aim import OVERSPEED_M_S
 from synth.retarder.case_result import CaseResult
 from synth.retarder.exit_bins import bin_edges_m_s, predicted_density
-from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.simulation.passes import TRACE_FACTORS, PassTrace
 from synth.solver.switching_lines import SwitchingLines
 

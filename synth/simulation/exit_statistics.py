@@ -7,11 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from synth.problem.aim import OVERSPEED_M_S
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import Interval, mean_of, quantiles_of, rms_of, rms_quotient, share_of
-
-OVERSPEED_M_S = 0.3
-"""An exit that is faster than the target by more than this is an over-speed."""
 
 NORMAL_95 = 1.959963984540054
 """97.5 % quantile of the normal law."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from synth.problem.aim import OVERSPEED_M_S
 from synth.solver.exit_density import ExitDensity
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
@@ -28,9 +29,6 @@ from tuning_tables.stage import round_coefficients
 if TYPE_CHECKING:  # who asks a table for its lines needs no kernels
     from synth.solver.any_time.drive_modes import DriveModes
     from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
-
-OVERSPEED_M_S = 0.3
-"""Over-speed counted in `predicted`: exit faster than the target by more than this."""
 
 LOWEST_VALID_SPEED_M_S = 0.3
 

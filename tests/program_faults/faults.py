@@ -46,7 +46,7 @@ PLANTED: Final = {
     ),
     "prediction": (
         ("synth/solver/exit_density.py", "first - self.stalled * target_speed_m_s", "first"),
-        ("synth/solver/tabulate.py", "OVERSPEED_M_S = 0.3", "OVERSPEED_M_S = 0.4"),
+        ("synth/problem/aim.py", "OVERSPEED_M_S = 0.3", "OVERSPEED_M_S = 0.4"),
         ("synth/solver/tabulate.py", "rms_m_s=density.rms_m_s(", "rms_m_s=0.9 * density.rms_m_s("),
         ("synth/simulation/closed_loop.py", "self.plant.sensor.computing_delay_s,", "0.0,"),
     ),

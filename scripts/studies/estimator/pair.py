@@ -8,6 +8,7 @@ import numpy as np
 
 from plant_models import Plant
 from scripts.studies.tuned_table import rounded
+from synth.problem.aim import OVERSPEED_M_S
 from synth.problem.problem import Problem
 from synth.retarder.class_setup import TRIM_PASSES, trim_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -17,7 +18,7 @@ from synth.retarder.estimation.estimated_table import controller_of
 from synth.retarder.estimation.estimator_design import speed_error_m_s
 from synth.retarder.estimation.tuning_days import tuning_days, tuning_row
 from synth.simulation.closed_loop import Controller, TableController, close_loop, simulate
-from synth.simulation.exit_statistics import OVERSPEED_M_S, exit_statistics, rms_ratio
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.replicates import Interval, share_of

@@ -20,12 +20,11 @@ from scripts.studies.estimator.wrong import braking_otherwise
 from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
-from synth.problem.aim import Aim
+from synth.problem.aim import OVERSPEED_M_S, Aim
 from synth.problem.problem import Problem
 from synth.retarder.configuration.config_file import load_config, parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import simulate
-from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import REPLICATE_PASSES

@@ -7,7 +7,7 @@ import numpy as np
 from scripts.studies.book import Measure
 from scripts.studies.radar_faults.findings import Exits, FaultRow
 from scripts.studies.radar_faults.watched_passes import WatchedPasses
-from synth.simulation.exit_statistics import OVERSPEED_M_S
+from synth.problem.aim import OVERSPEED_M_S
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import Mean, mean_of, rms_of, rms_quotient, share_of
 from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM

@@ -17,7 +17,7 @@ from synth.logs.drift.diagnosis import FURTHER, Diagnosis, diagnosed
 from synth.logs.drift.drift_size import DriftSize, drift_size
 from synth.logs.drift.evidence import Evidence, evidence_of
 from synth.logs.fitting_passes import FittingPasses
-from synth.simulation.exit_statistics import OVERSPEED_M_S
+from synth.problem.aim import OVERSPEED_M_S
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.replay.known_cuts import KnownCuts, draws_of
+from synth.problem.aim import OVERSPEED_M_S
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.controllers import TableController
-from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.simulation.random_passes import random_passes
 from tuning_tables.active_table import ActiveTable
 

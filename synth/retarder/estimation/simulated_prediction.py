@@ -15,11 +15,11 @@ import zlib
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.problem.aim import OVERSPEED_M_S
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.exit_density import ExitDensity
-from synth.solver.tabulate import OVERSPEED_M_S
 from tuning_tables import Predicted
 
 PREDICTION_PASSES = 10_000

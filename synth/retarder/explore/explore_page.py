@@ -11,10 +11,10 @@ from typing import Any, Final
 from plant_models import PointSensors
 from synth.frame.page.markup import Markup, element
 from synth.frame.page.scripted_document import SPEED_UNITS, scripted_document
+from synth.problem.aim import OVERSPEED_M_S
 from synth.retarder.explore.beside import Beside, beside_data
 from synth.retarder.explore.plant_data import plant_data
 from synth.retarder.served_class import PassageClass, ServedClass
-from synth.simulation.exit_statistics import OVERSPEED_M_S
 from tuning_tables.controller_code.js_rules import JsRules, js_passage_rules, js_rules
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.table import ControllerTable

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant_models import PlantError
+from synth.problem.aim import OVERSPEED_M_S
 from synth.retarder.off_nominal.condition import CONDITIONS, Change, Condition
 from synth.retarder.off_nominal.outcome import OffNominal, Outcome
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
-from synth.simulation.exit_statistics import OVERSPEED_M_S, overspeed_of, rms_ratio
+from synth.simulation.exit_statistics import overspeed_of, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import rms_of, share_of
 from tuning_tables import ControllerTable

@@ -22,9 +22,9 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
+from synth.problem.aim import OVERSPEED_M_S
 from synth.retarder.exit_bins import bin_edges_m_s, predicted_density, prediction_origin
 from synth.retarder.tuned_case import TunedCase
-from synth.simulation.exit_statistics import OVERSPEED_M_S
 
 LEAST = 1e-4
 """Bottom of the logarithmic panel, 1/(m/s): one cut in 100 000 in a wide bin."""

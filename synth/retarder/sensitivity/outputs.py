@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.simulation.exit_statistics import OVERSPEED_M_S
+from synth.problem.aim import OVERSPEED_M_S
 from synth.simulation.passes import ExitSample
 
 Floats = NDArray[np.float64]

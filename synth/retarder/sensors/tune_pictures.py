@@ -7,10 +7,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from synth.frame.exhibits import Chapter, Chart
+from synth.problem.aim import OVERSPEED_M_S
 from synth.retarder.case_names import by_class, file_stem
 from synth.retarder.exit_bins import NARROW_M_S, WIDE_M_S, prediction_origin
 from synth.retarder.sensors.sensor_case import SensorCase
-from synth.simulation.exit_statistics import OVERSPEED_M_S
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
