@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.frame.damaged_archive import NO_ARCHIVE
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.outcomes import GAP_BINS_M, SPEED_BINS_M_S, USUAL_COUPLINGS, TrainOutcomes
 from tuning_tables import DamagedTable
@@ -33,9 +33,6 @@ EDGES = {"speed_bin_edges_m_s": SPEED_BINS_M_S, "gap_bin_edges_m": GAP_BINS_M}
 
 FLOATS = ("occupied", "span_s", "span_m", "span_cars", "gap_m", "error2_m2_s2", "commands_m_s", "tightest_s")
 """Fields of numbers that are not whole."""
-
-NO_ARCHIVE = (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError)
-"""What Python's zipfile raises for an archive that is damaged, encrypted, or packed in a way that it does not know."""
 
 
 @dataclass(frozen=True)

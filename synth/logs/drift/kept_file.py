@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import io
-import zipfile
 from dataclasses import fields
 from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
 
+from synth.frame.damaged_archive import NO_ARCHIVE
 from synth.logs.drift.kept_watch import KeptWatch
 from tuning_tables import DamagedTable
 from tuning_tables.pass_log.pass_log import PassLog
@@ -55,12 +55,22 @@ def from_npz(content: bytes, source: str, config_sha256: str) -> KeptWatch:
                 sums=arrays["sums"],
                 limit=float(arrays["limit"]),
             )
+            require_fitting(kept)
             return kept if str(arrays[DEPENDS]) == config_sha256 else kept.anew()
-    except (KeyError, ValueError, zipfile.BadZipFile) as fault:
+    except (KeyError, TypeError, *NO_ARCHIVE) as fault:
         raise DamagedTable(
             f"{source}: this is not what a watch keeps of a position ({str(fault)[:100]}); remove it, and the watch on "
             "this position begins anew."
         ) from None
+
+
+def require_fitting(kept: KeptWatch) -> None:
+    """`ValueError` where the arrays do not belong together: a sum for each pass and chart, a hash for each pass."""
+    passes = 0 if kept.log is None else len(kept.log)
+    if kept.sums.shape != (passes, len(kept.names)) or kept.sums.dtype != np.float64:
+        raise ValueError(f"{passes} passes and {len(kept.names)} charts have sums of the shape {kept.sums.shape}")
+    if kept.seen.ndim != 1 or kept.seen.dtype != np.uint64 or kept.first < 0:
+        raise ValueError("the hashes of passes, or their count, are none")
 
 
 def log_in(arrays: Any) -> PassLog | None:

@@ -18,10 +18,10 @@ from synth.retarder.bench.bench_pass import BenchPass
 from synth.retarder.bench.cases import BenchCase
 from synth.retarder.class_setup import TUNING_PASSES
 from synth.retarder.comparison.baselines import tune_baselines
+from synth.retarder.comparison.compared_laws import permitted
 from synth.simulation.closed_loop import TableController
 from synth.simulation.random_passes import BLOCK_PASSES, random_passes
 from synth.simulation.replicates import UPPER_TAIL, Interval
-from tuning_tables.decisions import Decisions
 
 Floats = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def errors_of(case: BenchCase, passes: Sequence[BenchPass], seed: int) -> Errors
     target, table = case.table.target_speed_m_s, case.table
     numbers = np.array([each.number for each in passes])
     others = case.common.of_others(random_passes(seed, 0, TUNING_PASSES))
-    laws = tune_baselines(others, target, tuple(dict.fromkeys((Decisions.AT_REST, table.decisions))))
+    laws = tune_baselines(others, target, permitted(table))
     return Errors(
         case,
         tuple(passes),

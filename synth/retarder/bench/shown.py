@@ -98,13 +98,13 @@ def score_exhibits(found: FoundBench, scores: Sequence[Score]) -> Iterator[Exhib
     yield Tiles(
         (
             Tile(
-                f"{whole.rms_m_s:.3f} m/s",
+                f"{whole.rms_m_s:.4f} m/s",
                 f"rms of the exit error in {counted(whole.cuts, 'cut')}; under the table 95 of 100 such groups have "
-                f"{whole.range_m_s[0]:.3f} to {whole.range_m_s[1]:.3f} m/s",
+                f"{whole.range_m_s[0]:.4f} to {whole.range_m_s[1]:.4f} m/s",
                 whole.rms_m_s <= whole.range_m_s[1],
             ),
             Tile(
-                f"{whole.ratio:.2f}",
+                f"{whole.ratio:.3f}",
                 "times the rms of the table on the same cuts",
                 whole.ratio <= 1.0 / found.prediction_ratio_low,
             ),

@@ -25,6 +25,11 @@ LIMITS_OF_USE = (
 )
 
 
+SOLVED_TOGETHER = 3
+"""A class as configured, with the other estimator and with the other approach stay in memory until all targets of it
+are compared."""
+
+
 @dataclass(frozen=True)
 class AskedPermissions:
     """A configuration, what messages call its file, and how many cases are compared at a time."""
@@ -47,7 +52,7 @@ def resolve(asked: Asked[ResolvedConfig, PermissionsOptions]) -> AskedPermission
     from synth.retarder.permissions.refusal import require_tellable
 
     require_tellable(asked.settings, asked.place, "'hardware'")
-    require_room(asked.settings, RadarEpochs(), asked.place, asked.options.workers)
+    require_room(asked.settings, RadarEpochs(), asked.place, SOLVED_TOGETHER * asked.options.workers)
     return AskedPermissions(asked.settings, asked.place, asked.options.workers)
 
 

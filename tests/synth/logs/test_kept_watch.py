@@ -96,3 +96,12 @@ def test_sums_go_on_where_they_ended() -> None:
         plain = np.maximum(plain + step, 0.0)
         assert told == pytest.approx(plain, abs=1e-9)
     assert page_sums(steps[25:], whole[24]) == pytest.approx(whole[25:], abs=1e-9)
+
+
+def test_sums_that_do_not_belong_to_the_passes_are_refused() -> None:
+    forged = replace(KeptWatch(), names=("friction 0.9",), sums=np.zeros((3, 1)))
+    with pytest.raises(DamagedTable, match="0 passes and 1 charts have sums of the shape"):
+        from_npz(to_npz(forged, "a"), "kept", "a")
+    with pytest.raises(DamagedTable, match="the hashes of passes"):
+        from_npz(to_npz(replace(KeptWatch(), first=-1), "a"), "kept", "a")
+    assert from_npz(to_npz(KeptWatch(), "a"), "kept", "a").log is None
