@@ -14,7 +14,7 @@ import pytest
 from synth.cli.qualification import structured_text
 from synth.cli.qualification.c_code import COMPILERS, c_checks, fault_check, self_test
 from synth.cli.qualification.check import Outcome
-from synth.cli.qualification.golden import OTHER_PROCESSOR, Golden, golden_check, golden_of, kept
+from synth.cli.qualification.golden import ELSEWHERE, LIBRARIES, golden_check, golden_of, kept
 from synth.cli.qualification.kernels import plain_checks, tune_checks
 from synth.cli.qualification.program import Ran
 from synth.cli.qualification.second_program import (
@@ -49,13 +49,27 @@ def test_the_kept_bytes_are_those_that_are_made(books: Books, kind: str) -> None
         assert check.found.startswith("the bytes of processors"), f"{check.found}; python -m tests.qualification.keep"
 
 
-@pytest.mark.parametrize(("factor", "outcome"), [(0.5, Outcome.PASSED), (1.5, Outcome.FAILED)])
-def test_other_bytes_are_held_to_the_figures(books: Books, factor: float, outcome: Outcome) -> None:
+def test_the_kept_bytes_were_made_with_the_libraries_of_the_lock() -> None:
+    lock = (Path(__file__).parents[2] / "requirements.lock").read_text(encoding="utf-8").splitlines()
+    made_with = next(iter(kept().values())).made_with
+    assert {f"{name}=={made_with[name]} \\" for name in LIBRARIES} <= {*lock}
+
+
+@pytest.mark.parametrize(
+    ("factor", "library", "outcome"),
+    [(0.5, "numpy", Outcome.PASSED), (1.5, "numpy", Outcome.FAILED), (0.5, "", Outcome.FAILED)],
+)
+def test_other_bytes_pass_with_other_libraries_alone_and_near_the_figures(
+    books: Books, factor: float, library: str, outcome: Outcome
+) -> None:
     book = books[MEASURED]
-    golden = Golden({"of some kind": "0" * 64}, golden_of(book).rms_m_s)
-    check = golden_check(with_rms(book, 1.0 + factor * OTHER_PROCESSOR), golden)
+    kept_here = golden_of(book)
+    made_with = {name: "0.1" if name == library else value for name, value in kept_here.made_with.items()}
+    golden = replace(kept_here, made_with=made_with)
+    check = golden_check(with_rms(book, 1.0 + factor * ELSEWHERE), golden)
     assert check.outcome is outcome
     assert "other bytes" in check.found
+    assert library in check.limit
 
 
 def test_the_version_that_wrote_a_table_changes_no_hash(books: Books) -> None:

@@ -103,6 +103,7 @@ def test_density_is_a_distribution(plant_52t: Plant) -> None:
     assert density.probability.sum() + density.stalled == pytest.approx(1.0, abs=1e-8)
 
 
+@pytest.mark.requirement("PRED-02")
 def test_a_stall_counts_as_an_exit_at_rest() -> None:
     """By hand: 0.1 of the cuts stand, the others leave with 1, 2 and 3 m/s."""
     density = ExitDensity(np.arange(4.0), np.array([0.0, 0.25, 0.5, 0.15]), stalled=0.1, escaped=0.0, switchings=1.0)
