@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import platform
 import shutil
 from collections.abc import Mapping
@@ -12,11 +13,11 @@ from pathlib import Path
 import pytest
 
 from synth.cli.qualification import structured_text
-from synth.cli.qualification.c_code import COMPILERS, c_checks, fault_check, self_test
+from synth.cli.qualification.c_code import COMPILERS, c_checks, compiler_check, fault_check, self_test
 from synth.cli.qualification.check import Outcome
 from synth.cli.qualification.golden import ELSEWHERE, LIBRARIES, golden_check, golden_of, kept
 from synth.cli.qualification.kernels import plain_checks, tune_checks
-from synth.cli.qualification.program import Ran
+from synth.cli.qualification.program import Ran, process
 from synth.cli.qualification.second_program import (
     CODE,
     loop_check,
@@ -118,6 +119,17 @@ def test_the_self_test_of_c_is_run_and_finds_a_changed_number(books: Books, tmp_
     assert fault_check(COMPILERS[0], code, tmp_path).outcome is Outcome.PASSED
     broken = {**code, Path(CODE).name: b"#error"}
     assert "#error" in self_test(COMPILERS[0], "-O0", broken, tmp_path / "broken")
+
+
+def test_a_compiler_that_waits_for_ever_or_steers_the_terminal_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert process(["sleep", "60"], tmp_path, longest_s=0.1).sentence == "exit code -1: sleep has not ended after 0.1 s"
+    (tmp_path / "steers").write_text("#!/bin/sh\nprintf '\\033[31m%05000d' 0 >&2\n")
+    (tmp_path / "steers").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    check = compiler_check("steers", "", {}, tmp_path)
+    assert (check.outcome, check.found.isprintable(), len(check.found)) == (Outcome.FAILED, True, 1000)
 
 
 def test_one_number_is_changed(books: Books) -> None:
