@@ -19,9 +19,10 @@ def code_at(source: Path) -> tuple[CodeFile, ...]:
 
 def code_document(code: CodeFile) -> dict[str, Any]:
     """An export for programs."""
-    return {"path": str(code.path), "language": code.language}
+    return {"path": str(code.path), "language": code.language, "exported_by": code.exported_by}
 
 
 def code_sentence(code: CodeFile) -> str:
     """An export in words."""
-    return f"{code.path}: {CONTENTS[code.kind]} in {code.language}; verify compares them with those they were made of"
+    told = f"{CONTENTS[code.kind]} in {code.language}, exported by {code.exported_by or 'an unknown program'}"
+    return f"{code.path}: {told}; verify compares them with those they were made of"
