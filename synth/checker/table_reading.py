@@ -163,7 +163,7 @@ def approach_of(document: Mapping[str, Any]) -> tuple[float, int]:
     return float(length_m), stage
 
 
-def clock_of(clock: Mapping[str, Any]) -> dict[str, float]:
+def clock_of(clock: Mapping[str, Any]) -> dict[str, Any]:
     """The numbers of the regulator's clock, by the names of `Table`."""
     for key, low, high in (("sample_period_s", 0.001, 2.0), ("computing_delay_s", 0.0, 2.0)):
         refuse_unless(low <= clock[key] <= high, clock[key], f"clock.{key}", f"from {low:g} to {high:g}")

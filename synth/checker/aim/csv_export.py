@@ -23,11 +23,11 @@ GOLDEN_HEAD: Final = [
 
 def differences(rows: Rows, aim: Aim) -> Iterator[str]:
     """Each row that is not what the table says."""
-    told = with_exporter(aim.document, rows)
-    document = {**told, "reported": {"passes": aim.document["reported"]["passes"]}}
+    whole = with_exporter(aim.document, rows)
+    document = {**whole, "reported": {"passes": aim.document["reported"]["passes"]}}
     del document["exit_speed_m_s"]
     wanted: dict[tuple[str, str], list[Any]] = dict(rows_of(document, ""))
-    wanted["text", "crc32"] = [checksum_of(told)]
+    wanted["text", "crc32"] = [checksum_of(whole)]
     wanted["names", "node"] = list(COLUMNS)
     for number, place in enumerate(aim.places()):
         c, d, r = place
