@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from synth.checker.code_file import CodeFile
+from synth.checker.code_file import CodeFile, code_at
 from synth.cli.inspect_aim import aim_document, aim_page
-from synth.cli.inspect_code import code_at, code_document, code_sentence
+from synth.cli.inspect_code import code_document, code_sentence
 from synth.cli.inspect_drawn import AskedDrawing, draw
 from synth.cli.inspect_passages import passage_document, passage_page
 from synth.cli.inspect_table import table_words, told_document
@@ -30,7 +30,6 @@ from synth.retarder.forms.tables_at import TablesAt, tables_at
 from tuning_tables import DamagedTable
 from tuning_tables.approach import Approach
 from tuning_tables.decisions import Decisions
-from tuning_tables.document import to_document
 from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
 
@@ -67,9 +66,9 @@ class Inspected:
 
     @property
     def defects(self) -> tuple[Concerned, ...]:
-        """Known ones of the versions that made the tables."""
+        """Known ones of the versions that made the tables, or exported the code."""
         tables = (*self.tables.of_stages, *(file.table for file in self.tables.aims))
-        return concerned(lambda: map(to_document, tables))
+        return concerned(lambda: (*map(told_document, tables), *(each.document for each in self.code)))
 
     def document(self) -> dict[str, Any]:
         """It for programs."""
