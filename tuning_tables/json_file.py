@@ -92,7 +92,7 @@ def from_json(content: bytes, *kinds: type[Any], source: str = "table") -> Any:
     """
     wanted = kinds or (ControllerTable,)
     document, table = read_json_text(content, source, lambda found, at: from_document(found, at, wanted))
-    require_layout(content, document, to_json(table), source)
+    require_layout(content, document, laid_out(to_document(table, str(document["exported_by"]))), source)
     return table
 
 

@@ -6,20 +6,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from synth.cli.inspect_table import told_document
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.retarder.forms.aim_file import AimFile
 from tuning_tables.aim.aim_table import AimTable
-from tuning_tables.document import to_document
 
 SHOWN_DISTANCES = 6
 
 
 def aim_document(file: AimFile) -> dict[str, Any]:
     """An aim table for programs."""
-    document = to_document(file.table)
+    document = told_document(file.table)
     return {"path": str(file.path), "kind": "aim table", "checksum": "right", "tables": [document]}
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from synth.cli.inspect_table import table_words
+from synth.cli.inspect_table import table_words, told_document
 from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.retarder.highest_stage import highest_stage
-from tuning_tables.document import to_document
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
@@ -20,7 +19,7 @@ AXLES = {DecidesOn.FIRST_AXLE: "the first axle", DecidesOn.EVERY_AXLE: "every ax
 
 def passage_document(table: PassageTable) -> dict[str, Any]:
     """A table for programs."""
-    return {**to_document(table), "category_number": table.cut.number}
+    return {**told_document(table), "category_number": table.cut.number}
 
 
 def passage_page(table: PassageTable) -> list[Exhibit]:
@@ -32,6 +31,7 @@ def passage_page(table: PassageTable) -> list[Exhibit]:
         f"    sensors    {len(sensors.path_m)} at {places} m; base {sensors.base_m:g} m, timer "
         f"+-{1e3 * sensors.timer_noise_s:g} ms in steps of {1e3 * sensors.timer_resolution_s:g} ms; "
         f"{AXLES[sensors.decides_on]} decides",
+        f"    clock      {sensors.clock}",
         f"    approach   the regulator acts from {table.approach.length_m:g} m before the entrance on, where it "
         f"commands no stage above {table.entrance_stage}; it takes over a cut only when the cut ahead has left",
         f"    tracker    believes {table.plausible.speed_m_s[0]:g} to {table.plausible.speed_m_s[1]:g} m/s, gains of "

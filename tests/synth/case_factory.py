@@ -33,6 +33,7 @@ from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tabulate import clock_of
 from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange
 from tuning_tables.stage import round_coefficients
 
@@ -215,6 +216,7 @@ def make_table(label: str, plant: Plant, target: float) -> ControllerTable:
         retarder=RetarderId(position.name, position.zones_m, plant.exit_m, position.pneumatics.dead_band_kpa),
         cut=CutId(plant.cut.category, plant.cut.mass_t, plant.cut.axle_offsets_m),
         target_speed_m_s=target,
+        clock=clock_of(plant),
         degree=3,
         stages=stages,
         valid=ValidRange((0.0, plant.exit_m), (0.3, 9.0)),

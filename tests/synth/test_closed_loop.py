@@ -23,6 +23,7 @@ from synth.simulation.path_cells import cell_edges_m
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tabulate import clock_of
 from tests.synth.loop_controllers import constant_lines, energy_controller
 from tuning_tables.figures import Predicted, ValidRange
 from tuning_tables.json_file import read_json, write_json
@@ -142,6 +143,7 @@ def cubic_table(plant: Plant, target_m_s: float) -> ControllerTable:
         retarder=RetarderId("pilot", plant.position.zones_m, plant.exit_m, 15.0),
         cut=CutId(plant.cut.category, plant.cut.mass_t, plant.cut.axle_offsets_m),
         target_speed_m_s=target_m_s,
+        clock=clock_of(plant),
         degree=3,
         stages=tuple(stages),
         valid=ValidRange((0.0, plant.exit_m), (0.3, 9.0)),

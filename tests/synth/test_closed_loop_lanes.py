@@ -21,6 +21,7 @@ from synth.simulation.controllers import Regulator, fixed
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tabulate import clock_of
 from tests.oracles.passes_one_by_one import events_of, one_by_one
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, ValidRange
@@ -84,6 +85,7 @@ def wavy_table(plant: Plant, target_m_s: float) -> ControllerTable:
         retarder=RetarderId("pilot", plant.position.zones_m, plant.exit_m, 15.0),
         cut=CutId(plant.cut.category, plant.cut.mass_t, plant.cut.axle_offsets_m),
         target_speed_m_s=target_m_s,
+        clock=clock_of(plant),
         degree=3,
         stages=tuple(stages),
         # Narrower than the position: the ends are clamped.

@@ -16,7 +16,7 @@ from synth.simulation.nominal_response import SOLVER, nominal_response
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines
-from synth.solver.tabulate import lines_of
+from synth.solver.tabulate import clock_of, lines_of
 from tests.effort import every
 from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange
 
@@ -47,6 +47,7 @@ def table_for(plant: Plant) -> ControllerTable:
         retarder=RetarderId("pilot", plant.position.zones_m, plant.exit_m, 15.0),
         cut=CutId("medium", plant.cut.mass_t, plant.cut.axle_offsets_m),
         target_speed_m_s=3.0,
+        clock=clock_of(plant),
         degree=1,
         stages=(
             Stage(0, pressures[0], None, (4.5, -0.03125)),

@@ -165,7 +165,7 @@ def change_shape(file: h5py.File) -> None:
         (edit_attribute("kind", "passages"), DamagedTable, "missing or unknown"),
         (edit_attribute("kind", "aim"), DamagedTable, "kind is 'aim'"),
         (edit_attribute("complete", 0), DamagedTable, "complete is 0"),
-        (edit_attribute("tool_version", "9"), DamagedTable, "payload_sha256"),
+        (edit_attribute("exported_by", "9"), DamagedTable, "payload_sha256"),
         (edit_attribute("payload_sha256", "0" * 64), DamagedTable, "payload_sha256"),
         (edit_attribute("surplus", 1), DamagedTable, "root attributes"),
         (edit_value("stage_lower", (0, 1, 0), 5.25), DamagedTable, "payload_sha256"),

@@ -10,6 +10,8 @@ from importlib.metadata import version
 from importlib.resources import files
 from typing import Any, Final
 
+from llvmlite.binding import get_host_cpu_features
+
 from synth.cli.qualification.check import Check, checked
 from synth.cli.qualification.tuned import Tuned
 
@@ -21,6 +23,9 @@ Sums end there in other last bits, so a search for the best lines ends beside wh
 
 LIBRARIES: Final = ("llvmlite", "numba", "numpy", "scipy")
 """Those whose versions decide the last bits of a number."""
+
+EXTENSIONS: Final = ("AVX2", "FMA")
+"""Of a processor, without which numba and OpenBLAS round elsewhere."""
 
 FIGURES: Final = {"predicted": "predicted rms", "validated": "simulated rms"}
 
@@ -49,9 +54,14 @@ def golden_of(book: Tuned) -> Golden:
 
 
 def surroundings() -> dict[str, str]:
-    """What decides the last bits here, but for the extensions of the processor: system and versions of libraries."""
-    system = {"system": f"{platform.system()} {platform.machine()}", "C library": " ".join(platform.libc_ver())}
-    return system | {name: version(name) for name in LIBRARIES}
+    """What decides the last bits here: system, versions of libraries, and extensions of the processor but AVX-512."""
+    has = get_host_cpu_features()
+    return {
+        "system": f"{platform.system()} {platform.machine()}",
+        "C library": " ".join(platform.libc_ver()),
+        "processor": " and ".join(name for name in EXTENSIONS if has.get(name.lower())) or "another",
+        **{name: version(name) for name in LIBRARIES},
+    }
 
 
 def golden_checks(books: Sequence[Tuned]) -> Iterator[Check]:
