@@ -19,7 +19,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         150.0,
         "explanation/approach.md",
         "scripts.studies.approach.study",
-        "scripts.studies.approach.picture",
     ),
     Study(
         "benchmark",
@@ -27,7 +26,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         300.0,
         "explanation/speed.md",
         "scripts.studies.benchmark.study",
-        "scripts.studies.benchmark.picture",
     ),
     Study(
         "book",
@@ -36,13 +34,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "reference/results.md",
         "scripts.studies.book",
         "scripts.studies.book_picture",
-    ),
-    Study(
-        "command-times",
-        "How long do whole commands take, on a first run and on later ones?",
-        2400.0,
-        "explanation/speed.md",
-        "scripts.studies.command_times",
     ),
     Study(
         "controller-agreement",
@@ -78,7 +69,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         41.0,
         "explanation/choices.md#criterion",
         "scripts.studies.criteria.study",
-        "scripts.studies.criteria.picture",
     ),
     Study(
         "degree",
@@ -86,14 +76,12 @@ POSITION_STUDIES: tuple[Study, ...] = (
         46.0,
         "explanation/choices.md#degree",
         "scripts.studies.degree.study",
-        "scripts.studies.degree.picture",
     ),
     Study(
         "estimator",
         "What is gained when the regulator compares an estimated speed with its lines?",
         76.0,
         "explanation/estimator.md#what-it-gains",
-        "scripts.studies.estimator.study",
         "scripts.studies.estimator.study",
     ),
     Study(
@@ -102,14 +90,12 @@ POSITION_STUDIES: tuple[Study, ...] = (
         240.0,
         "explanation/estimator.md#reserve",
         "scripts.studies.estimator.reserve_study",
-        "scripts.studies.estimator.reserve_picture",
     ),
     Study(
         "estimator-wrong",
         "What does the estimator cost where it is wrong: another friction, mass or gauge, a lost sensor?",
         18.0,
         "explanation/estimator.md#where-it-is-wrong",
-        "scripts.studies.estimator.wrong_study",
         "scripts.studies.estimator.wrong_study",
     ),
     Study(
@@ -140,7 +126,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         6.0,
         "how-to/controllers.md",
         "scripts.studies.interpolation",
-        "scripts.studies.interpolation_picture",
     ),
     Study(
         "limits",
@@ -148,7 +133,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         28.0,
         "explanation/estimator.md",
         "scripts.studies.limits.study",
-        "scripts.studies.limits.picture",
     ),
     Study(
         "peers",
@@ -164,7 +148,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         700.0,
         "how-to/point-sensors.md",
         "scripts.studies.point_sensors.study",
-        "scripts.studies.point_sensors.pictures",
     ),
     Study(
         "radar-faults",
@@ -223,7 +206,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         130.0,
         "explanation/any-time.md",
         "scripts.studies.switching_price.study",
-        "scripts.studies.switching_price.picture",
     ),
     Study(
         "time-price",
@@ -247,7 +229,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         150.0,
         "how-to/watch.md#how-it-was-shown",
         "scripts.studies.watch.study",
-        "scripts.studies.watch.picture",
     ),
 )
 

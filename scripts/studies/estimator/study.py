@@ -30,7 +30,7 @@ from synth.solver.chain.chain import persistent_chain
 from synth.solver.told_lines import Effort
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 FINE_STEP_M_S = 0.02
 """Speed step of the reference."""
@@ -133,14 +133,6 @@ def told_rms_m_s(case: Case, config: ResolvedConfig, passes: RandomPasses, effor
     finer = replace(config.resolution, speed_step_m_s=min(config.resolution.speed_step_m_s, FINE_STEP_M_S))
     found = told_friction(persistent_chain(case.plant, finer), case.target_m_s, config.fit.degree, effort)
     return exit_statistics(simulate_told(case.plant, found, passes), case.target_m_s).rms_m_s
-
-
-def figures(found: Gains) -> Mapping[str, Figure]:
-    """The ratios with their intervals."""
-    from scripts.studies.estimator.picture import picture
-
-    shown = {row.case: {"as it is": row.figures} for row in found.rows}
-    return {"": picture("What the estimator gains", shown)}
 
 
 METHOD = Method(
