@@ -64,7 +64,6 @@ class Upkeep(Section):
             f"check_interval_h is {self.check_interval_h:g} h; it must not be shorter than the check, "
             f"{self.check_h:g} h",
         )
-        self.chain, self.duplex, self.prices  # noqa: B018  # their own ranges are checked where they are made
         return self
 
     @property

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
-from plant_models.errors import require
 from plant_models.hump import HumpGraph
 
 
@@ -16,14 +15,6 @@ class Channels:
     analog_in: int = 0
     digital_out: int = 0
     analog_out: int = 0
-
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            require(
-                isinstance(value, int) and value >= 0,
-                f"channels: {field.name} is {value!r}; it must be a whole number from 0 on",
-            )
 
     def __add__(self, other: Channels) -> Channels:
         return Channels(

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
 from synth.computer.sizing.batch_means import sampled_mean
 from synth.computer.sizing.demand_service import Discipline
@@ -107,10 +106,6 @@ def simulated_waits(
 
 def drawn_requests(streams: tuple[Stream, ...], count: int, rng: np.random.Generator) -> Requests:
     """`count` requests of all streams: one Poisson stream of the total rate, divided among the tasks by chance."""
-    require(
-        isinstance(count, int) and 1 <= count < MOST_REQUESTS,
-        f"requests is {count!r}; it must be a whole number from 1 on",
-    )
     rates = np.array([stream.rate_per_s for stream in streams])
     arrival_s = np.cumsum(rng.exponential(1.0 / rates.sum(), count))
     which = rng.choice(len(streams), count, p=rates / rates.sum())

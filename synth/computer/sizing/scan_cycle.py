@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from plant_models.errors import require
-
 
 @dataclass(frozen=True)
 class ScanCycle:
@@ -19,21 +17,6 @@ class ScanCycle:
     overhead_s: float = 0.0
     input_s: float = 0.0
     output_s: float = 0.0
-
-    def __post_init__(self) -> None:
-        require(
-            math.isfinite(self.period_s) and self.period_s > 0.0,
-            f"scan cycle: period_s is {self.period_s!r}; it must be a finite number above 0",
-        )
-        for name, value in (("overhead_s", self.overhead_s), ("input_s", self.input_s), ("output_s", self.output_s)):
-            require(
-                math.isfinite(value) and value >= 0.0,
-                f"scan cycle: {name} is {value!r}; it must be a finite number from 0 on",
-            )
-        require(
-            self.overhead_s < self.period_s,
-            f"scan cycle: overhead_s is {self.overhead_s:g}; it must be less than the period, {self.period_s:g} s",
-        )
 
     def used_share(self, work_s: float) -> float:
         """The share of the cycle that a program of `work_s` and the system take; above 1 it does not fit."""

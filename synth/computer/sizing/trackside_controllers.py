@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-from plant_models.errors import require
 from synth.computer.sizing.call_costs import CallCosts, c_costs, st_costs
 from synth.computer.sizing.scan_cycle import ScanCycle
 
@@ -28,21 +26,6 @@ class TracksideController:
     scan: ScanCycle | None = None
     latency_s: float = 0.0
 
-    def __post_init__(self) -> None:
-        for name, value in (
-            ("clock_hz", self.clock_hz),
-            ("cycles", self.cycles),
-            ("instructions", self.instructions),
-        ):
-            require(
-                math.isfinite(value) and value > 0.0,
-                f"controller {self.name}: {name} is {value!r}; it must be a finite number above 0",
-            )
-        require(
-            math.isfinite(self.latency_s) and self.latency_s >= 0.0,
-            f"controller {self.name}: latency_s is {self.latency_s!r}; it must be a finite number from 0 on",
-        )
-
     @property
     def operation_s(self) -> float:
         """Time of one counted operation."""
@@ -57,10 +40,6 @@ class TracksideController:
     def cut_s(self) -> float:
         """Work of one cut at one position, besides its samples."""
         return self.costs.cut * self.operation_s
-
-    def start_s(self, tables: int) -> float | None:
-        """Time to check so many tables at the start; None where the code has no checksum."""
-        return None if self.costs.intact is None else tables * self.costs.intact * self.operation_s
 
 
 def plc() -> TracksideController:
