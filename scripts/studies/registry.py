@@ -107,13 +107,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "scripts.studies.every_cut.picture",
     ),
     Study(
-        "friction-known",
-        "How good is the reference that regret is measured by: what would more effort make of it?",
-        150.0,
-        "reference/limits.md#the-friction-known-reference",
-        "scripts.studies.friction_known",
-    ),
-    Study(
         "identification",
         "How true are the numbers that measured passes tell, and do their intervals hold?",
         2400.0,
@@ -209,8 +202,8 @@ POSITION_STUDIES: tuple[Study, ...] = (
     ),
     Study(
         "time-price",
-        "What does less time in a position cost in accuracy, and what does it bring a whole hump?",
-        530.0,
+        "What does less time in a position cost in accuracy?",
+        120.0,
         "explanation/choices.md#time",
         "scripts.studies.time_price.study",
         "scripts.studies.time_price.picture",
