@@ -16,6 +16,7 @@ from scripts.studies.aimed_braking.published_figures import Line, by_category, l
 from scripts.studies.aimed_braking.sensitivity import INPUTS, sensitivities
 from scripts.studies.aiming.hump import POINTS, large_hump, weight_category
 from scripts.studies.aiming.norm_distance import norm_distance
+from scripts.studies.aiming.readings import LightnessByWeigher
 from scripts.studies.aiming.recorded_cuts import NearestRecord
 from scripts.studies.aiming.regression import ByRegression
 from scripts.studies.aiming.trial import Cuts, Draws, value_of
@@ -23,7 +24,7 @@ from scripts.studies.options import option
 from scripts.studies.study import Method, Tell
 from synth.aim.knowledge import ByCategory, ByReading, Knowledge
 from synth.aim.position_models import NormalPosition
-from synth.aim.readings import LightnessByWeigher, ResistanceByTwoSpeeds
+from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene
 
 EXACT_WEIGHT = 1e-4
