@@ -10,10 +10,9 @@ from dataclasses import dataclass
 
 from synth.computer.economics.pay_back import pay_back, yearly_effect
 from synth.computer.reliability.duplex import Duplex, single_availability
-from synth.computer.reliability.failure_losses import HourPrices, yearly_loss
+from synth.computer.reliability.failure_losses import HOURS_PER_YEAR, HourPrices, yearly_loss
 from synth.computer.reliability.four_states import FourStates, StateShares
 from synth.computer.reliability.maintenance_interval import CheckedComputer
-from synth.computer.reliability.rates import HOURS_PER_YEAR
 
 UNNOTICED_K_RUB_PER_H = 5.0
 FAILURE_PER_H, INTERVAL_H = 0.0024, 2.5

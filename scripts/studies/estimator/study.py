@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING
 
 from scripts.studies.cases import Case, class_cases
 from scripts.studies.estimator.pair import FRESH, Compared, nominal, without_price
@@ -28,9 +27,6 @@ from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.told_lines import Effort
-
-if TYPE_CHECKING:
-    pass
 
 FINE_STEP_M_S = 0.02
 """Speed step of the reference."""

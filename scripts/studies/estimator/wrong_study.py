@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,9 +20,6 @@ from synth.problem.problem import Problem
 from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import simulate
 from synth.simulation.stratified_passes import stratified_passes
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,7 @@ class HumpQueue:
     `trains_per_h`: mean rate. `arrival_scv`: squared coefficient of variation (variance / mean²) of the times between
     trains. `service_h`, `service_scv`: mean and squared coefficient of variation of the time for which a train takes a
     lead. All times are independent. A wait grows as 1/(1 − ρ): where the load is uncertain and may come near 1, the
-    wait has quantiles but no mean. `PlantError` for a value outside its range, and where more comes than the leads can
-    hump.
+    wait has quantiles but no mean. `PlantError` where more comes than the leads can hump.
     """
 
     trains_per_h: float

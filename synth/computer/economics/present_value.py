@@ -11,7 +11,6 @@ class Investment:
     """`spent` at the start, `income_per_year` at the end of each of `years` years; real money, without inflation.
 
     What is received at the start (released capital that is sold) is part of `spent`, which may be negative then.
-    `PlantError` for a value outside its range.
     """
 
     spent: float

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from synth.computer.reliability.duplex import single_availability
-from synth.computer.reliability.rates import HOURS_PER_YEAR
+from synth.computer.reliability.failure_losses import HOURS_PER_YEAR
 from synth.computer.resolved_computer import ResolvedComputer
 from synth.frame.picture.house_style import (
     BLUE,

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from synth.computer.reliability.four_states import StateShares
-from synth.computer.reliability.rates import HOURS_PER_YEAR
+
+HOURS_PER_YEAR = 8760.0
+"""24 · 365, as [hump-computer-1970s] counts them."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.computer.reliability.rates import HOURS_PER_YEAR
+from synth.computer.reliability.failure_losses import HOURS_PER_YEAR
 
 Floats = NDArray[np.float64]
 

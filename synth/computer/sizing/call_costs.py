@@ -11,7 +11,7 @@ class CallCosts:
 
     `observe`: a step of the estimator. `decide`: a decision at rest. `select`: the table of a cut. `aim`: the exit
     speed from an aim table, 0 where there are none. `intact`: the checksum of one table, None if there is none in that
-    language; it is for the start only. Raises `PlantError`.
+    language; it is for the start only.
     """
 
     observe: int

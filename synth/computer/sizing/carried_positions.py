@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 
 from plant_models.library.sourced_value import JUDGEMENT
-from synth.computer.sizing.periodic_task import PeriodicTask
-from synth.computer.sizing.response_time import exact_load, longest_responses_s
+from synth.computer.sizing.response_time import PeriodicTask, exact_load, longest_responses_s
 from synth.computer.sizing.trackside_controllers import TracksideController
 from synth.frame.settings.section import Section, setting
 

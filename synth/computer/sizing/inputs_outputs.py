@@ -9,7 +9,7 @@ from plant_models.hump import HumpGraph
 
 @dataclass(frozen=True)
 class Channels:
-    """Numbers of digital and analog inputs and outputs; they add up, and are multiplied. Raises `PlantError`."""
+    """Numbers of digital and analog inputs and outputs; they add up, and are multiplied."""
 
     digital_in: int = 0
     analog_in: int = 0

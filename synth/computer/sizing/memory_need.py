@@ -15,7 +15,7 @@ class Memory(Enum):
 
 @dataclass(frozen=True)
 class Stored:
-    """`count` entries of `bits` each, kept in `memory`; where from, in words. Raises `PlantError`."""
+    """`count` entries of `bits` each, kept in `memory`; where from, in words."""
 
     name: str
     count: int
@@ -71,7 +71,7 @@ class ControllerCounts:
 
 
 def controller_memory(counts: ControllerCounts) -> MemoryTable:
-    """The memory of our controller. `PlantError` if a count is below 0 or no whole number.
+    """The memory of our controller.
 
     The route table tells the position of each switch for each track; the route store, the track of each cut.
     """

@@ -21,7 +21,7 @@ RELATIVE_ERROR = 1e-9
 class AllowedWait:
     """Every task's time from request to begin of service: mean at most `mean_s`, P(more than `long_s`) at most `share`.
 
-    Either may be missing, but not both. Raises `PlantError`.
+    Either may be missing, but not both; `long_s` and `share` go together.
     """
 
     mean_s: float | None = None

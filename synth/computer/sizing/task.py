@@ -15,7 +15,6 @@ class Task:
     """Requests come as a Poisson stream of `rate_per_s`; each asks for a random number of `operations`.
 
     `priority`: 1 is the most urgent. `deadline_s`: how long after its request it should be done, None if nobody asks.
-    Raises `PlantError`.
     """
 
     name: str
@@ -52,7 +51,7 @@ class Stream:
 
 @dataclass(frozen=True)
 class TaskMix:
-    """The tasks of one computer; at least one, and names are unique. `PlantError` if not."""
+    """The tasks of one computer; at least one. `PlantError` for a name that is given twice."""
 
     tasks: tuple[Task, ...]
 
@@ -67,7 +66,7 @@ class TaskMix:
         return sum(task.operations_per_s for task in self.tasks)
 
     def streams(self, speed_op_s: float) -> tuple[Stream, ...]:
-        """The tasks, in order, on a computer of `speed_op_s`; `PlantError` for a speed that is not above 0."""
+        """The tasks, in order, on a computer of `speed_op_s`."""
         return tuple(
             Stream(task.name, task.rate_per_s, task.operations.scaled(1.0 / speed_op_s), task.priority)
             for task in self.tasks

@@ -23,7 +23,6 @@ from synth.frame.interval import Interval
 Floats = NDArray[np.float64]
 
 QUANTILES = (0.05, 0.5, 0.95)
-FEWEST_DRAWS = 100
 
 
 @frozen_arrays

@@ -13,8 +13,6 @@ from synth.computer.economics.uncertainty.ranges import Constant, Range
 
 Floats = NDArray[np.float64]
 
-MOST_POINTS = 1 << 20
-
 
 @dataclass(frozen=True)
 class SobolIndex:

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
-from synth.computer.sizing.batch_means import sampled_mean
 from synth.computer.sizing.demand_service import Discipline, mean_waits
-from synth.computer.sizing.queue_simulation import Requests, drawn_requests, simulated, simulated_waits
+from synth.computer.sizing.queue_simulation import Requests, drawn_requests, sampled_mean, simulated, simulated_waits
 from synth.computer.sizing.service_law import Constant, Exponential
 from synth.computer.sizing.task import Stream, total_load
 from synth.computer.sizing.waiting_tail import sojourn_tail, start_tail

@@ -11,9 +11,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from synth.computer.sizing.periodic_task import PeriodicTask
-from synth.computer.sizing.response_time import exact_load, longest_responses_s
-from synth.computer.sizing.scan_cycle import ScanCycle
+from synth.computer.sizing.response_time import PeriodicTask, exact_load, longest_responses_s
+from synth.computer.sizing.trackside_controllers import ScanCycle
 
 
 def task(period: float, work: float, priority: int) -> PeriodicTask:
