@@ -164,16 +164,6 @@ class TableBook:
         """Whether there is something between any two tables."""
         return len({*self.families}) < len(self.tables)
 
-    @cached_property
-    def most_stages(self) -> int:
-        """Stages of the table that has most."""
-        return max(len(table.stages) for table in self.tables)
-
-    @cached_property
-    def highest_degree(self) -> int:
-        """Degree of the lines of the table where it is highest."""
-        return max(table.degree for table in self.tables)
-
     def choose(self, category: str, axles: int, commanded_m_s: float) -> Choice:
         """The lines for a cut.
 

@@ -17,11 +17,12 @@ from synth.cli.inspect_drawn import AskedDrawing, draw
 from synth.cli.inspect_passages import passage_document, passage_page
 from synth.cli.inspect_table import table_words, told_document
 from synth.frame.command import Limit, Verdict
+from synth.frame.exhibits import Column, Table
 from synth.frame.known_defects import Concerned, concerned
-from synth.frame.printed_numbers import counted
+from synth.frame.printed_numbers import counted, decimals
 from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.printed_page import Exhibit
-from synth.frame.terminal.printed_table import Column, PrintedTable
+from synth.frame.terminal.printed_table import IN_JSON, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.frame.terminal.telling import OK
 from synth.retarder.forms.exporters import exporters_at
@@ -147,22 +148,21 @@ def table_page(table: ControllerTable, says_none: bool) -> list[Exhibit]:
     return [*words, lines_table(table)]
 
 
-def lines_table(table: ControllerTable) -> PrintedTable[dict[str, Any]]:
+def lines_table(table: ControllerTable) -> PrintedTable:
     """The lines at some places, in m/s, and what a gauge adds."""
-
-    def speed_column(place: int, path_m: float) -> Column[dict[str, Any]]:
-        return Column(f"at {path_m:.2f}{NO_BREAK}m", lambda line: f"{line['v_m_s'][place]:.3f}")
-
-    def name(line: dict[str, Any]) -> str:
-        return f"stage {line['k']} ({line['pressure_kpa']:g} kPa) {line['line']}"
-
-    def slope(line: dict[str, Any]) -> str:
-        return f"{1e2 * line['slope_m_s_per_kpa']:+.4f}"
-
-    slopes = (Column("+ m/s per 100 kPa", slope),) if table.has_gauge else ()
-    speeds = (speed_column(place, path_m) for place, path_m in enumerate(shown_path(table)))
-    columns = (Column("line, m/s", name, words=True), *speeds, *slopes)
-    return PrintedTable(columns, lines_at(table), "the output of --json")
+    places = list(enumerate(shown_path(table)))
+    columns = [Column("name", "line, m/s", words=True)]
+    columns += [Column(f"at {place}", f"at {path_m:.2f}{NO_BREAK}m", form=decimals(3)) for place, path_m in places]
+    columns += [Column("slope_m_s_per_kpa", "+ m/s per 100 kPa", form=lambda slope: f"{1e2 * slope:+.4f}")]
+    rows = [
+        {
+            **line,
+            "name": f"stage {line['k']} ({line['pressure_kpa']:g} kPa) {line['line']}",
+            **{f"at {place}": speed for place, speed in enumerate(line["v_m_s"])},
+        }
+        for line in lines_at(table)
+    ]
+    return PrintedTable(Table("lines", "", columns, rows), IN_JSON)
 
 
 def decision_words(table: ControllerTable) -> str:

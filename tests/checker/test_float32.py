@@ -120,7 +120,9 @@ def test_canonical_form_is_that_of_the_tables_and_is_read_back(value: object) ->
 def test_a_whole_number_is_beyond_2_53_a_double_as_the_reader_has_it(number: float) -> None:
     text = canonical_json([number])
     found, read = parse_json(text), read_json_text(text, "t.json", lambda document, source: document)[1]
-    assert (found, type(found[0])) == (read, type(number)) == ([number], type(read[0]))
+    assert found == read == [number]
+    assert isinstance(read, list)
+    assert type(found[0]) is type(read[0]) is type(number)
 
 
 @pytest.mark.parametrize(

@@ -13,13 +13,14 @@ import pytest
 from synth.retarder.forms.code_options import CODE_NAMES
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
 from tests.frame.results import results_in
+from tests.st_files import aim_st_files
 from tests.system.conftest import Command
 from tests.system.test_start_up import HEAVY, modules_after
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
 from tuning_tables.aim import AimTable, ParkPosition
 from tuning_tables.aim.aim_tables import AimTables
 from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.aim.st_source import aim_export, aim_st_files
+from tuning_tables.aim.st_source import aim_export
 from tuning_tables.csv_file import to_csv
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.json_file import to_json, write_json

@@ -110,7 +110,7 @@ def test_limits_that_are_missed_are_told_and_change_the_exit_code(tmp_path: Path
     limits = summary["limits"]
     assert [limit["kept"] for limit in limits] == [False, False, False]
     assert page[-2] == Verdict(False, "; ".join(limit["sentence"] for limit in limits))
-    assert next(each.title for each in page if isinstance(each, PrintedTable)) == "Over all uncertain inputs"
+    assert next(each.table.title for each in page if isinstance(each, PrintedTable)) == "Over all uncertain inputs"
 
 
 def test_a_pay_back_that_never_comes_is_a_statement(tmp_path: Path) -> None:

@@ -51,7 +51,6 @@ from tuning_tables.aim import AimTable
 from tuning_tables.canonical import canonical_json
 from tuning_tables.declared.members import members_of
 from tuning_tables.document import HEAD, to_document
-from tuning_tables.json_file import read_stage_table
 from tuning_tables.table_kinds import KINDS, AnyTable, kind_of
 
 WRONG: list[object] = [None, True, "4", "", [], {}, [None], -1, 0.5]
@@ -244,7 +243,7 @@ def test_who_needs_another_kind_is_told_so(tmp_path: Path) -> None:
         from_json(to_json(lines), PassageTable, source="t.json")
     write_json(aim, tmp_path / "aim.json")
     with pytest.raises(OtherKind, match=r"its kind is aim .* whose kind is lines or passages"):
-        read_stage_table(tmp_path / "aim.json")
+        read_json(tmp_path / "aim.json", ControllerTable, PassageTable)
     assert isinstance(read_table(tmp_path / "aim.json"), AimTable)
 
 

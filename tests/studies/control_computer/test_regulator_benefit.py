@@ -52,7 +52,7 @@ def test_intervals_are_those_of_paired_differences() -> None:
     shared = np.random.default_rng(4).gamma(100.0, 0.01, 400)
     today, new = made_outcomes(shared, BEFORE, 1), made_outcomes(shared, AFTER, 2)
     found = {each.name: each.less for each in regulator_benefit(today, new, YARD, replicates=1000)}
-    linear = change_of_trains(today, new).over_speeds_above_2
+    linear = change_of_trains(today, new)["over_speeds_above_2"]
     on_track = 4000.0 / 1.8 * BEFORE.on_track
     assert half95(found["couplings above 2 m/s"]) == pytest.approx(on_track * half95(linear), rel=0.12)
 

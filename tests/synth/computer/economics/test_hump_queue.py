@@ -150,7 +150,3 @@ def test_an_overloaded_hump_says_by_how_much() -> None:
         queue(1.1)
     with pytest.raises(PlantError, match="overloaded"):
         queue(1.0)
-    with pytest.raises(PlantError, match="leads is 0"):
-        HumpQueue(1.0, 1.0, 0.4, 1.0, 0)
-    with pytest.raises(PlantError, match="service_h is -1"):
-        HumpQueue(1.0, 1.0, -1.0, 1.0)

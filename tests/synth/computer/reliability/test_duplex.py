@@ -115,15 +115,6 @@ def test_a_single_computer_by_hand_and_simulated() -> None:
     assert abs(ready.mean() - shares[0]) < 3.9 * ready.std() / np.sqrt(n)
 
 
-def test_impossible_values_are_refused() -> None:
-    for rate in (0.0, -1.0):
-        with pytest.raises(PlantError, match="duplex: failure_per_h"):
-            Duplex(rate, 1.0)
-    with pytest.raises(PlantError, match="check_h is -1"):
-        Duplex(0.01, -1.0)
-    with pytest.raises(PlantError, match="no shorter than check_h"):
-        Duplex(0.01, 2.0).availability(1.0)
-    with pytest.raises(PlantError, match="must lie between 0 and 1"):
-        Duplex(0.01, 2.0).longest_period_h(1.0)
+def test_an_availability_that_no_period_keeps_is_refused() -> None:
     with pytest.raises(PlantError, match=r"allow 0\.990066335 at most"):
         Duplex(0.01, 2.0).longest_period_h(0.999)

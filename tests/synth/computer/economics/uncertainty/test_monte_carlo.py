@@ -158,8 +158,6 @@ def test_losses_of_failures_pass_through_to_the_effect() -> None:
 
 
 def test_faults() -> None:
-    with pytest.raises(PlantError, match="draws is 10"):
-        drawn(linear, NORMAL, 10)
     with pytest.raises(PlantError, match="no input has a range"):
         drawn(linear, {"x": Constant(1.0)})
     with pytest.raises(PlantError, match=r"no draw of the inputs is possible; the first one: cars_per_h"):
