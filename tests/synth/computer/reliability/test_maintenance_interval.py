@@ -17,7 +17,6 @@ from synth.computer.reliability.maintenance_interval import (
     Counted,
     UsefulHours,
     WorkingHours,
-    small_rate_interval_h,
 )
 
 COMPUTER = CheckedComputer(failure_per_h=0.01, check_h=0.25, manual_price_per_h=0.2, unnoticed_price_per_h=2.0)
@@ -54,24 +53,6 @@ def test_the_best_interval_is_that_of_the_lambert_function(computer: CheckedComp
         assert rate * best == pytest.approx(cycle, rel=tolerance)
 
 
-@given(computers, st.floats(0.2, 5.0))
-def test_no_other_interval_loses_less(computer: CheckedComputer, factor: float) -> None:
-    for counted in ALL:
-        best = counted.best_interval_h(computer)
-        if np.isfinite(best):
-            least, other = computer.loss_per_h(np.array([best, factor * best]), counted)
-            assert least <= other * (1.0 + 1e-9)
-
-
-def test_all_intervals_become_that_of_small_rates() -> None:
-    rare = replace(COMPUTER, failure_per_h=1e-6)
-    expected = np.sqrt(2.0 * 0.25 * 0.2 / (1e-6 * 2.0))
-    assert small_rate_interval_h(rare) == pytest.approx(expected)
-    for counted in ALL:
-        assert counted.best_interval_h(rare) == pytest.approx(expected, rel=2e-3)
-    assert small_rate_interval_h(COMPUTER) == pytest.approx(2.236, abs=5e-4)
-
-
 def test_losses_are_those_of_simulated_cycles() -> None:
     n, rng = 400_000, np.random.default_rng(11)
     life = rng.exponential(1.0 / 0.05, n)
@@ -82,15 +63,6 @@ def test_losses_are_those_of_simulated_cycles() -> None:
         for counted, hours in zip(ALL, (ready, np.full(n, interval), np.full(n, interval + 0.25)), strict=True):
             residual = loss - float(computer.loss_per_h(interval, counted)) * hours
             assert abs(residual.mean()) < 3.9 * residual.std() / np.sqrt(n), (interval, counted)
-
-
-def test_the_best_interval_is_that_of_simulated_cycles() -> None:
-    """The same lives for all intervals of a grid: the minimum lies within a few steps of it."""
-    life = np.random.default_rng(3).exponential(100.0, 400_000)
-    grid = np.linspace(1.6, 3.0, 29)
-    ready = np.array([np.minimum(life, x).mean() for x in grid])
-    found = grid[((2.0 * (grid - ready) + 0.05) / ready).argmin()]
-    assert UsefulHours().best_interval_h(COMPUTER) == pytest.approx(found, abs=0.3)
 
 
 def test_the_print_has_no_root() -> None:

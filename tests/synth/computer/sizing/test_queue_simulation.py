@@ -7,7 +7,6 @@ import pytest
 
 from plant_models.errors import PlantError
 from scripts.studies.control_computer.lindley import coverage, lindley_waits
-from synth.computer.sizing.batch_means import sampled_mean
 from synth.computer.sizing.demand_service import Discipline, mean_waits
 from synth.computer.sizing.queue_simulation import Requests, drawn_requests, simulated, simulated_waits
 from synth.computer.sizing.service_law import Constant, Exponential
@@ -75,18 +74,6 @@ def test_formulas_hold_within_the_intervals(streams: tuple[Stream, ...], discipl
         assert abs(found.late_share.value - late) <= 2.2 * found.late_share.half_width + 1e-3
 
 
-def test_the_processor_is_never_idle_while_somebody_waits() -> None:
-    # whatever the order, the work is done at the same times: the last end of each busy period is one
-    requests = drawn_requests(MIXED, 3000, np.random.default_rng(9))
-    ends = [np.sort(simulated(requests, MIXED, discipline).end_s) for discipline in Discipline]
-    waits = lindley_waits(requests.arrival_s, requests.service_s)
-    first_of_busy = np.flatnonzero(waits[1:] == 0.0)  # the one before it ended a busy period
-    last_ends = (requests.arrival_s + waits + requests.service_s)[first_of_busy]
-    for each in ends:
-        places = np.searchsorted(each, last_ends - 1e-7)
-        assert np.allclose(each[places], last_ends, atol=1e-6)
-
-
 def test_the_same_seed_gives_the_same_waits() -> None:
     one, other = (simulated_waits(MIXED, Discipline.ABSOLUTE, 3000, 4, 1.0) for _ in range(2))
     assert one == other
@@ -106,14 +93,6 @@ def test_draws_have_the_rates_and_loads_of_the_streams() -> None:
 def test_the_interval_covers_the_mean_wait_of_mm1(load: float) -> None:
     # 300 runs: a coverage of 0.95 is seen as 0.913 at least with probability 0.998
     assert 0.91 <= coverage(load, 50_000, 300, 7).held <= 0.985
-
-
-def test_an_interval_that_took_the_waits_as_independent_would_be_too_narrow() -> None:
-    rng = np.random.default_rng(2)
-    waits = lindley_waits(np.cumsum(rng.exponential(1.25, 50_000)), rng.exponential(1.0, 50_000))
-    assert sampled_mean(waits).half_width > 4.0 * 1.96 * waits.std() / np.sqrt(50_000)
-    independent = rng.normal(size=50_000)
-    assert sampled_mean(independent).half_width == pytest.approx(1.96 / np.sqrt(50_000), rel=0.4)
 
 
 def test_bad_questions_are_refused() -> None:
