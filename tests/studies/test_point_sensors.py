@@ -157,6 +157,3 @@ def test_without_fault_wide_limits_change_nothing(
     assert len(names) == len(set(names)) == 1 + 6 * (DECIDING + 1) + DECIDING + 7
     dead = [row for row in rows if row.fault.endswith("dead")]
     assert max(row.ratio for row in dead) > 1.0
-
-
-# --------------------------------------------------------------------------------------------------- claims
