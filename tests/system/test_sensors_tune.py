@@ -195,15 +195,6 @@ def test_plot_draws_switching_speeds_and_passes_where_the_plant_is_known(
     }  # fmt: skip
 
 
-def test_a_damaged_table_is_told(command: Command, tuned_points: Path, tmp_path: Path) -> None:
-    table = tmp_path / "table.json"
-    table.write_text((tuned_points / "tables" / f"{TABLE}.json").read_text(encoding="utf-8").replace("rnz", "rnx"))
-    for words in (["inspect"], ["validate"], ["inspect", "-o", tmp_path / "out"]):
-        ran = command(*words, table)
-        assert ran.code == 3
-        assert "crc32" in ran.sentence
-
-
 def test_what_needs_lines_refuses_the_table_in_one_sentence(
     command: Command, tuned_points: Path, tmp_path: Path
 ) -> None:
