@@ -23,11 +23,9 @@ from synth.simulation.path_cells import cell_edges_m
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.switching_lines import SwitchingLines
-from synth.solver.tabulate import clock_of
+from tests.synth.case_factory import make_table
 from tests.synth.loop_controllers import constant_lines, energy_controller
-from tuning_tables.figures import Predicted, ValidRange
 from tuning_tables.json_file import read_json, write_json
-from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
 
@@ -136,19 +134,7 @@ def cubic_table(plant: Plant, target_m_s: float) -> ControllerTable:
         upper = round_coefficients(cubic[:, k]) if k < lines.stages - 1 else None
         lower = round_coefficients(cubic[:, k - 1] - np.array([0.15, 0, 0, 0])) if k > 0 else None
         stages.append(Stage(k, plant.position.stage_pressures_kpa[k], lower, upper))
-    return ControllerTable(
-        id="cubic",
-        created="2026-11-20T22:46:00Z",
-        generator=Generator("test", "0", "0" * 64),
-        retarder=RetarderId("pilot", plant.position.zones_m, plant.exit_m, 15.0),
-        cut=CutId(plant.cut.category, plant.cut.mass_t, plant.cut.axle_offsets_m),
-        target_speed_m_s=target_m_s,
-        clock=clock_of(plant),
-        degree=3,
-        stages=tuple(stages),
-        valid=ValidRange((0.0, plant.exit_m), (0.3, 9.0)),
-        predicted=Predicted(0.05, 0.0, 0.01, 4.0),
-    )
+    return replace(make_table("cubic", plant, target_m_s), stages=tuple(stages))
 
 
 def test_a_table_read_back_drives_the_loop_like_its_own_lines(

@@ -152,21 +152,6 @@ def test_a_tune_prints_the_figures_of_its_summary(one_class: Path, tmp_path: Pat
     require_column(told, "which", [row["best_baseline"] for row in rows])
 
 
-@pytest.mark.parametrize("name", ["book.h5", "tables/gondola-4-22t-to-1.5-m-s.json"])
-def test_validate_prints_the_figures_of_its_summary(
-    tuned: Path, pages: list[Page], two_classes: Path, tmp_path: Path, name: str
-) -> None:
-    page = printed(pages, "validate", tuned / name, "--config", two_classes, "--seed", "7", "-o", tmp_path)
-    summary, told = json.loads((tmp_path / "summary.json").read_bytes()), table_of(page)
-    rows = summary["tables"]["tables"]
-    require_column(told, "table", [row["id"] for row in rows])
-    require_figures(told, rows)
-    require_column(told, "the file states, m/s", [of(row, "stated_rms_m_s", 4) for row in rows])
-    require_column(told, "predicted rms, m/s", [f"{row['predicted_rms_m_s']:.4f}" for row in rows])
-    seed = f"{rows[0]['rms_m_s']['n']} stratified passes of each table, seed {summary['figures']['seed']}."
-    assert any(str(each).startswith(seed) for each in page)
-
-
 def test_inspect_prints_the_lines_of_its_json(tuned: Path, command: Command, pages: list[Page]) -> None:
     page, found = (
         printed(pages, "inspect", tuned / "book.h5"),

@@ -37,7 +37,6 @@ from tuning_tables.table_kinds import StageTable
 
 DTYPES = ("<f4", "<f8", ">f8", "<i4", "<i8", "|u1", "S70", "object", "reference")
 NAN, INF = float("nan"), float("inf")
-Index = int | tuple[int, ...]
 
 
 @dataclass(frozen=True)

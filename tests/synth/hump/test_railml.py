@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 import re
 from collections.abc import Iterator
 from dataclasses import replace
@@ -201,33 +200,3 @@ def fault_of(text: str) -> str:
     except InputError as fault:
         return str(fault)
     return ""
-
-
-def test_changed_files_are_read_or_told_in_one_sentence() -> None:
-    rng, text = random.Random(4), small()
-    told, lines = 0, text.splitlines(keepends=True)
-    for _ in range(400):
-        changed = list(lines)
-        for _ in range(rng.randint(1, 3)):
-            place = rng.randrange(1, len(changed))
-            match rng.randrange(4):
-                case 0:
-                    del changed[place]
-                case 1:
-                    changed.insert(place, changed[rng.randrange(1, len(changed))])
-                case 2:
-                    changed[place] = re.sub(
-                        r'"[^"]*"',
-                        f'"{rng.choice(("", "1", "-3.5", "nan", "ne_1_left", "&#7;"))}"',
-                        changed[place],
-                        count=rng.randint(1, 3),
-                    )
-                case _:
-                    cut = rng.randrange(len(changed[place]))
-                    changed[place] = changed[place][:cut] + rng.choice('<>&"x9') + changed[place][cut + 1 :]
-        sentence = fault_of("".join(changed))
-        if sentence:
-            told += 1
-            assert sentence.startswith("x.railml: ")
-            assert sentence.isprintable()
-    assert 240 < told < 400

@@ -87,36 +87,6 @@ def test_transient_is_that_of_the_differential_equations(chain: FourStates, star
     np.testing.assert_allclose(late, astuple(chain.stationary()), rtol=1e-9)
 
 
-@given(chains, st.floats(0.0, 1e3))
-def test_transient_is_a_distribution(chain: FourStates, hours: float) -> None:
-    (p,) = chain.transient(np.array([hours]))
-    assert p.min() > -1e-9
-    assert p.sum() == pytest.approx(1.0, abs=1e-8)
-
-
-@pytest.mark.parametrize("chain", [PRINTED, TO_REPAIR, FourStates(0.3, 0.1, 0.2, 0.5, 0.05, State.REPAIR)])
-def test_shares_are_those_of_simulated_cycles(chain: FourStates) -> None:
-    n = 400_000
-    hours = chain_cycles(chain, n, 7)
-    total = hours.sum(axis=1)
-    for state, share in zip(State, astuple(chain.stationary()), strict=True):
-        residual = hours[:, state] - share * total
-        assert abs(residual.mean()) < 3.9 * residual.std() / np.sqrt(n), state
-
-
-@given(chains, st.floats(1.01, 10.0))
-def test_what_rises_and_what_falls(chain: FourStates, factor: float) -> None:
-    """More failures, less availability; faster repair and maintenance, more; faster detection, less time unnoticed."""
-    now = chain.stationary()
-    assert replace(chain, failure_per_h=factor * chain.failure_per_h).stationary().availability < now.availability
-    assert replace(chain, repair_per_h=factor * chain.repair_per_h).stationary().availability >= now.availability
-    assert (
-        replace(chain, maintenance_per_h=factor * chain.maintenance_per_h).stationary().availability > now.availability
-    )
-    sooner = replace(chain, detection_per_h=factor * chain.detection_per_h).stationary()
-    assert sooner.failed_unnoticed < now.failed_unnoticed
-
-
 @given(chains, st.floats(1.05, 10.0))
 def test_detection_raises_availability_unless_maintenance_is_the_shorter_repair(
     chain: FourStates, factor: float

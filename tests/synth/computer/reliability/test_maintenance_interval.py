@@ -48,14 +48,6 @@ def test_the_best_interval_is_that_of_the_lambert_function(computer: CheckedComp
     assert rate * computer.best_calendar_h == pytest.approx(cycle, rel=tolerance)
 
 
-@given(computers, st.floats(0.2, 5.0))
-def test_no_other_interval_loses_less(computer: CheckedComputer, factor: float) -> None:
-    for which, best in enumerate((computer.best_useful_h, computer.best_calendar_h)):
-        if np.isfinite(best):
-            least, other = losses(computer, np.array([best, factor * best]))[which][1]
-            assert least <= other * (1.0 + 1e-9)
-
-
 def test_losses_are_those_of_simulated_cycles() -> None:
     n, rng = 400_000, np.random.default_rng(11)
     life = rng.exponential(1.0 / 0.05, n)
@@ -67,15 +59,6 @@ def test_losses_are_those_of_simulated_cycles() -> None:
         for told, hours in ((per_use, ready), (per_year / 8760.0, np.full(n, interval + 0.25))):
             residual = loss - told * hours
             assert abs(residual.mean()) < 3.9 * residual.std() / np.sqrt(n), interval
-
-
-def test_the_best_interval_is_that_of_simulated_cycles() -> None:
-    """The same lives for all intervals of a grid: the minimum lies within a few steps of it."""
-    life = np.random.default_rng(3).exponential(100.0, 400_000)
-    grid = np.linspace(1.6, 3.0, 29)
-    ready = np.array([np.minimum(life, x).mean() for x in grid])
-    found = grid[((2.0 * (grid - ready) + 0.05) / ready).argmin()]
-    assert COMPUTER.best_useful_h == pytest.approx(found, abs=0.3)
 
 
 def test_the_print_has_no_root() -> None:

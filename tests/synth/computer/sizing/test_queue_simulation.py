@@ -79,18 +79,6 @@ def test_formulas_hold_within_the_intervals(streams: tuple[Stream, ...], discipl
         assert abs(found.late_share.value - late) <= 2.2 * found.late_share.half_width + 1e-3
 
 
-def test_the_processor_is_never_idle_while_somebody_waits() -> None:
-    # whatever the order, the work is done at the same times: the last end of each busy period is one
-    requests = drawn_requests(MIXED, 3000, np.random.default_rng(9))
-    ends = [np.sort(simulated(requests, MIXED, discipline).end_s) for discipline in Discipline]
-    waits = lindley_waits(requests.arrival_s, requests.service_s)
-    first_of_busy = np.flatnonzero(waits[1:] == 0.0)  # the one before it ended a busy period
-    last_ends = (requests.arrival_s + waits + requests.service_s)[first_of_busy]
-    for each in ends:
-        places = np.searchsorted(each, last_ends - 1e-7)
-        assert np.allclose(each[places], last_ends, atol=1e-6)
-
-
 def test_the_same_seed_gives_the_same_waits() -> None:
     one, other = (simulated_waits(MIXED, Discipline.ABSOLUTE, 3000, 4, 1.0) for _ in range(2))
     assert one == other
@@ -115,14 +103,6 @@ def test_the_interval_covers_the_mean_wait_of_mm1(load: float) -> None:
         found = sampled_mean(lindley_waits(arrival_s, rng.exponential(1.0, requests))[requests // 10 :])
         held += abs(found.value - load / (1.0 - load)) <= found.half_width
     assert 0.91 <= held / 300 <= 0.985
-
-
-def test_an_interval_that_took_the_waits_as_independent_would_be_too_narrow() -> None:
-    rng = np.random.default_rng(2)
-    waits = lindley_waits(np.cumsum(rng.exponential(1.25, 50_000)), rng.exponential(1.0, 50_000))
-    assert sampled_mean(waits).half_width > 4.0 * 1.96 * waits.std() / np.sqrt(50_000)
-    independent = rng.normal(size=50_000)
-    assert sampled_mean(independent).half_width == pytest.approx(1.96 / np.sqrt(50_000), rel=0.4)
 
 
 def test_bad_questions_are_refused() -> None:

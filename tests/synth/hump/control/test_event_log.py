@@ -57,17 +57,6 @@ def test_a_log_reads_back_from_hdf5_and_equal_logs_give_equal_bytes(tmp_path: Pa
     assert read_events(tmp_path / "none.h5") == ()
 
 
-@pytest.mark.parametrize("place", [0, 100, -200, -1])
-def test_a_damaged_hdf5_log_is_told(tmp_path: Path, place: int) -> None:
-    path = tmp_path / "log.h5"
-    write_events(random_humping(6, Scene()).control.log.events, path)
-    content = bytearray(path.read_bytes())
-    content[place] ^= 1
-    path.write_bytes(content)
-    with pytest.raises(InputError, match=r"log\.h5"):
-        read_events(path)
-
-
 def claims(shape: tuple[int, ...], **storage: Any) -> Callable[[h5py.File], None]:
     def edit(file: h5py.File) -> None:
         file.create_dataset("data", shape=shape, dtype="<f8", **storage)
