@@ -10,7 +10,7 @@ from importlib.metadata import version
 from importlib.resources import files
 from typing import Any, Final
 
-from llvmlite.binding import get_host_cpu_features
+import numpy as np
 
 from synth.cli.qualification.check import Check, checked
 from synth.cli.qualification.tuned import Tuned
@@ -24,8 +24,8 @@ Sums end there in other last bits, so a search for the best lines ends beside wh
 LIBRARIES: Final = ("llvmlite", "numba", "numpy", "scipy")
 """Those whose versions decide the last bits of a number."""
 
-EXTENSIONS: Final = ("AVX2", "FMA")
-"""Of a processor, without which numba and OpenBLAS round elsewhere."""
+FUSED: Final = "X86_V3"
+"""numpy's name of processors with AVX2 and fused multiply-adds: without these numba and OpenBLAS round elsewhere."""
 
 FIGURES: Final = {"predicted": "predicted rms", "validated": "simulated rms"}
 
@@ -55,11 +55,11 @@ def golden_of(book: Tuned) -> Golden:
 
 def surroundings() -> dict[str, str]:
     """What decides the last bits here: system, versions of libraries, and extensions of the processor but AVX-512."""
-    has = get_host_cpu_features()
+    extensions = np.show_config(mode="dicts")["SIMD Extensions"]
     return {
         "system": f"{platform.system()} {platform.machine()}",
         "C library": " ".join(platform.libc_ver()),
-        "processor": " and ".join(name for name in EXTENSIONS if has.get(name.lower())) or "another",
+        "processor": FUSED if FUSED in (*extensions["baseline"], *extensions["found"]) else "another",
         **{name: version(name) for name in LIBRARIES},
     }
 
