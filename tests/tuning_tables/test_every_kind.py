@@ -53,7 +53,7 @@ from tuning_tables.declared.members import members_of
 from tuning_tables.document import HEAD, to_document
 from tuning_tables.table_kinds import KINDS, AnyTable, kind_of
 
-WRONG: list[object] = [None, True, "4", "", [], {}, [None], -1, 0.5]
+WRONG: list[object] = [None, True, "", "4", -1, {}, [None], [], 0.5]
 VALIDATORS = {kind: jsonschema.Draft202012Validator(table_schema(kind)) for kind in KINDS}
 
 
@@ -143,6 +143,7 @@ def test_every_key_is_required_and_no_other_is_known(sample: AnyTable) -> None:
 @pytest.mark.requirement("FILE-03")
 @pytest.mark.parametrize("wrong", every(2, WRONG), ids=repr)
 def test_no_value_of_another_type_gets_through(sample: AnyTable, wrong: object) -> None:
+    """What the reader takes, the schema takes too."""
     document = document_of(sample)
     refused = 0
     for path in places(document):
@@ -193,20 +194,6 @@ def test_a_zero_has_no_sign(sample: AnyTable) -> None:
             with pytest.raises(DamagedTable, match=re.escape(dotted(path)) + r" is -0\.0, but .* without a sign"):
                 read_back(content, sample)
     assert tried >= 10
-
-
-@pytest.mark.parametrize("wrong", every(2, [None, True, "", [], -1, {}]), ids=repr)
-def test_what_the_schema_refuses_the_reader_refuses_too(sample: AnyTable, wrong: object) -> None:
-    document, refused = document_of(sample), 0
-    for path in places(document):
-        if path[0] in (*HEAD, "crc32"):
-            continue
-        changed = altered(document, path, wrong)
-        if not conforms(changed):
-            refused += 1
-            with pytest.raises(DamagedTable):
-                read_back(sealed(changed), sample)
-    assert refused >= 20
 
 
 @pytest.mark.requirement("FILE-04")
