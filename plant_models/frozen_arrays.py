@@ -7,6 +7,12 @@ from functools import cache, wraps
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+"""What annotations call arrays of numbers, of whole numbers, of truth values."""
 
 _T = TypeVar("_T")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from plant_models.frozen_arrays import Floats
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.trains.forecast import Given
 from synth.hump.trains.free_tracks import FreeTracks
@@ -15,7 +16,7 @@ from synth.hump.trains.resolved_trial import resolve_trial
 from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_source import TrainSource
-from synth.hump.trains.trial import Control, Floats, HumpTrial, Sensing
+from synth.hump.trains.trial import Control, HumpTrial, Sensing
 
 NAME = "hump-day"
 

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.shift_sums import Ints, shift_sums
-from synth.hump.trains.trial import Floats
+from synth.hump.trains.shift_sums import shift_sums
 
 REPLICATES = 2000
 

@@ -6,18 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.library.weight_category import WeightCategories
 from plant_models.rolling.car_mix import CarMix
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
 from synth.hump.control.cut_record import MOST_CUTS, USUAL_HUMP_SPEED_M_S, CutRecord
 from synth.hump.control.sorting_list import SortingList
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @frozen_arrays

@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.design.hump_under_test import HumpUnderTest
 from synth.hump.design_runners import DesignRunner, bad_runner, good_runner, single_cars
 from synth.hump.trains.asked import Asked
@@ -23,9 +22,6 @@ from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import TrainPlan, shared_needs
 from synth.hump.trains.train_trace import TrainTrace, train_trace
 from synth.hump.trains.trial import reduced_gravity_m_s2
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 CARS: Final = 3
 """Of a triple."""

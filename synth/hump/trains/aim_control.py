@@ -5,18 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from plant_models.frozen_arrays import Floats, Ints
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.expected_way import ExpectedWay
 from synth.hump.trains.hump_aim import HumpAim
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.stretch_reading import AimReading
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class AimedTrains(Protocol):

@@ -7,9 +7,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.hump import Retarder, Route
 from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
@@ -23,9 +23,6 @@ from synth.hump.trains.hump_aim import CategoryAim, HumpAim
 from synth.hump.trains.hump_routes import HumpRoutes
 from tuning_tables.aim import AimAxes
 from tuning_tables.aim.held_aim import aim_grid
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 CARS = (1, 2, 3, 5, 8)
 """Numbers of cars that speeds are chosen for."""

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from plant_models.errors import PlantError, require
+from plant_models.frozen_arrays import Bools
 from plant_models.library import SourcedValue, WeightCategories
 from synth.frame.settings.numbers import sourced
 from synth.hump.configuration.position_settings import (
@@ -22,7 +23,7 @@ from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.forecast import SpeedRange
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.position_choice import PositionChoice
-from synth.hump.trains.position_roles import Bools, Exits, Fixed, Roles, Spacing
+from synth.hump.trains.position_roles import Exits, Fixed, Roles, Spacing
 
 UNBRAKED_M_S: Final = 99.0
 """An exit speed that no cut has: whoever asks for it leaves the brake open."""

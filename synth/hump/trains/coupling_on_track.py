@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.hump.trains.motion import Cars, Moving
-
-Floats = NDArray[np.float64]
 
 PLACES = 48
 """Places on the track where both are compared, and once more about the one where they first touch, or come closest."""

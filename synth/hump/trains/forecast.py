@@ -6,17 +6,12 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.known_rolls import KnownRolls, Leg, Legs
 from synth.hump.trains.motion import Cars, Moving, Push, rolled_free
 from synth.kernels.roll import exit_choices as kernel
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 BOTH_MARKS = np.array([Mark.FIRST_IN, Mark.LAST_OUT])
 """Intervals need no other times."""

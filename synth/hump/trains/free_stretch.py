@@ -9,15 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require_between
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
 from synth.aim.readings import MOST_N_PER_KN, TrueReadings
 from synth.aim.scene import SceneCuts
 from synth.simulation.free_roll import RollingCuts
-
-Floats = NDArray[np.float64]
 
 SHORTEST_M = 10.0
 """Between the places of a head; on less the errors of the speeds hide the resistance."""
@@ -44,7 +41,7 @@ class StretchSpeeds:
         return self.to_m - self.from_m
 
     @property
-    def tells(self) -> NDArray[np.bool_]:
+    def tells(self) -> Bools:
         """Where the stretch is long enough, and both speeds were read."""
         return (self.length_m >= SHORTEST_M) & (self.from_m_s > 0.0) & (self.to_m_s > 0.0)
 

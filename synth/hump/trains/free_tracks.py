@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
 from synth.hump.trains.hump_routes import HumpRoutes
-
-Floats = NDArray[np.float64]
 
 
 class FreeTracks(Protocol):

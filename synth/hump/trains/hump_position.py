@@ -6,13 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
-from plant_models.frozen_arrays import frozen_arrays
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 
 OF_ALL = ("seed", "position")
 """What all arrivals share."""
@@ -65,7 +61,7 @@ class Arrivals:
         """What tells the random numbers of the passes apart: train, cut, position."""
         return self.train, self.cut, np.full_like(self.cut, self.position)
 
-    def chosen(self, which: NDArray[np.bool_] | Ints | slice) -> Arrivals:
+    def chosen(self, which: Bools | Ints | slice) -> Arrivals:
         """Some of them."""
         arrays: dict[str, Any] = {name: values[which] for name, values in vars(self).items() if name not in OF_ALL}
         return Arrivals(**arrays, seed=self.seed, position=self.position)

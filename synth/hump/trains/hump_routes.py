@@ -10,11 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from plant_models.hump import HumpGraph, Retarder, Route, RouteElement, Signal, Switch
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Mark(IntEnum):
@@ -92,13 +89,13 @@ class HumpRoutes:
         return read_only(np.isfinite(self.entrance_m).sum(axis=1))
 
     @cached_property
-    def parts_behind(self) -> NDArray[np.bool_]:
+    def parts_behind(self) -> Bools:
         """Whether there is a switch behind the last position of each route, (routes,)."""
         last = self.retarder.max(axis=1, initial=-1)
         return read_only(((self.points >= 0) & (np.arange(self.elements) > last[:, None])).any(axis=1))
 
     @cached_property
-    def is_last(self) -> NDArray[np.bool_]:
+    def is_last(self) -> Bools:
         """Whether each of the `numbers` is the last position of some route."""
         rows, last = np.arange(len(self.routes)), self.retarder.max(axis=1, initial=-1)
         return read_only(np.isin(np.arange(len(self.numbers)), self.vertex[rows, last][last >= 0]))

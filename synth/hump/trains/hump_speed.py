@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Bools, Floats
 from synth.kernels import crest_speeds as kernel
-
-Floats = NDArray[np.float64]
 
 SHORT_COSTS = 1e3
 """Seconds of humping that one second less than a needed headway is worth: no headway is given up to be faster."""
@@ -37,7 +35,7 @@ class HumpSpeedLimits:
             require_between("hump speed: a step", step, 0.3, 4.0)
         require_between("hump speed: acceleration_m_s2", self.acceleration_m_s2, 0.005, 1.0)
 
-    def reachable(self, apart_m: Floats) -> NDArray[np.bool_]:
+    def reachable(self, apart_m: Floats) -> Bools:
         """(…, steps, steps): from which step to which the train can change on `apart_m`; to a neighbour always."""
         steps = np.array(self.steps_m_s)
         change = np.abs(steps[:, None] ** 2 - steps[None, :] ** 2)

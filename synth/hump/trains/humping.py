@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Bools, Floats, Ints
 from synth.hump.trains.asked import Asked, ExitSpeeds, HumpSpeeds
 from synth.hump.trains.hump_position import Arrivals, HumpPosition
 from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
@@ -19,10 +19,6 @@ from synth.hump.trains.standing_cars import NEARLY_M, StandingCars
 from synth.hump.trains.tails import Tails, followed
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

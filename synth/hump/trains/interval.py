@@ -9,13 +9,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Bools, Ints
 from synth.hump.trains.forecast import Compared
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-
 
 NONE_S = -1e6
 """Margins behind a cut that blocks the way are infinitely short; where all choices have such, a possible one is

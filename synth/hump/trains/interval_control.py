@@ -6,9 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.trains.aim_control import AimControl
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.forecast import from_crest, from_entrance
@@ -20,9 +19,6 @@ from synth.hump.trains.rollability import Rollability
 from synth.hump.trains.sight import Sight
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import Planner, TrainPlan, apart_m, free_by_s
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @frozen_arrays

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY
 from plant_models.rolling.random_cuts import DrawnCuts
 from synth.hump.trains.forecast import Choices, Expected, Given
@@ -17,9 +16,6 @@ from synth.hump.trains.position_roles import Roles
 from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.route_ways import RouteWays
 from synth.hump.trains.train_cuts import TrainCuts, expected
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @frozen_arrays

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.expected_way import ExpectedWay
 from synth.hump.trains.free_stretch import SHORTEST_M
@@ -16,9 +15,6 @@ from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.resistance_prior import ResistancePrior, resistance_prior
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.train_cuts import TrainCuts
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Rollability(Protocol):

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.position_roles import Roles
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_plan import TrainPlan
 from synth.hump.trains.trial import HumpTrial
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,18 +6,15 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from plant_models.errors import require_between
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.rolling.keyed_numbers import keyed_uniform
 from plant_models.rolling.random_numbers import Purpose
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.free_stretch import StretchSpeeds
 from synth.hump.trains.hump_routes import HumpRoutes
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SLOWEST_M_S = 0.05
 """No reading is less."""

@@ -10,15 +10,12 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from plant_models.errors import PlantError
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.hump import Route
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts, air_n_per_kn, bend_draws
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
 from synth.hump.control.train_population import DrawnTrains, TrainPopulation
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @frozen_arrays

@@ -9,9 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.forecast import Given, from_crest
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTrain
@@ -20,9 +19,6 @@ from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.meeting import Ahead, LastUsers
 from synth.hump.trains.motion import Moving, Push
 from synth.hump.trains.position_roles import Roles
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 WHOLE_TRAIN = WholeTrain()
 
@@ -245,7 +241,7 @@ def free_by_s(routes: HumpRoutes, known: KnownCuts, first_in_s: Floats, own: Int
     return free_by
 
 
-def shared_needs(routes: HumpRoutes, one: Ints, other: Ints) -> tuple[NDArray[np.bool_], Floats]:
+def shared_needs(routes: HumpRoutes, one: Ints, other: Ints) -> tuple[Bools, Floats]:
     """(which elements the routes `one` and `other` (n,) share, what the points need between two cuts on them), each
     (n, elements)."""
     shared = np.arange(routes.elements)[None, :] < routes.shared(one, other)[:, None]

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats, Ints
 from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.aim_control import AimControl, ReadAhead
 from synth.hump.trains.asked import ExitSpeeds, HumpSpeeds
@@ -36,9 +36,6 @@ from synth.hump.trains.train_cuts import TrainCuts, expected
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import Planner, TrainPlan
 from synth.hump.trains.train_source import TrainSource
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 CENTRED = CentredRule()
 

@@ -11,10 +11,9 @@ from functools import reduce
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.frame.interval import Interval
 from synth.hump.trains.batch import trains_of_batch
 from synth.hump.trains.hump_position import Arrivals, HumpPosition, Passed
@@ -23,8 +22,6 @@ from synth.hump.trains.outcomes import TrainOutcomes, joined
 from synth.hump.trains.shift_sums import shift_sums
 from synth.hump.trains.train_figures import Of
 from synth.hump.trains.trial import HumpTrial
-
-Floats = NDArray[np.float64]
 
 FEWEST_ERRORS: Final = 10
 """Passes on each side of the beginning of a drift; fewer do not tell how cuts leave."""

@@ -8,14 +8,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.frame.picture.house_style import BLUE, INK, SKY, dress, legend_below, new_figure, place
 from synth.hump.trains.speed_program import SpeedProgram
 from synth.hump.trains.train_trace import TrainTrace
-
-Floats = NDArray[np.float64]
 
 
 @frozen_arrays

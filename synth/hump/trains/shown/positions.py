@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals
@@ -21,7 +22,7 @@ from synth.hump.trains.position_strength import MOST_SHORT, strengths
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.shift_sums import shift_sums
 from synth.hump.trains.shown.figures import in_hundred
-from synth.hump.trains.train_figures import Floats, interval_of, ratio, share
+from synth.hump.trains.train_figures import interval_of, ratio, share
 from synth.hump.trains.trial_aim import stated_exit_std_m_s
 
 POSITIONS: Final = (

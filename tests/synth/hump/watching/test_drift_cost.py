@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from plant_models.frozen_arrays import Floats
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.trains.made_trial import brake_of, made_trial
 from synth.hump.trains.resolved_trial import ResolvedTrial, resolve_trial
 from synth.hump.watching.drift_cost import (
     Difference,
-    Floats,
     MeasuredRetarder,
     Retarder,
     Weights,
