@@ -80,11 +80,11 @@ def compute(asked: AskedCapacity, work: Work) -> FoundCapacity:
 
 def trials_of(points: Sequence[AskedTrial]) -> tuple[list[ResolvedTrial], list[HumpTrial]]:
     """The trials of the points of a curve, which differ in how trains are pushed, so that aims are chosen once."""
-    from synth.hump.trains.made_trial import made_trial, planner_of, program_of
+    from synth.hump.trains.made_trial import made_trial, planner_of
 
     configs = [each.config for each in points]
     first = made_trial(configs[0])
-    return configs, [replace(first, planner=planner_of(each), program=program_of(each)) for each in configs]
+    return configs, [replace(first, planner=planner_of(each)) for each in configs]
 
 
 def show(found: FoundCapacity) -> Iterator[Chapter]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plant_models.errors import require, require_between
+from plant_models.errors import require
 from plant_models.frozen_arrays import Floats, Ints
 from plant_models.hump import Retarder, Route
 from plant_models.library.weight_category import WeightCategory
@@ -45,9 +45,6 @@ class MeasuredAhead:
     speed_std_m_s: float = 0.1
     speed_mean_m_s: float = 4.5
     speed_spread_m_s: float = 0.5
-
-    def __post_init__(self) -> None:
-        require_between("measured stretch: speed_std_m_s", self.speed_std_m_s, 1e-4, 2.0)
 
 
 @dataclass(frozen=True)

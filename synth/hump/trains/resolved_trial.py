@@ -62,8 +62,6 @@ KEY_OF_PLANT_MESSAGE: Final = {
     "car mix: ": "cars.",
     "car mix: no car": "cars.mix: no car",
     "train: ": "trains.",
-    "tracks: ": "tracks.",
-    "hump speed: ": "hump_speed.",
 }
 """How the plant's messages begin, and the key path in a hump trial configuration that this means."""
 

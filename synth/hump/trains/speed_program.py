@@ -57,7 +57,7 @@ def speed_program(trial: HumpTrial, number: int, plan: TrainPlan | None = None) 
     """The program of train `number` of `trial`, whose `plan` may be known already; it is not humped."""
     trains, tracks = trial.train(number)
     known = trial.known(trains, tracks.free_m)
-    plan = trial.program.plan(trial.planner, known) if plan is None else plan
+    plan = trial.planner.plan(known) if plan is None else plan
     exits = planned_m_s(trains, plan, known.aim.speed_m_s, trial.planner.roles)
     return program_of(number, trains, plan, exits, trial.routes)
 

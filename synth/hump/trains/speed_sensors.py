@@ -8,7 +8,6 @@ from typing import Protocol
 import numpy as np
 from scipy.special import ndtri
 
-from plant_models.errors import require_between
 from plant_models.frozen_arrays import Floats, Ints
 from plant_models.rolling.keyed_numbers import keyed_uniform
 from plant_models.rolling.random_numbers import Purpose
@@ -57,9 +56,6 @@ class SpeedSensors:
     routes: HumpRoutes
     trains: SensedTrains
     std_m_s: float = 0.1
-
-    def __post_init__(self) -> None:
-        require_between("speed sensors: std_m_s", self.std_m_s, 1e-4, 2.0)
 
     def stretch(self, asked: Asked, position: int) -> StretchSpeeds:
         """The free stretch ahead of `position`, which is the one asked for or one before it. What is not over when the

@@ -13,14 +13,12 @@ import numpy as np
 from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.forecast import Given, from_crest
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
-from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTrain
+from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, whole_train
 from synth.hump.trains.interval import CentredRule, EarlyRule, IntervalRule, possible
 from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.meeting import Ahead, LastUsers
 from synth.hump.trains.motion import Moving, Push
 from synth.hump.trains.position_roles import Roles
-
-WHOLE_TRAIN = WholeTrain()
 
 LEADERS = 4
 """Cuts ahead whose headways are told one by one."""
@@ -67,19 +65,22 @@ class Planner:
     least_s: float = 0.5
     early_s: float = 0.2
     worst_pair: bool = False
-    method: SpeedMethod = WHOLE_TRAIN
+    method: SpeedMethod = whole_train
     fits: int = 2
     repairs: int = 3
 
     def plan(self, known: KnownCuts) -> TrainPlan:
-        """The plan with the fastest hump speeds that keep the interval; of all turns, the best one for each train."""
+        """The plan with the fastest hump speeds that keep the interval; of all turns, the best one for each train. With
+        one step there is no choice."""
+        if len(self.limits.steps_m_s) == 1:
+            return self.at_speeds(known, np.full((known.trains, known.cuts), self.limits.steps_m_s[0]))
         speeds = np.full((known.trains, known.cuts), self.limits.steps_m_s[len(self.limits.steps_m_s) // 2])
         needs_s = np.full((known.trains, known.cuts, LEADERS), -np.inf)
         best, least_cost = speeds, np.full(known.trains, np.inf)
         first_in_s = np.full((known.trains, known.cuts, self.routes.elements), np.nan)
         for turn in range(self.fits + self.repairs + 1):
             if turn > 0:
-                speeds = self.method.speeds(apart_m(known), needs_s, self.limits)
+                speeds = self.method(apart_m(known), needs_s, self.limits)
             found = Sweep(self, known, speeds, None).run(EarlyRule(self.early_s))
             cost = self.cost_s(found)
             better = cost < least_cost
@@ -94,10 +95,6 @@ class Planner:
         """What each train costs (trains,): its time over the crest, and much more for intervals that are too short."""
         short = np.clip(self.least_s - found.margin_s - NEARLY_S, 0.0, MOST_SHORT_S)
         return np.asarray(found.crest_s[:, -1] + SHORT_COSTS * short.sum(axis=1))
-
-    def constant(self, known: KnownCuts, speed_m_s: float) -> TrainPlan:
-        """The plan where all cuts are pushed at one speed."""
-        return self.at_speeds(known, np.full((known.trains, known.cuts), speed_m_s))
 
     def at_speeds(self, known: KnownCuts, speeds_m_s: Floats) -> TrainPlan:
         """The plan with given hump speeds (trains, cuts): exit speeds in the middle between both neighbours."""

@@ -86,7 +86,7 @@ class Retarder:
         positions[self.position] = MeasuredRetarder(
             positions[self.position], self.number, np.sort(errors_m_s, axis=1), self.brake
         )
-        trial, most = replace(self.trial, positions=tuple(positions)), trains_of_batch(self.trial.shift.trains)
+        trial, most = replace(self.trial, positions=tuple(positions)), trains_of_batch(self.trial.tracks.shift_trains)
         parts = [trial.batch(first, min(most, trains - first)) for first in range(0, trains, most)]
         return joined(parts)
 
