@@ -1,6 +1,4 @@
 from synth.hump.control.cut_motion import moving_cut as moving_cut
-from synth.hump.control.event_file import read_events as read_events
-from synth.hump.control.event_file import write_events as write_events
 from synth.hump.control.hump_control import HumpControl as HumpControl
 from synth.hump.control.hump_control import Operation as Operation
 from synth.hump.control.hump_state import replayed as replayed

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 from plant_models.errors import require
 from synth.hump.control.axle_counters import AxleCounters
 from synth.hump.control.brake_task import BrakeTask, LeastInterval
-from synth.hump.control.event import Aspect, Kind, Why
-from synth.hump.control.event_log import EventLog
+from synth.hump.control.event import Aspect, Event, Kind, Why
 from synth.hump.control.hump_state import MOVING, HumpState
 from synth.hump.control.journal import Journal
 from synth.hump.control.misrouting import Misrouting
@@ -74,9 +73,9 @@ class HumpControl:
         return self._journal.state
 
     @property
-    def log(self) -> EventLog:
+    def events(self) -> tuple[Event, ...]:
         """What happened so far."""
-        return self._journal.log
+        return self._journal.events
 
     def tick(self, time_s: float) -> None:
         """Read the track at `time_s`, and command what follows."""

@@ -75,7 +75,7 @@ def controlled_train(
     for tick in range(first, last + 1):
         control.tick(round(tick * tick_s, 6))
     control.finish()
-    return ControlledTrain(control.log.events, tuple(track.disagreements))
+    return ControlledTrain(control.events, tuple(track.disagreements))
 
 
 def sorting_list_of(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory, lane: int) -> SortingList:

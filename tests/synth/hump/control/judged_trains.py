@@ -81,7 +81,7 @@ class Humping:
     def thrown_beside(self) -> Iterator[tuple[float, int, int]]:
         """Points that were commanded to move while an object behind them stood or crawled, its last axle short of the
         fouling point: (time, switch, object), from the tables of the motions alone."""
-        for event in self.control.log.events:
+        for event in self.control.events:
             for number, each in enumerate(self.objects):
                 if event.kind is not Kind.COMMANDED or (event.element, number) not in self.track.truth.came_s:
                     continue
@@ -107,7 +107,7 @@ class Humping:
 
     def replays(self) -> bool:
         """Whether the log leads to the same state."""
-        return replayed(self.control.log.events) == self.control.state
+        return replayed(self.control.events) == self.control.state
 
     def catch_ups(self) -> tuple[set[tuple[int, int]], set[tuple[int, int]]]:
         """(section, follower) of true catch-ups, and of those that the counters told."""

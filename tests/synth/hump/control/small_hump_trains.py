@@ -19,7 +19,7 @@ def rolling(cut: int, start_s: float, speed_m_s: float = 5.0, cars: int = 1, bas
 
 def told(control: HumpControl, *kinds: Kind) -> list[Event]:
     """The events of some kinds."""
-    return [event for event in control.log.events if event.kind in kinds]
+    return [event for event in control.events if event.kind in kinds]
 
 
 def commands(control: HumpControl) -> list[tuple[int, int, float]]:

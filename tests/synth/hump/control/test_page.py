@@ -25,7 +25,7 @@ def test_the_example_runs(tmp_path: Path) -> None:
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout.startswith("{1: [1], 2: [5], 3: [2]} ")
     assert ran.stdout.endswith(" events, 0 alarms\n")
-    assert {path.name for path in tmp_path.iterdir()} == {"train.csv", "log.h5"}
+    assert {path.name for path in tmp_path.iterdir()} == {"train.csv"}
 
 
 def test_the_widths_of_the_page_are_those_of_the_record() -> None:
