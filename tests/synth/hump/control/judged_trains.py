@@ -9,16 +9,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from plant_models.hump import HumpGraph
-from synth.hump.control.cut_motion import MovingCut
 from synth.hump.control.cut_record import CutRecord, Mark
 from synth.hump.control.event import ALARMS, Kind
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.hump_state import replayed
 from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
-from synth.hump.control.reference_faults import Fault, LateSwitch
-from synth.hump.control.reference_track import ReferenceTrack
 from synth.hump.control.route_table import RouteTable
 from tests.plant_models.hump.random_humps import random_hump
+from tests.synth.hump.control.cut_motion import MovingCut
 from tests.synth.hump.control.made_trains import (
     LONG_M,
     USUAL_M,
@@ -31,6 +29,8 @@ from tests.synth.hump.control.made_trains import (
     uncoupled,
 )
 from tests.synth.hump.control.queue_of_cuts import FOULING_M, random_stalls
+from tests.synth.hump.control.reference_faults import Fault, LateSwitch
+from tests.synth.hump.control.reference_track import ReferenceTrack
 
 SURE, NEAR = 1.25, 2.0
 """A gap within a cut that is wider than the rule asks for by the first factor is one for sure; so is one between two

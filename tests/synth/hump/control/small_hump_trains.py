@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from synth.hump.control.cut_motion import MovingCut, moving_cut
 from synth.hump.control.event import Event, Kind
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.route_table import RouteTable
 from tests.plant_models.hump.random_humps import small_hump
+from tests.synth.hump.control.cut_motion import MovingCut, moving_cut
 from tests.synth.hump.control.made_trains import axle_places, humped, record
 
 TABLE = RouteTable(small_hump())

@@ -6,17 +6,17 @@ from collections.abc import Iterator
 
 import pytest
 
-from synth.hump.control.cut_motion import MovingCut, moving_cut
 from synth.hump.control.event import Event, Kind, Why
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.hump_state import Counters
 from synth.hump.control.models import ENTRY
 from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
-from synth.hump.control.reference_faults import CounterSlip, LateSwitch
 from synth.hump.control.route_table import RouteTable
 from synth.hump.control.section_counter import Finding, SectionCounter
 from tests.plant_models.hump.random_humps import small_hump
+from tests.synth.hump.control.cut_motion import MovingCut, moving_cut
 from tests.synth.hump.control.made_trains import axle_places, humped, record
+from tests.synth.hump.control.reference_faults import CounterSlip, LateSwitch
 
 TABLE = RouteTable(small_hump())
 

@@ -10,16 +10,16 @@ import pytest
 
 from plant_models.errors import PlantError
 from synth.hump.control.brake_task import ManualBraking, TableBraking, UniformBraking, ZoneBraking
-from synth.hump.control.cut_motion import moving_cut
 from synth.hump.control.cut_record import Mark
 from synth.hump.control.event import Aspect, Block, Kind, Why
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.models import ExitSpeed, Misroute, Resistance
 from synth.hump.control.practice_rules import PUBLISHED_MODEL
-from synth.hump.control.reference_track import ReferenceTrack
 from synth.hump.control.route_store import RouteStore
 from synth.hump.control.sorting_list import SortingList
+from tests.synth.hump.control.cut_motion import moving_cut
 from tests.synth.hump.control.made_trains import axle_places, humped, record
+from tests.synth.hump.control.reference_track import ReferenceTrack
 from tests.synth.hump.control.small_hump_trains import TABLE, close_pair, commands, rolling, told
 
 

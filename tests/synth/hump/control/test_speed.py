@@ -6,9 +6,9 @@ import time
 
 import numpy as np
 
-from synth.hump.control.cut_motion import MovingCut
 from synth.hump.control.cut_record import CutRecord
 from synth.hump.control.route_table import RouteTable
+from tests.synth.hump.control.cut_motion import MovingCut
 from tests.synth.hump.control.full_humps import full_hump
 from tests.synth.hump.control.made_trains import axle_places, humped, record
 
