@@ -17,6 +17,12 @@ Bools = NDArray[np.bool_]
 _T = TypeVar("_T")
 
 
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """`array`, made so."""
+    array.setflags(write=False)
+    return array
+
+
 def frozen_arrays(cls: type[_T]) -> type[_T]:
     """Make every array that is a field of the dataclass `cls` read-only: when it is made, unpickled or copied.
 

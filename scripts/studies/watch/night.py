@@ -52,7 +52,7 @@ def night(
 
 def retarder_numbers() -> list[int]:
     """Those of the hump."""
-    return [each.number for each in read_graph(Path(HUMP)).entry.graph.retarders]
+    return [each.number for each in read_graph(Path(HUMP)).graph.retarders]
 
 
 def spread(retarders: list[int], count: int) -> list[int]:

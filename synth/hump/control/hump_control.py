@@ -12,12 +12,13 @@ from synth.hump.control.event import Aspect, Event, Kind, Why
 from synth.hump.control.hump_state import MOVING, HumpState
 from synth.hump.control.journal import Journal
 from synth.hump.control.misrouting import Misrouting
-from synth.hump.control.models import Information, Technology, TrackGeometry
+from synth.hump.control.models import Technology, TrackGeometry
 from synth.hump.control.practice_rules import PracticeRules
 from synth.hump.control.retarder_control import RetarderControl
 from synth.hump.control.route_store import RouteStore
 from synth.hump.control.route_table import RouteTable
 from synth.hump.control.section_counter import Finding
+from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.strobe import Strobe
 from synth.hump.control.switch_control import SwitchControl
 from synth.hump.control.technology import LeaderTrack
@@ -43,7 +44,7 @@ class HumpControl:
     """
 
     def __init__(
-        self, table: RouteTable, train: Information, track: TrackGeometry, operation: Operation | None = None
+        self, table: RouteTable, train: SortingList, track: TrackGeometry, operation: Operation | None = None
     ) -> None:
         how, bare = operation or Operation(), table.uncounted_switch
         require(
@@ -51,7 +52,7 @@ class HumpControl:
             f"switch {bare} has no axle counters; give it some, or follow no rule of practice that needs them",
         )
         self._table, self._track, self._how, self._journal = table, track, how, Journal()
-        self.store = RouteStore(table, [cut for cut in train.cuts if cut.goes_over_the_hump])
+        self.store = RouteStore(table, train.humped)
         self.counters = AxleCounters(table, self.store, how.rules, self._counted)
         self.switches = SwitchControl(self.store, self.counters, track, how.rules, self._journal)
         self.retarders = RetarderControl(table, self.store, track, how.tasks, how.strobe, self._journal)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 from plant_models.frozen_arrays import Floats, Ints
 from synth.hump.trains.asked import Asked
@@ -12,27 +11,7 @@ from synth.hump.trains.hump_aim import HumpAim
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.stretch_reading import AimReading
-
-
-class AimedTrains(Protocol):
-    """What an aim must know of the cuts of some trains, rows = train·n + i; `TrainCuts` has it. `category`: place of
-    the weight category in its set."""
-
-    @property
-    def cuts(self) -> int:
-        """Cuts of a train."""
-
-    @property
-    def category(self) -> Ints:
-        """Of each cut."""
-
-    @property
-    def cars(self) -> Ints:
-        """Of each cut."""
-
-    @property
-    def last_axle_m(self) -> Floats:
-        """Behind the head."""
+from synth.hump.trains.train_cuts import TrainCuts
 
 
 @dataclass(frozen=True)
@@ -58,7 +37,7 @@ class AimControl:
 
     aim: HumpAim
     routes: HumpRoutes
-    trains: AimedTrains
+    trains: TrainCuts
     reading: AimReading | None = None
 
     def command(self, asked: Asked) -> Floats:

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays, read_only
 from plant_models.hump import HumpGraph, Retarder, Route, RouteElement, Signal, Switch
 
 
@@ -130,12 +128,6 @@ class HumpRoutes:
         """
         same = (self.vertex[one] == self.vertex[other]) & (self.vertex[one] >= 0)
         return np.asarray(np.logical_and.accumulate(same, axis=1).sum(axis=1))
-
-
-def read_only(array: NDArray[Any]) -> NDArray[Any]:
-    """`array`, made so."""
-    array.setflags(write=False)
-    return array
 
 
 def hump_routes(graph: HumpGraph, lead: int) -> HumpRoutes:

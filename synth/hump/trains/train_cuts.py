@@ -6,11 +6,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from plant_models.errors import PlantError
-from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays, read_only
 from plant_models.hump import Route
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts, air_n_per_kn, bend_draws
@@ -210,9 +209,3 @@ def routes_to(routes: tuple[Route, ...], lead: Ints, track: Ints) -> Ints:
         row = int(np.argmax(found < 0))
         raise PlantError(f"train: a cut goes to track {track[row]} over lead {lead[row]}; the hump has no such route")
     return found
-
-
-def read_only(array: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]  # of whatever numbers
-    """The same array, which can no longer be written."""
-    array.setflags(write=False)
-    return array

@@ -22,6 +22,7 @@ from synth.hump.trains.outcomes import TrainOutcomes, joined
 from synth.hump.trains.shift_sums import shift_sums
 from synth.hump.trains.train_figures import Of
 from synth.hump.trains.trial import HumpTrial
+from synth.hump.watching.settings import CostSettings
 
 FEWEST_ERRORS: Final = 10
 """Passes on each side of the beginning of a drift; fewer do not tell how cuts leave."""
@@ -60,15 +61,6 @@ class MeasuredRetarder:
         """Those of the measured retarder."""
         place = (error_uniform(arrivals) * self.errors_m_s.shape[1]).astype(np.int64)
         return passed_with(arrivals, self.errors_m_s[arrivals.train, place], self.brake(arrivals))
-
-
-@dataclass(frozen=True)
-class Weights:
-    """What counts in the order of repairs, in cars that must be humped again: `overspeed` of a coupling that is too
-    fast, `gap_m` of a metre of gap."""
-
-    overspeed: float
-    gap_m: float
 
 
 @dataclass(frozen=True)
@@ -144,13 +136,13 @@ class DriftCost:
     cars_lost_per_hour: Difference
     gap_m_per_hour: Difference
 
-    def weight_per_hour(self, weights: Weights) -> Difference:
+    def weight_per_hour(self, weights: CostSettings) -> Difference:
         """All that has become worse, in cars an hour. What has become better does not make up for it: a drift towards
         slow exits has fewer over-speeds, and is a drift all the same."""
         parts = (
             (1.0, self.cars_lost_per_hour),
-            (weights.overspeed, self.overspeeds_per_hour),
-            (weights.gap_m, self.gap_m_per_hour),
+            (weights.cars_per_overspeed, self.overspeeds_per_hour),
+            (weights.cars_per_gap_m, self.gap_m_per_hour),
         )
         worse = [part.times(weight) for weight, part in parts if part.value > 0.0]
         return reduce(Difference.plus, worse) if worse else self.cars_lost_per_hour

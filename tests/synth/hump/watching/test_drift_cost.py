@@ -16,10 +16,10 @@ from synth.hump.watching.drift_cost import (
     Difference,
     MeasuredRetarder,
     Retarder,
-    Weights,
     difference,
     drift_cost,
 )
+from synth.hump.watching.settings import CostSettings
 from tests.synth.hump.trains.conftest import arriving
 from tests.system.test_hump_trials import SMALL
 
@@ -54,7 +54,7 @@ def test_faster_exits_cost_over_speeds_and_slower_ones_gaps(config: ResolvedTria
     assert slow.gap_m_per_hour.told.low95 > 0.0
     for each in vars(none).values():
         assert each.told.low95 < 0.0 < each.told.high95
-    weights = Weights(1.0, 0.0)
+    weights = CostSettings(cars_per_overspeed=1.0, cars_per_gap_m=0.0)
     assert fast.weight_per_hour(weights).above(slow.weight_per_hour(weights))
     assert not none.weight_per_hour(weights).above(slow.weight_per_hour(weights))
     assert drift_cost(retarder, calm[:9], calm, trains) is None
