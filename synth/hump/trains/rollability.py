@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -16,23 +16,14 @@ from synth.hump.trains.resistance_prior import ResistancePrior, resistance_prior
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.train_cuts import TrainCuts
 
-
-class Rollability(Protocol):
-    """What a control makes of the cuts that come to a position."""
-
-    def resistance_n_per_kn(self, asked: Asked) -> Floats:
-        """The w0 (n,) with which they are expected to roll on, with mean bends and mean wind."""
+Rollability = Callable[[Asked], Floats]
+"""What a control makes of the cuts that come to a position: the w0 (n,) with which they are expected to roll on, with
+mean bends and mean wind."""
 
 
-@dataclass(frozen=True)
-class CategoryMean:
-    """Nothing is measured: the mean of the category."""
-
-    known: KnownCuts
-
-    def resistance_n_per_kn(self, asked: Asked) -> Floats:
-        """See the class."""
-        return self.known.mean_n_per_kn[asked.lanes * self.known.cuts + asked.cut]
+def mean_of_category(known: KnownCuts, asked: Asked) -> Floats:
+    """Nothing is measured."""
+    return known.mean_n_per_kn[asked.lanes * known.cuts + asked.cut]
 
 
 @frozen_arrays

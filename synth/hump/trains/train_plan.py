@@ -7,6 +7,7 @@ from the cut ahead by the least interval. Then the exit speeds are chosen anew, 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.forecast import Given, from_crest
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, whole_train
-from synth.hump.trains.interval import CentredRule, EarlyRule, IntervalRule, possible
+from synth.hump.trains.interval import IntervalRule, centred, early, possible
 from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.meeting import Ahead, LastUsers
 from synth.hump.trains.motion import Moving, Push
@@ -81,7 +82,7 @@ class Planner:
         for turn in range(self.fits + self.repairs + 1):
             if turn > 0:
                 speeds = self.method(apart_m(known), needs_s, self.limits)
-            found = Sweep(self, known, speeds, None).run(EarlyRule(self.early_s))
+            found = Sweep(self, known, speeds, None).run(partial(early, ahead_s=self.early_s))
             cost = self.cost_s(found)
             better = cost < least_cost
             best = np.where(better[:, None], speeds, best)
@@ -89,7 +90,7 @@ class Planner:
             least_cost = np.minimum(cost, least_cost)
             enough = self.headways_s(found)
             needs_s = enough if turn < self.fits else np.maximum(needs_s, enough)
-        return Sweep(self, known, best, first_in_s).run(CentredRule())
+        return Sweep(self, known, best, first_in_s).run(centred)
 
     def cost_s(self, found: TrainPlan) -> Floats:
         """What each train costs (trains,): its time over the crest, and much more for intervals that are too short."""
@@ -98,8 +99,8 @@ class Planner:
 
     def at_speeds(self, known: KnownCuts, speeds_m_s: Floats) -> TrainPlan:
         """The plan with given hump speeds (trains, cuts): exit speeds in the middle between both neighbours."""
-        found = Sweep(self, known, speeds_m_s, None).run(EarlyRule(self.early_s))
-        return Sweep(self, known, speeds_m_s, found.first_in_s).run(CentredRule())
+        found = Sweep(self, known, speeds_m_s, None).run(partial(early, ahead_s=self.early_s))
+        return Sweep(self, known, speeds_m_s, found.first_in_s).run(centred)
 
     def headways_s(self, found: TrainPlan) -> Floats:
         """What each cut needs behind those ahead of it at the crest, (trains, cuts, leaders): what it had less what it
@@ -167,7 +168,7 @@ class Sweep:
         push = push_of(known, self.hump_speed_m_s, cut)
         ways = from_crest(planner.routes, expected, start, push, known.choices(rows, known.route[rows], planner.roles))
         compared = ways.compared(*self.neighbours(cut))
-        taken = ways.followed(rule.best(compared))
+        taken = ways.followed(rule(compared))
         margins = np.where(possible(compared), compared.ahead_s, -np.inf)
         self.margin_s[:, cut] = margins.max(axis=1)
         self.measure(cut, ways.followed(margins.argmax(axis=1)).first_in_s)
@@ -211,12 +212,8 @@ class Sweep:
         free_by = np.full((known.trains, routes.elements), np.inf)
         if self.before_s is not None:
             free_by = free_by_s(routes, known, self.before_s, own, lanes, cut)
-        return leaves_s(ahead) + throws_s(routes, own, ahead), free_by
-
-
-def leaves_s(ahead: Ahead) -> Floats:
-    """When the cuts ahead leave the elements; −∞ where nobody is."""
-    return np.where(ahead.cut >= 0, ahead.time_s[:, :, Mark.LAST_OUT], -np.inf)
+        leaves = np.where(ahead.cut >= 0, ahead.time_s[:, :, Mark.LAST_OUT], -np.inf)  # nobody is there
+        return leaves + throws_s(routes, own, ahead), free_by
 
 
 def throws_s(routes: HumpRoutes, own: Ints, ahead: Ahead) -> Floats:

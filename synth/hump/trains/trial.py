@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -20,11 +21,10 @@ from synth.hump.trains.hump_aim import HumpAim
 from synth.hump.trains.hump_position import HumpPosition
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.humping import Hump, humped
-from synth.hump.trains.interval import CentredRule
 from synth.hump.trains.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
 from synth.hump.trains.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
 from synth.hump.trains.outcomes import USUAL_COUPLINGS, PassLimits, TrainOutcomes, in_order, outcomes
-from synth.hump.trains.rollability import CategoryMean, Rollability, measured_rollability
+from synth.hump.trains.rollability import Rollability, mean_of_category, measured_rollability
 from synth.hump.trains.route_rolling import RouteRolling, rolling_on
 from synth.hump.trains.route_ways import RouteWays
 from synth.hump.trains.speed_sensors import SpeedSensors
@@ -242,11 +242,11 @@ class HumpTrial:
         if not self.control.feedback:
             return OpenLoop(plan, self.planner.roles, aim)
         sensing = self.control.sensing
-        rollability: Rollability = CategoryMean(known)
+        rollability: Rollability = partial(mean_of_category, known)
         if sensing is not None and sensing.for_intervals:
             sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
-            rollability = measured_rollability(sensors, trains, expected_way(trains, known))
-        return Feedback(self.planner, known, plan, CentredRule(), rollability, aim)
+            rollability = measured_rollability(sensors, trains, expected_way(trains, known)).resistance_n_per_kn
+        return Feedback(self.planner, known, plan, rollability, aim)
 
 
 def expected_way(trains: TrainCuts, known: KnownCuts) -> ExpectedWay:

@@ -156,7 +156,7 @@ def drift_cost(retarder: Retarder, before_m_s: Floats, since_m_s: Floats, trains
     rng = np.random.Generator(np.random.SFC64(np.random.SeedSequence(retarder.number)))
     drawn = [each[rng.integers(0, len(each), (trains, len(each)))] for each in known]
     found = [retarder.humped(each, trains) for each in drawn]
-    law = np.stack([moment(drawn[1]) - moment(drawn[0]) for moment in (mean_of, std_of)], axis=1)
+    law = np.stack([moment(drawn[1], axis=1) - moment(drawn[0], axis=1) for moment in (np.mean, np.std)], axis=1)
 
     hours = float(found[0].span_s.sum()) / 3600.0
 
@@ -180,16 +180,6 @@ def overspeeds(found: TrainOutcomes) -> Floats:
 def good_cars(found: TrainOutcomes) -> Floats:
     """Cars of each train that need not be humped again: those of cuts that caught up must be."""
     return np.asarray(found.span_cars - found.caught * found.cars / found.cuts)
-
-
-def mean_of(errors: Floats) -> Floats:
-    """Of each train."""
-    return np.asarray(errors.mean(axis=1))
-
-
-def std_of(errors: Floats) -> Floats:
-    """Of each train."""
-    return np.asarray(errors.std(axis=1))
 
 
 def difference(found: list[TrainOutcomes], of: Of, law: Floats, least: float) -> Difference:

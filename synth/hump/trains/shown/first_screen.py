@@ -103,7 +103,7 @@ def where_closest(result: HumpedTrial) -> str:
         return "What limits the speed: no two cuts shared an element."
     counts = np.bincount(found.tightest_at[there], minlength=len(routes.numbers))
     places = told_most(counts, [routes.graph.element_called(number) for number in routes.numbers])
-    names = result.category_names
+    names = [member.label for member in result.config.categories.members]
     pairs = np.bincount(
         found.tightest_ahead[there] * len(names) + found.tightest_behind[there], minlength=len(names) ** 2
     )

@@ -58,10 +58,10 @@ class Misjudged:
     rollability: Rollability
     fate: Fate
 
-    def resistance_n_per_kn(self, asked: Asked) -> Floats:
+    def __call__(self, asked: Asked) -> Floats:
         """Much more, where it is late enough."""
         late = asked.start.time_s > self.fate.after_s
-        return self.rollability.resistance_n_per_kn(asked) + np.where(late, 4.0, 0.0)
+        return self.rollability(asked) + np.where(late, 4.0, 0.0)
 
 
 @dataclass(frozen=True)
