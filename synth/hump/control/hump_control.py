@@ -21,7 +21,7 @@ from synth.hump.control.section_counter import Finding
 from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.strobe import Strobe
 from synth.hump.control.switch_control import SwitchControl
-from synth.hump.control.technology import LeaderTrack
+from synth.hump.control.technology import leader_track
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Operation:
     """How a hump is operated: what is done with misrouted cuts, rules of practice, tasks of the retarders by
     (retarder, cut), the limits of exit speeds, and the braking of a cut that came too close."""
 
-    technology: Technology = field(default_factory=LeaderTrack)
+    technology: Technology = leader_track
     rules: PracticeRules = field(default_factory=PracticeRules)
     tasks: Mapping[tuple[int, int], BrakeTask] = field(default_factory=dict)
     strobe: Strobe = field(default_factory=Strobe)

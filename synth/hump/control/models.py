@@ -6,7 +6,7 @@ that cannot go where the list says.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -95,8 +95,5 @@ class Misroute:
     leader_track: int | None
 
 
-class Technology(Protocol):
-    """What the yard does with a cut that cannot go where the list says."""
-
-    def track_for(self, misroute: Misroute) -> int:
-        """Where it goes: one of `misroute.reachable`."""
+Technology = Callable[[Misroute], int]
+"""What the yard does with a cut that cannot go where the list says: the track to which it goes, one of `reachable`."""

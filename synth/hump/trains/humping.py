@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plant_models.frozen_arrays import Bools, Floats, Ints
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.asked import Asked, ExitSpeeds, HumpSpeeds
 from synth.hump.trains.hump_position import Arrivals, HumpPosition
 from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
@@ -20,7 +20,8 @@ from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Hump:
     """A hump for trains: its routes, its positions in order from the crest, and what rolls its cuts.
 
