@@ -93,7 +93,6 @@ def single_cars(population: CutPopulation, runners: Sequence[DesignRunner], bend
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class RunnerRoll:
     """How `runner` rolls over a route without brakes: where its middle is, and how fast; `stop_m`: where that stops,
     infinite where it reaches the end.

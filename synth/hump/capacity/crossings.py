@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
@@ -18,7 +16,6 @@ FEWEST_EVENTS = 10.0
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Sums:
     """Of each bootstrap replicate (rows; the first is the sample itself) and each program, safest first: share of
     catch-ups, mean hump speed, cars an hour."""

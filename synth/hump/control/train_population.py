@@ -16,7 +16,6 @@ from synth.hump.control.cut_record import MOST_CUTS
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class DrawnTrains:
     """Trains of `cuts` cuts each, one row a cut, train by train: `cars` and `track` (rows,); `category` (rows,): place
     in the categories; `types` (rows, cars): places in `mix`; `mass_t` (rows, cars): 0 where a cut has no more cars."""

@@ -21,7 +21,6 @@ KEPT_M_S = 0.01
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class WorstTriple:
     """The triple with the least margin: its cars with their `plan`, and what becomes of each of them `alone`.
 

@@ -36,7 +36,6 @@ class Parting:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Intervals:
     """All `pairs` (t, 3) of tracks as rows of routes, with the least margin of each, `least_s` (t,); `partings`: the
     same by the switch that parts them, from the crest on."""
@@ -73,7 +72,6 @@ def intervals(hump: HumpUnderTest) -> Intervals:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class AllTriples:
     """Triples of which the worst of each `level` (t,) are wanted: with few exit speeds that are compared, `coarse`, and
     with many, `fine`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -34,7 +34,6 @@ PAIRS: Final = ((0, 1), (1, 2), (0, 2))
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Triples:
     """Triples on `hump`, `route` (t, 3): rows of the routes of their cuts. Build them with `triples`.
 
@@ -80,7 +79,6 @@ class Triples:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Told:
     """Exit speeds (trains, cuts, positions) that are told before, of whatever position."""
 

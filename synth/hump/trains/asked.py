@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
@@ -11,7 +10,6 @@ from synth.hump.trains.train_memory import TrainMemory
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Asked:
     """A control is asked for the exit speeds of cut number `cut` of the trains `lanes` (n,) in `position`.
 

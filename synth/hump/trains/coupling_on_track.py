@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from plant_models.frozen_arrays import Floats, frozen_arrays
@@ -14,7 +12,6 @@ PLACES = 48
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class OnTrack:
     """n cuts on their last free rolls, (n,) each: `cars` from `start` to the places `end_m` of their heads, where they
     stand from `still_s` on."""
@@ -26,7 +23,6 @@ class OnTrack:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Contact:
     """Where the head of each of n cuts behind touches the tail ahead, when, and how fast both are then; (n,) each, NaN
     where they do not touch while that ahead rolls."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
@@ -22,7 +20,6 @@ SAME_M = 1e-6
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class CutTrace:
     """Where the head of a cut is (k,), metres from the crest, and how fast, at rising times; it stays at the end.
 

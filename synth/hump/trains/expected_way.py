@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
@@ -12,7 +10,6 @@ from synth.hump.trains.motion import Rolls
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ExpectedWay:
     """All cuts of some trains: `rolls` with mean bends and wind, their mean w0 `mean_n_per_kn` and g' (rows,)."""
 

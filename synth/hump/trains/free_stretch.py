@@ -20,7 +20,6 @@ SHORTEST_M = 10.0
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class StretchSpeeds:
     """Speeds of n cuts at both ends of a free stretch, (n,) each, and where their heads are then.
 

@@ -28,7 +28,6 @@ class CategoryAim:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class HumpAim:
     """Exit speeds of the last position: `tables`, by group of routes and by place of the weight category in its set.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,7 +14,6 @@ OF_ALL = ("seed", "position")
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Arrivals:
     """m cuts, one entry each, that come to a position, the first of their way being `position` 0.
 
@@ -68,7 +66,6 @@ class Arrivals:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Passed:
     """How m cuts passed: `exit_m_s` when the last axle is at the exit, `time_s` after the first was at the entrance.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
 
@@ -29,7 +28,6 @@ OF_FIRST_AXLE = np.array([True, False, True, False, True, False])
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class HumpRoutes:
     """Routes of `graph` from the signal `lead`, a row each by track; build it with `hump_routes`.
 

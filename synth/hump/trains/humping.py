@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,7 +20,6 @@ from synth.hump.trains.train_memory import TrainMemory
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Hump:
     """A hump for trains: its routes, its positions in order from the crest, and what rolls its cuts.
 

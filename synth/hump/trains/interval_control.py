@@ -22,7 +22,6 @@ from synth.hump.trains.train_plan import Planner, TrainPlan, apart_m, free_by_s
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ProgramSpeeds:
     """Hump speeds by a program, `speed_m_s` (trains, cuts)."""
 

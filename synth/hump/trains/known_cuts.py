@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
@@ -19,7 +17,6 @@ from synth.hump.trains.train_cuts import TrainCuts, expected
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class KnownCuts:
     """All cuts of some trains, a row each: `rolls` with mean bends and wind; resistance: `mean_n_per_kn`, and that of
     good and of bad runners, `good_n_per_kn` and `bad_n_per_kn` (rows,). `aim` (rows,): exit speeds of
@@ -78,7 +75,6 @@ def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, braked_m2_s2: Flo
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Runners:
     """Resistances (rows,) that a control reckons with: of mean, good and bad cuts, N/kN."""
 

@@ -7,7 +7,6 @@ they then roll as before.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -23,7 +22,6 @@ Leg = tuple[str, int, int]
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Legs:
     """n cuts that roll with c speeds each, from time 0 on: when the heads are at k marks, `marks_s` (n, c, k); when,
     and with what speed, they are at the end of the leg, (n, c)."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -12,7 +11,6 @@ from synth.simulation.free_roll import Rolled
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Moving:
     """Where the heads of n cuts are, how fast, and when: (n,) each. A cut that stopped has speed 0 and time infinite;
     `head_m` is then where it stands."""
@@ -59,7 +57,6 @@ class CoupledRolls(Rolls, Protocol):
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Cars:
     """Which cuts move, on which routes, (n,) each; `resistance_n_per_kn`: taken for their own, None: their own."""
 
@@ -122,7 +119,6 @@ def even_speed_m_s(entry_m_s: Floats, exit_m_s: Floats, share: Floats) -> Floats
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Push:
     """How n cuts are pushed before they are let go: at an even rate from the speed `before_m_s`, which the train had
     `apart_m` before, when the cut ahead was let go; (n,) each."""

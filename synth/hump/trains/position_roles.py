@@ -32,7 +32,6 @@ class Spacing:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Fixed:
     """The exit speed is that of the weight category, `speed_m_s` (categories,), whoever is ahead or behind.
 
@@ -61,7 +60,6 @@ Exits = Spacing | Fixed
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ByRoute:
     """The choices `aim` for the cuts that are aimed, `aims` (n,); `kept` for the others."""
 
@@ -85,7 +83,6 @@ class ByRoute:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Roles:
     """The roles of the positions, in order from the crest.
 

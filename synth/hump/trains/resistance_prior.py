@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
@@ -14,7 +12,6 @@ from synth.hump.trains.train_cuts import TrainCuts
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ResistancePrior:
     """Before any measurement, (rows,): standard deviation of w0, and air of a cut per (m/s)². Head wind: normal.
 

@@ -27,7 +27,6 @@ def mean_of_category(known: KnownCuts, asked: Asked) -> Floats:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Belief:
     """What is believed of n cuts, (n,) each: normal resistance whatever the speed, normal wind above its mean, and the
     `covariance` of both."""
@@ -60,7 +59,6 @@ class Belief:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Resistance:
     """Mean and standard deviation of what is expected of n cuts, (n,) each, N/kN."""
 

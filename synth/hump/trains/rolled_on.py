@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.trains.coupling_on_track import Contact
 from synth.hump.trains.train_cuts import TrainCuts
@@ -11,7 +9,6 @@ from synth.hump.trains.train_memory import TrainMemory
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class RolledOn:
     """Cuts that coupled to the one ahead on their tracks and rolled on with it: `which` (m,) of those that were added,
     on the tracks of the routes `route` of the trains `lanes`; `members` (m, k) of each body, rows of cuts from its head

@@ -24,7 +24,6 @@ class AimReading(Protocol):
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ReadOnStretch:
     """w = i − (v2² − v1²)/(2 g' L) by the speeds of the first axle at `stretch_m` (routes, 2), as
     `ResistanceByTwoSpeeds` reads it of the cuts that aim tables are made of; NaN for routes without such a stretch.

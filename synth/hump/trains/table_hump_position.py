@@ -54,7 +54,6 @@ class TableHumpPosition:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Looped:
     """What the closed loop makes of n cuts under their lower and their higher target, (2, n) each."""
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
@@ -13,7 +11,6 @@ from synth.hump.trains.train_memory import TrainMemory
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TightestPairs:
     """The tightest pair of each train, (trains,): `interval_s` more than its points needed, 0 where no two cuts share
     an element; `at`, place of the element among the numbers of the routes, −1 for none; `ahead`, `behind`: places

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
@@ -18,7 +16,6 @@ SPARE_M = 30.0
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Tracks:
     """Tracks before some trains, (trains, routes): `free_m`, where the standing cars begin, metres from the crest;
     `cars_m`: length of all cars that stand there; whether they were `pushed_up`, or `pulled`, just before."""

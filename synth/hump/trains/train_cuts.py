@@ -18,7 +18,6 @@ from synth.hump.control.train_population import DrawnTrains, TrainPopulation
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TrainCuts:
     """Trains of the row `seed`, of `cuts` cuts each, with the `numbers` first, first + apart, …: cut i of train k of
     them is the row k·cuts + i. From `trains` or `list_trains`.

@@ -32,7 +32,6 @@ FOLLOWERS = 3
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TrainPlan:
     """The plan of some trains, (trains, cuts): `crest_s`, `hump_speed_m_s`, `margin_s`: the largest to those ahead that
     some choice of exit speeds gives; with it, `margins_s` (…, leaders) to the cut 1, 2, … ahead.

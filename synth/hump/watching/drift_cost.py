@@ -35,7 +35,6 @@ SUMMED: Final = ("value", "residual", "slope", "least")
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class MeasuredRetarder:
     """A position of which one `retarder` lets cuts go with measured errors, and the others as `others` do.
 
@@ -84,7 +83,6 @@ class Retarder:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Difference:
     """A figure with the drift less without: its `value`, what each shift of trains differs from that by (shifts,), its
     `slope` (2,) over mean and spread of the drawn errors, whose covariance `law` is (2, 2), and the `least` half width

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -14,7 +12,6 @@ from synth.frame.picture.house_style import BLUE, INK, SKY, dress, legend_below,
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PushedTrain:
     """Hump speeds of the train `number`, from 0, (cuts,): each cut has `speed_m_s` at `crest_s`, when its middle is at
     the crest; between two such moments the train is pushed at an even rate."""
