@@ -25,7 +25,6 @@ from synth.hump.trains.shown.places import catch_ups, couplings
 from synth.hump.trains.shown.positions import positions
 from synth.hump.trains.shown.program import program_exhibits, pushed_chart
 from synth.hump.trains.shown.shift import shift
-from synth.hump.trains.simulate_options import SimulateOptions
 from synth.hump.trains.speed_program import speed_program
 from synth.hump.trains.traced_train import one_train
 from synth.hump.trains.train_engine import engine_for
@@ -33,6 +32,7 @@ from synth.hump.trains.train_run import run_of, run_trials
 from synth.hump.trains.trial import HumpTrial
 from synth.hump.trains.trial_inputs import write_inputs
 from synth.hump.trains.trial_limits import trial_limits
+from synth.hump.trains.trial_options import SimulateOptions
 from synth.kernels.cache import guarded
 
 LIMITS_OF_USE = (
