@@ -36,10 +36,6 @@ class TrackPoints:
         """Position at `time_s`; points on their way count as where they were."""
         return self._moving[switch][1] if self._has_moved(switch, time_s) else self._lies[switch]
 
-    def is_moving(self, switch: int, time_s: float) -> bool:
-        """Whether they are on their way."""
-        return switch in self._moving and not self._has_moved(switch, time_s)
-
     def news(self, now_s: float) -> Iterator[tuple[int, int]]:
         """Detected positions that changed since the last call."""
         for switch in tuple(self._moving):

@@ -60,7 +60,6 @@ def whole_train(apart_m: Floats, headway_s: Floats, limits: HumpSpeedLimits) -> 
 def pair_by_pair(apart_m: Floats, headway_s: Floats, limits: HumpSpeedLimits) -> Floats:
     """Each cut as fast as the pairs with the cuts ahead of it allow ([hump-computer-1970s], after Шафит), then slower
     where the locomotive could not brake for those behind, or not gather speed."""
-
     steps = np.array(limits.steps_m_s)
     trains, cuts, leaders = headway_s.shape
     at = np.full((trains, cuts), len(steps) - 1)

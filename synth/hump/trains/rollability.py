@@ -22,7 +22,7 @@ mean bends and mean wind."""
 
 
 def mean_of_category(known: KnownCuts, asked: Asked) -> Floats:
-    """Nothing is measured."""
+    """That of cuts of which nothing is measured: the mean of their category."""
     return known.mean_n_per_kn[asked.lanes * known.cuts + asked.cut]
 
 

@@ -65,7 +65,6 @@ def resolve(asked: Asked[TrialFile, SimulateOptions]) -> AskedTrains:
     """The trial with what was typed."""
     options = asked.options
     options.require_one("hump simulate")
-
     return AskedTrains(asked_trial(asked.settings, options, options.trains), options)
 
 

@@ -46,7 +46,6 @@ USUAL_M_S = 4.0
 BATCH = 250
 """Shifts that are humped side by side; no figure depends on it."""
 
-
 BrakeHead = Callable[[Floats, Ints, Ints], Floats]
 """Energy head (rows,), metres, that a position can take from cuts, by mass, axles and category."""
 

@@ -24,3 +24,7 @@ class FaultyPoints(TrackPoints):
         if any(each.switch == switch and each.from_s <= now_s <= each.to_s for each in self._stuck):
             return False
         return super().throw(switch, position, now_s)
+
+    def is_moving(self, switch: int, time_s: float) -> bool:
+        """Whether they are on their way."""
+        return switch in self._moving and not self._has_moved(switch, time_s)
