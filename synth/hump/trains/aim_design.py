@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plant_models.errors import require
 from plant_models.frozen_arrays import Floats, Ints
 from plant_models.hump import Retarder, Route
 from plant_models.library.weight_category import WeightCategory
@@ -50,8 +49,8 @@ class MeasuredAhead:
 @dataclass(frozen=True)
 class AimDesign:
     """How exit speeds of the last position are chosen: for whom, for which position, and on how many drawn cuts of
-    each weight category and number of cars; a coupling faster than `coupling_speed_m_s` is over-speed. `threads` work
-    on them, 0: one a processor; they change no result."""
+    each weight category and number of `cars`, which rise from 1 on; a coupling faster than `coupling_speed_m_s` is
+    over-speed. `threads` work on them, 0: one a processor; they change no result."""
 
     population: CutPopulation
     position: PositionModel
@@ -62,12 +61,6 @@ class AimDesign:
     seed: int = 1
     threads: int = 0
     coupling_speed_m_s: float = COUPLING_SPEED_M_S
-
-    def __post_init__(self) -> None:
-        require(
-            len(self.cars) > 0 and self.cars[0] == 1 and list(self.cars) == sorted(set(self.cars)),
-            f"aim: cars is {self.cars}; the numbers must rise from 1 on",
-        )
 
 
 def hump_aim(routes: HumpRoutes, design: AimDesign, rows: Ints | None = None) -> HumpAim:

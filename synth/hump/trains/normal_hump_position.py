@@ -11,7 +11,6 @@ from scipy.special import ndtri
 
 from plant_models.brake_power import FullBrake
 from plant_models.cut import Car
-from plant_models.errors import require_between
 from plant_models.frozen_arrays import Floats, Ints
 from plant_models.library.weight_category import WeightCategories
 from plant_models.retarder import RetarderPosition
@@ -61,9 +60,6 @@ class NormalHumpPosition:
 
     std_m_s: float
     full_brake_head_m: Callable[[Arrivals], Floats]
-
-    def __post_init__(self) -> None:
-        require_between("position: exit_std_m_s", self.std_m_s, 0.0, 3.0)
 
     def passed(self, arrivals: Arrivals) -> Passed:
         """See `HumpPosition`."""
