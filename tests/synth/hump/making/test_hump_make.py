@@ -17,9 +17,8 @@ from synth.frame.input_error import InputError
 from synth.hump.checking.checked_hump import checked_hump
 from synth.hump.hump_file import parse_hump
 from synth.hump.making.hump_toml import hump_toml
-from synth.hump.making.short_file import read_short_hump
+from synth.hump.making.short_file import example_short_toml, read_short_hump
 from synth.hump.making.short_hump import EXAMPLE
-from synth.hump.making.template import example_short_toml
 from synth.hump.making.track_tree import Fork, Tree, levels_needed, track_tree
 from synth.hump.trains.hump_routes import Mark
 from synth.hump.trains.train_passages import train_passages
