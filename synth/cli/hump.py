@@ -17,26 +17,34 @@ if TYPE_CHECKING:
     from plant_models.library.hump_entry import HumpEntry
 
 
+MOST_TOLD = 30
+"""Kinds of elements that were read over; `--json` tells all."""
+
+
 def check_command(source: Path, manner: Manner) -> int:
     """Tell what the hump in `source` has, where everything stands, and what is likely a mistake; `InputError` with all
     faults of it."""
     from synth.frame.summary import figures_of, plain, tables_of
     from synth.frame.terminal.told_print import brief_exhibits
     from synth.hump.checking.checked_hump import checked_hump
-    from synth.hump.hump_file import load_hump
+    from synth.hump.hump_file import read_hump
     from synth.retarder.configuration.plant_fault import in_file
 
-    hump = load_hump(source)
+    read = read_hump(source)
     with in_file(str(source)):
-        checked = checked_hump(hump)
+        checked = checked_hump(read.entry)
     found = checked.exhibits()
 
     def document() -> Any:
-        return plain({"path": str(source), **figures_of(found), **tables_of(found)})
+        return plain({"path": str(source), **figures_of(found), **tables_of(found), "ignored": read.ignored})
 
     def page() -> Iterator[Exhibit]:
         yield from brief_exhibits(found, "--json")
         yield from (f"warning: {each.sentence}" for each in checked.warnings)
+        if read.ignored:
+            more = len(read.ignored) - MOST_TOLD
+            rest = f" and {more} more" if more > 0 else ""
+            yield f"  read over: {', '.join(read.ignored[:MOST_TOLD])}{rest}"
 
     manner.give(document, page)
     return OK
@@ -45,9 +53,9 @@ def check_command(source: Path, manner: Manner) -> int:
 def routes_command(source: Path, manner: Manner) -> int:
     """Print every route of the hump in `source`, and the lists of tracks of its switches."""
     from synth.hump.control.hump_document import routes_document
-    from synth.hump.hump_file import load_hump
+    from synth.hump.hump_file import read_hump
 
-    graph = load_hump(source).graph
+    graph = read_hump(source).entry.graph
     manner.give(partial(routes_document, graph), partial(routes_page, graph))
     return OK
 
@@ -73,9 +81,9 @@ def route_words(route: Route, graph: HumpGraph) -> str:
 def draw_command(source: Path, output: Path, track: int | None, manner: Manner) -> int:
     """Draw the hump in `source` into the directory `output`; the profile is that of `track`."""
     from synth.frame.results_directory import results_directory
-    from synth.hump.hump_file import load_hump
+    from synth.hump.hump_file import read_hump
 
-    hump = load_hump(source)
+    hump = read_hump(source).entry
     route = drawn_route(hump.graph, track)
     from synth.frame.picture.figure_file import figure_files
     from synth.hump.control.pictures.hump_picture import hump_picture
@@ -96,9 +104,9 @@ def export_command(source: Path, form: str, output: Path, manner: Manner) -> int
     from synth.frame.input_error import InputError
     from synth.frame.results_directory import results_directory
     from synth.hump.forms.hump_csv import to_csv, to_xlsx
-    from synth.hump.forms.hump_railml import to_railml
     from synth.hump.forms.hump_tree import tree_toml
-    from synth.hump.hump_file import load_hump
+    from synth.hump.hump_file import read_hump
+    from synth.hump.railml.write import to_railml
 
     forms: dict[str, Callable[[HumpEntry], bytes]] = {
         "railml": to_railml,
@@ -108,7 +116,7 @@ def export_command(source: Path, form: str, output: Path, manner: Manner) -> int
     }
     if form not in forms:
         raise InputError(f"--format {form}: there is no such form; give {', '.join(forms)}")
-    hump = load_hump(source)
+    hump = read_hump(source).entry
     content = forms[form](hump)
     with results_directory(output, "hump export", [source]) as directory:
         name = str(directory.write(f"{hump.name}.{form}", content))

@@ -19,7 +19,7 @@ app = typer.Typer(
 )
 
 Hump = Annotated[
-    Path, typer.Argument(metavar="FILE|HUMP", help="A hump file (.toml, .csv, .xlsx), or one of the library.")
+    Path, typer.Argument(metavar="FILE|HUMP", help="A hump file (.toml, .railml, .csv, .xlsx), or one of the library.")
 ]
 
 

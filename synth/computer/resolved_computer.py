@@ -23,8 +23,8 @@ from synth.frame.input_error import InputError
 from synth.frame.settings.file_fault import in_file
 from synth.frame.settings.numbers import numbers_of, range_warnings
 from synth.hump.configuration.trial_file import hump_source
-from synth.hump.forms.hump_railml import to_railml
 from synth.hump.hump_file import read_graph
+from synth.hump.railml.write import to_railml
 from tuning_tables.canonical import canonical_json
 
 SIMULATED = "trials of 'hump simulate'"
@@ -57,7 +57,7 @@ def resolve_computer(settings: ComputerSettings, folder: Path, place: str) -> Re
     `place`: what messages call the file. Paths in it begin at `folder`.
     """
     try:
-        hump = read_graph(hump_source(settings.hump, folder))
+        hump = read_graph(hump_source(settings.hump, folder)).entry
     except InputError as fault:
         raise InputError(*(f"{place}: hump: {sentence}" for sentence in fault.sentences)) from None
     figures = figure_sources(settings.rates, folder, place)

@@ -1,8 +1,9 @@
-"""A hump from a user's file or from the library: TOML, CSV or workbook → `HumpEntry`, each fault a sentence."""
+"""A hump from a user's file or from the library: TOML, railML, CSV or workbook → `ReadHump`, each fault a sentence."""
 
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -16,12 +17,23 @@ from synth.frame.settings.toml_file import read_content, read_text, read_toml
 from synth.frame.workbook import first_sheet_csv
 from synth.hump.file_kind import FileKind, require_kind
 from synth.hump.forms.hump_csv import from_csv
+from synth.hump.railml.read import from_railml
 from synth.retarder.configuration.plant_fault import in_file
 
+RAILML_SUFFIXES: Final = (".railml", ".xml")
 CSV_SUFFIX: Final = ".csv"
 WORKBOOK_SUFFIX: Final = ".xlsx"
 TABLE_SUFFIXES: Final = (CSV_SUFFIX, WORKBOOK_SUFFIX)
+OTHER_SUFFIXES: Final = (*RAILML_SUFFIXES, *TABLE_SUFFIXES)
 """Of files of humps that are no TOML."""
+
+
+@dataclass(frozen=True)
+class ReadHump:
+    """The hump of a file; `ignored`: what a railML file holds besides, which was read over."""
+
+    entry: HumpEntry
+    ignored: tuple[str, ...] = ()
 
 
 def load_hump(source: Path | str) -> HumpEntry:
@@ -30,7 +42,7 @@ def load_hump(source: Path | str) -> HumpEntry:
     Parameters
     ----------
     source
-        A file (.toml, .csv, .xlsx), or the name of a hump of the library.
+        A file (.toml, .railml, .csv, .xlsx), or the name of a hump of the library.
 
     Returns
     -------
@@ -49,26 +61,34 @@ def load_hump(source: Path | str) -> HumpEntry:
     >>> len(hump.graph.tracks), hump.graph.route(hump.graph.leads[0], 7).code
     (16, '...')
     """
-    hump = read_graph(Path(source))
-    if Path(source).exists():
-        require_files(hump, Path(source))
-    return hump
+    return read_hump(Path(source)).entry
 
 
-def read_graph(source: Path) -> HumpEntry:
+def read_hump(source: Path) -> ReadHump:
+    """The same with what was read over; the files that its retarders name must be there."""
+    read = read_graph(source)
+    if source.exists():
+        require_files(read.entry, source)
+    return read
+
+
+def read_graph(source: Path) -> ReadHump:
     """The hump in the file `source`, or the one of that name in the library, whatever files it names."""
     name = str(source)
     there = os.path.exists(source)  # pathlib would raise for a name that is too long to ask for
     if name in hump_names() and not source.is_file():
         with in_file(name):
-            return load_of_library(name)
+            return ReadHump(load_of_library(name))
     if not there:
         hint = near_miss(name, hump_names())
         raise InputError(f"{name}: there is no such file, and no such hump in the library; {hint}")
     if source.suffix == WORKBOOK_SUFFIX:
-        return from_csv(first_sheet_csv(read_content(source), name), source.stem, name)
+        return ReadHump(from_csv(first_sheet_csv(read_content(source), name), source.stem, name))
+    text = read_text(source)
+    if source.suffix in RAILML_SUFFIXES:
+        return ReadHump(*from_railml(text, source.stem, name))
     read = from_csv if source.suffix == CSV_SUFFIX else parse_hump
-    return read(read_text(source), source.stem, name)
+    return ReadHump(read(text, source.stem, name))
 
 
 def hump_text(source: Path) -> str:

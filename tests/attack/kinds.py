@@ -26,6 +26,7 @@ from synth.hump.configuration.template import default_trial_toml
 from synth.hump.forms.hump_csv import to_csv
 from synth.hump.hump_file import parse_hump
 from synth.hump.making.make_command import COMMAND as MAKE
+from synth.hump.railml.write import to_railml
 from synth.hump.trains.simulate_command import COMMAND as SIMULATE
 from synth.logs.loaded_passes import loaded_passes
 from synth.retarder.configuration.config_file import load_config
@@ -36,6 +37,7 @@ from synth.retarder.tune_options import TuneOptions
 from tests.attack.attempt import Changed, Kind, Reading
 from tests.attack.forged import forged
 from tests.attack.mutants import mutant
+from tests.attack.railml_attributes import attribute_kind
 from tests.attack.stored import STORED
 from tests.attack.trains import trains_kind
 from tests.plant_models.hump.small_hump import SMALL
@@ -146,6 +148,11 @@ def plain(text: str) -> bytes:
     return "".join(f"{line}\n" for line in text.splitlines() if line and not line.startswith("#")).encode()
 
 
+def railml() -> bytes:
+    """The same hump as railML: grades, curves and a radar."""
+    return to_railml(parse_hump(SMALL, "small", "small.toml"))
+
+
 def small_csv() -> bytes:
     """The same hump as a table."""
     return to_csv(parse_hump(SMALL, "small", "small.toml")).encode()
@@ -208,6 +215,7 @@ EMPTY: Final = (Changed(b"", "it is empty", Reading.NONE),)
 
 KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "hump": lambda: file_kind("hump.toml", SMALL.encode(), partial(read_hump_file, name="hump.toml")),
+    "railml": lambda: file_kind("hump.railml", railml(), partial(read_hump_file, name="hump.railml")),
     "hump-csv": lambda: file_kind("hump.csv", small_csv(), partial(read_hump_file, name="hump.csv")),
     "short-hump": lambda: file_kind("short.toml", SHORT.encode(), read_short_hump),
     "trial": lambda: file_kind("trial.toml", plain(default_trial_toml()), read_trial),
@@ -221,6 +229,7 @@ KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "hdf5-log": lambda: log_kind("log.h5", log_as("log.h5"), Reading.SAME),
     "foreign-hdf5": lambda: log_kind("log.h5", foreign_hdf5(), Reading.ANY),
     "trains": trains_kind,
+    "railml-attributes": lambda: attribute_kind(railml()),
     "forged-log": lambda: replace(log_kind("log.h5", log_as("log.h5"), Reading.ANY), change=forged, first=EMPTY),
     "forged-foreign": lambda: replace(log_kind("log.h5", foreign_hdf5(), Reading.ANY), change=forged, first=EMPTY),
     **STORED,

@@ -80,6 +80,9 @@ def test_draw(command: Command, file: Path, tmp_path: Path) -> None:
 def test_export_in_another_form_and_read_it(command: Command, file: Path, tmp_path: Path) -> None:
     target = tmp_path / "railml" / "small.railml"
     assert command("hump", "export", file, "--format", "railml", "-o", target.parent).out == f"{target}\n"
+    assert command("hump", "routes", target).out == command("hump", "routes", file).out
+    target.write_text(target.read_text().replace("<signalsIS>", "<speeds/><signalsIS>"))
+    assert "read over: speeds (1)" in command("hump", "check", target).out
     for form in ("csv", "xlsx", "toml"):
         (written,) = json.loads(command("hump", "export", file, "--format", form, "-o", tmp_path / form, "--json").out)[
             "files"
@@ -99,7 +102,8 @@ def test_the_schema_is_printed(command: Command) -> None:
         ("bad.toml", SMALL.replace("to = 602", "to = 603"), "bad.toml, line 22: switch 1: an edge leads to 603"),
         ("bad.toml", SMALL + "[", "not valid TOML"),
         ("bad.toml", "", "key format is missing"),
-        ("bad.railml", "<railML/>", "not valid TOML"),
+        ("bad.railml", "<railML/>", "its root is railML"),
+        ("bad.railml", "<a", "not valid XML"),
     ],
 )
 def test_a_bad_file_is_told_in_one_sentence(command: Command, tmp_path: Path, name: str, text: str, words: str) -> None:

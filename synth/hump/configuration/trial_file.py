@@ -16,7 +16,7 @@ from synth.frame.settings.toml_file import read_text, toml_tree
 from synth.frame.settings.toml_text import toml_text
 from synth.hump.configuration.settings import HumpTrialSettings
 from synth.hump.file_kind import FileKind, kind_of, require_kind
-from synth.hump.hump_file import TABLE_SUFFIXES, read_graph
+from synth.hump.hump_file import OTHER_SUFFIXES, read_graph
 from synth.retarder.configuration.own_types import with_own_types
 
 INPUTS = "inputs"
@@ -56,7 +56,7 @@ def trial_text(source: Path, template: str = "init trial") -> str:
     """
     if str(source) in hump_names() and not source.is_file():
         return toml_text({"hump": str(source)})
-    if source.suffix in TABLE_SUFFIXES or not (source.suffix or source.exists()):
+    if source.suffix in OTHER_SUFFIXES or not (source.suffix or source.exists()):
         return text_on(source)
     text = read_text(source, template)
     tree = toml_tree(text, str(source))
@@ -79,7 +79,7 @@ def parse_trial_file(text: str, place: str) -> TrialFile:
     folder = Path(place).parent
     source = hump_source(settings.hump, folder)
     try:
-        hump = read_graph(source)
+        hump = read_graph(source).entry
     except InputError as fault:
         said = "" if str(source) == place else f"{place}: hump: "  # a hump by itself has faults of its own
         raise InputError(*(f"{said}{sentence}" for sentence in fault.sentences)) from None

@@ -29,7 +29,7 @@ from synth.hump.configuration.settings import OVERSPEEDS_PER_ASKED, HumpTrialSet
 from synth.hump.configuration.trial_file import TrialFile, read_trial_file
 from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.train_population import TrainPopulation
-from synth.hump.forms.hump_railml import to_railml
+from synth.hump.railml.write import to_railml
 from synth.hump.trains.aim_choice import AimChoice, aim_choices
 from synth.hump.trains.asked_roles import asked_roles, role_values, role_warnings, settings_of
 from synth.hump.trains.asked_trains import (

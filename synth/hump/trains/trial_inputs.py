@@ -1,7 +1,7 @@
 """All inputs of a trial in one folder, so that what ran can be told and repeated when the files it came from are gone.
 
 inputs/config.toml               the configuration, with what the command line said
-inputs/hump.toml                 the hump
+inputs/hump.toml or hump.railml  the hump
 inputs/train.csv or train.xlsx   the sorting list, if there was one
 inputs/tables/position-N.h5      the book of a position, position-N.toml what it was tuned with
 inputs/aim/N/                    aim tables of the last position, for each group of routes
@@ -21,7 +21,7 @@ from synth.frame.settings.toml_text import toml_text
 from synth.hump.configuration.position_settings import HumpPositionSettings
 from synth.hump.configuration.trial_file import INPUTS, TrialFile
 from synth.hump.forms.hump_tree import tree_toml
-from synth.hump.hump_file import TABLE_SUFFIXES, hump_text
+from synth.hump.hump_file import RAILML_SUFFIXES, TABLE_SUFFIXES, hump_text
 from synth.hump.trains.position_choice import PositionChoice
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.retarder.configuration.own_types import with_own_types
@@ -49,8 +49,9 @@ def write_inputs(file: TrialFile, config: ResolvedTrial, directory: ResultsDirec
     own: dict[str, TypeFile] = {str(each): each for each in file.library.own}
     contents: dict[str, bytes] = {}
     source = file.hump_source
-    text = tree_toml(file.hump) if source.suffix in TABLE_SUFFIXES else hump_text(source)
-    tree["hump"], contents["hump.toml"] = "hump.toml", text.encode("utf-8")
+    tree["hump"] = f"hump{source.suffix if source.suffix in RAILML_SUFFIXES else '.toml'}"
+    is_table = source.suffix in TABLE_SUFFIXES
+    contents[tree["hump"]] = (tree_toml(file.hump) if is_table else hump_text(source)).encode("utf-8")
     if file.settings.trains.list is not None:
         listed = file.folder / file.settings.trains.list
         name = f"{LIST}{listed.suffix}"

@@ -16,8 +16,7 @@ from synth.frame.input_error import InputError
 from synth.hump.checking.checked_hump import checked_hump
 from synth.hump.checking.places import places_of, rolled_routes
 from synth.hump.configuration.trial_file import trial_text
-from synth.hump.hump_file import hump_text, parse_hump
-from synth.hump.hump_file import load_hump as load_file
+from synth.hump.hump_file import hump_text, parse_hump, read_hump
 from synth.hump.making.short_file import read_short_hump
 
 GRADE = re.compile(r"(grade_permille = )(\{ value = )?(\[\[[^\]]*\](?:, \[[^\]]*\])*\]|-?[\d.]+)")
@@ -134,7 +133,7 @@ def test_a_file_of_another_kind_is_called_by_its_name(tmp_path: Path, text: str,
     file = tmp_path / "x.toml"
     file.write_text(text)
     with pytest.raises(InputError, match=re.escape(words)) as caught:
-        load_file(file)
+        read_hump(file)
     assert len(caught.value.sentences) == 1
     with pytest.raises(InputError, match="this is a hump file, not a short hump file; use 'retarder-synth hump check"):
         read_short_hump(hump_text(Path("medium")), "x.toml")

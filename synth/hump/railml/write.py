@@ -1,7 +1,4 @@
-"""A hump as a railML 3 file: what railML has words for by its own names, retarders and the like in a namespace of ours.
-
-Nothing of the schema of railML is here.
-"""
+"""A hump as a railML 3 file."""
 
 from __future__ import annotations
 
@@ -9,14 +6,21 @@ from collections.abc import Iterator
 from typing import Final
 from xml.etree import ElementTree as Xml
 
+from plant_models import PlantError
 from plant_models.hump import Edge, HumpGraph, Retarder, Signal, Switch, TrackSection, Vertex
+from plant_models.library.hump_elements import zones_of
 from plant_models.library.hump_entry import HumpEntry
-from synth.hump.forms.hump_tree import is_of_library
-
-RAILML: Final = "https://www.railml.org/schemas/3.1"
-OWN: Final = "urn:retarder-synth:hump:1"
-
-SIDES: Final = ("left", "right")
+from synth.hump.railml.names import (
+    LIBRARY,
+    OWN,
+    OWN_ZONES,
+    RAILML,
+    SIDES,
+    net_element,
+    net_relation,
+    own,
+    railml,
+)
 
 LANGUAGE: Final = "en"
 
@@ -30,19 +34,9 @@ def to_railml(hump: HumpEntry) -> bytes:
     return bytes(Xml.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
 
 
-def net_element(vertex: Vertex, branch: int) -> str:
-    """The identifier of an edge: that of a branch of a switch tells the side."""
-    return f"ne_{vertex.number}_{SIDES[branch]}" if isinstance(vertex, Switch) else f"ne_{vertex.number}"
-
-
-def net_relation(ahead: str, behind: str) -> str:
-    """The identifier of the way from one edge to the next."""
-    return f"nr_{ahead}_{behind}"
-
-
 def railml_of(hump: HumpEntry) -> Xml.Element:
     """The root of the file."""
-    root = Xml.Element(f"{{{RAILML}}}railML", {"version": "3.1"})
+    root = Xml.Element(railml("railML"), {"version": "3.1"})
     infrastructure = below(root, "infrastructure", id="hump")
     write_topology(below(infrastructure, "topology"), hump.graph)
     write_geometry(below(infrastructure, "geometry"), hump.graph)
@@ -53,12 +47,12 @@ def railml_of(hump: HumpEntry) -> Xml.Element:
 
 def below(parent: Xml.Element, name: str, /, **attributes: object) -> Xml.Element:
     """A new element of railML in `parent`; numbers in the shortest form that reads back the same."""
-    return Xml.SubElement(parent, f"{{{RAILML}}}{name}", {key: str(value) for key, value in attributes.items()})
+    return Xml.SubElement(parent, railml(name), {key: str(value) for key, value in attributes.items()})
 
 
 def own_below(parent: Xml.Element, name: str, /, **attributes: object) -> Xml.Element:
     """A new element of our namespace in `parent`."""
-    return Xml.SubElement(parent, f"{{{OWN}}}{name}", {key: str(value) for key, value in attributes.items()})
+    return Xml.SubElement(parent, own(name), {key: str(value) for key, value in attributes.items()})
 
 
 def edges_of(graph: HumpGraph) -> Iterator[tuple[Vertex, int, Edge]]:
@@ -211,11 +205,19 @@ def write_retarder(parent: Xml.Element, retarder: Retarder) -> None:
         told.set("book", retarder.book)
     if retarder.exit_std_m_s is not None:
         told.set("exitStd", str(retarder.exit_std_m_s))
-    told.set("zones", "library" if is_of_library(retarder) else "own")
+    told.set("zones", LIBRARY if of_library(retarder) else OWN_ZONES)
     for begin, end in retarder.zones_m:
         own_below(told, "zone", posBegin=begin, posEnd=end)
     for file in retarder.aim_tables:
         own_below(told, "aimTables", file=file)
+
+
+def of_library(retarder: Retarder) -> bool:
+    """Whether its zones are those of its position in the library."""
+    try:
+        return zones_of(retarder.position) == retarder.zones_m
+    except PlantError:
+        return False
 
 
 def named(element: Switch | Retarder | TrackSection) -> dict[str, str]:
