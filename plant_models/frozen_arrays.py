@@ -1,24 +1,40 @@
-"""Frozen values whose arrays are read-only too, which `dataclass(frozen=True)` alone does not see to."""
+"""Frozen values whose arrays are read-only too, which `dataclass(frozen=True)` alone does not see to; their words."""
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, field, fields
 from functools import cache, wraps
-from typing import Any, TypeVar
+from typing import Any, TypeVar, dataclass_transform
 
 import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+"""What annotations call arrays of numbers, of whole numbers, of truth values."""
 
 _T = TypeVar("_T")
 
 
-def frozen_arrays(cls: type[_T]) -> type[_T]:
-    """Make every array that is a field of the dataclass `cls` read-only: when it is made, unpickled or copied.
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """`array`, made so."""
+    array.setflags(write=False)
+    return array
 
-    It stands above `@dataclass(frozen=True, eq=False)`. `eq=False` because `==` of two arrays is no truth value: such
+
+@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(field,))
+def frozen_arrays(cls: type[_T]) -> type[_T]:
+    """Make `cls` a frozen dataclass, unless it is one, and every array that is a field of it read-only: when it is
+    made, unpickled or copied.
+
+    It is `dataclass(frozen=True, eq=False)`: `eq=False` because `==` of two arrays is no truth value: such
     values are equal if they are the same object, and can be keys. The array that the maker hands over becomes
     read-only itself, no copy is made: hand over a copy of what you want to go on writing. `repr` tells type and shape
     of an array, not its numbers, unless the class has its own.
     """
+    if "__dataclass_fields__" not in vars(cls):
+        cls = dataclass(frozen=True, eq=False)(cls)
     made = cls.__init__
 
     @wraps(made)

@@ -171,7 +171,7 @@ HUMP: Final = (
     Listed(
         "hump simulate",
         "synth.hump.trains.simulate_command:COMMAND",
-        "synth.hump.trains.simulate_options:SimulateOptions",
+        "synth.hump.trains.trial_options:SimulateOptions",
         "init trial",
         "Hump whole trains: catch-ups, couplings, gaps and cars an hour, with intervals; resumable.\n\n"
         "The same command goes on after an end of any kind. Exit code 1 if a limit of the configuration is missed.",

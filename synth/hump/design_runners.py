@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.hump import Route
 from plant_models.library import load_car, load_weight_categories
 from plant_models.rolling.car_mix import CarMix, MixedCar
@@ -19,8 +18,6 @@ from plant_models.rolling.resistance_law import HumpNormLaw
 from plant_models.rolling.weather import Weather
 from synth.hump.configuration.design_settings import DesignSettings
 from synth.simulation.free_roll import rolling_cuts
-
-Floats = NDArray[np.float64]
 
 CAR: Final = "gondola-4"
 DRAG_AREA_M2: Final = 1.36 * 8.5
@@ -96,7 +93,6 @@ def single_cars(population: CutPopulation, runners: Sequence[DesignRunner], bend
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class RunnerRoll:
     """How `runner` rolls over a route without brakes: where its middle is, and how fast; `stop_m`: where that stops,
     infinite where it reaches the end.

@@ -111,7 +111,7 @@ def imported(node: ast.AST) -> Iterator[str]:
 
 def is_dataclass(node: ast.ClassDef) -> bool:
     """Whether a class is decorated as one."""
-    return any(part.startswith("dataclass") for part in decorators(node))
+    return any(part.startswith(("dataclass", "frozen_arrays")) for part in decorators(node))
 
 
 def large_functions(sources: Mapping[str, str]) -> Iterator[str]:
@@ -279,7 +279,7 @@ def writable(sources: Mapping[str, str]) -> Iterator[str]:
     """
     for name, node, fields in with_arrays(sources):
         given = decorators(node)
-        frozen = given == ["frozen_arrays", "dataclass(frozen=True, eq=False)"]
+        frozen = given in (["frozen_arrays"], ["frozen_arrays", "dataclass(frozen=True, eq=False)"])
         if name.startswith("tuning_tables/"):
             left_out = all(field.value is not None and "compare=False" in ast.unparse(field.value) for field in fields)
             frozen = given == ["dataclass(frozen=True, eq=False)"] or (given == ["dataclass(frozen=True)"] and left_out)
@@ -296,6 +296,7 @@ def test_arrays_of_frozen_values_are_read_only() -> None:
 @pytest.mark.parametrize(
     ("name", "decorated", "field", "found"),
     [
+        ("synth/a.py", "@frozen_arrays", "NDArray[np.float64]", 0),
         ("synth/a.py", "@frozen_arrays\n@dataclass(frozen=True, eq=False)", "NDArray[np.float64]", 0),
         ("synth/a.py", "@dataclass(frozen=True, eq=False)", "np.ndarray | None", 1),
         ("synth/a.py", "@frozen_arrays\n@dataclass(frozen=True)", "tuple[npt.NDArray[np.float64], ...]", 1),

@@ -18,7 +18,6 @@ from typing import Any, Final, TypeVar
 from synth.cli.inspect import inspect_command
 from synth.frame.input_error import InputError
 from synth.frame.terminal.manner import Manner
-from synth.hump.control.event_file import read_events, write_events
 from synth.retarder.failed_case import FailedCase
 from synth.retarder.forms.code_options import code_options
 from synth.retarder.forms.table_forms import FORMS
@@ -29,7 +28,6 @@ from synth.retarder.sweep.unit_result import Row, UnitResult, from_bytes, to_byt
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics
 from tests.attack.attempt import Kind
 from tests.attack.forged import forged
-from tests.synth.hump.control.judged_trains import Scene, random_humping
 from tests.tuning_tables.every_kind import SAMPLES, altered, document_of, places, sealed, value_at, whole_lines
 from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import InvalidTable, write_book
@@ -116,11 +114,6 @@ def read_unit(folder: Path) -> str:
     return repr(from_bytes((folder / "unit.json").read_bytes(), str(folder / "unit.json")))
 
 
-def read_log_of_hump(folder: Path) -> str:
-    """As a program that reads what a hump has logged."""
-    return repr(read_events(folder / "log.h5"))
-
-
 def unit_kind() -> Kind:
     """The result of a unit of a sweep."""
     table = replace(whole_lines(), validated=None)
@@ -130,18 +123,9 @@ def unit_kind() -> Kind:
     return Kind("unit", {"unit.json": content}, "unit.json", read_unit, unit_change, code=3)
 
 
-def events_kind() -> Kind:
-    """The log of a hump."""
-    with tempfile.TemporaryDirectory() as folder:
-        write_events(random_humping(6, Scene(faults=3)).control.log.events[:50], Path(folder, "log.h5"))
-        content = Path(folder, "log.h5").read_bytes()
-    return Kind("events", {"log.h5": content}, "log.h5", read_log_of_hump, forged)
-
-
 STORED: Final[Mapping[str, Callable[[], Kind]]] = {
     "forged-book": lambda: book_kind((whole_lines(), replace(whole_lines(), id="other", target_speed_m_s=3.0))),
     "forged-passages": lambda: book_kind((table_of(), replace(table_of(DecidesOn.EVERY_AXLE), id="every"))),
     **{f"forged {name}": partial(table_kind, name) for name in SAMPLES},
     "forged-unit": unit_kind,
-    "forged-events": events_kind,
 }

@@ -92,7 +92,7 @@ def test_a_brake_that_is_gone_lets_cuts_leave_as_if_it_were_not_there(trial: Hum
 
 
 def test_a_wind_that_nobody_knows_blows_and_is_not_planned_for(trial: HumpTrial) -> None:
-    windy = replace(trial, source=UnknownWind(trial.source, 6.0))
+    windy = replace(trial, source=UnknownWind(**vars(trial.source), more_m_s=6.0))
     trains, plan, memory = windy.humped(0, TRAINS)
     calm, calm_plan, calm_memory = trial.humped(0, TRAINS)
     np.testing.assert_allclose(trains.drawn.head_wind_m_s - calm.drawn.head_wind_m_s, 6.0)

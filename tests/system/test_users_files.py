@@ -20,7 +20,7 @@ from synth.cli import main
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import results_directory
 from synth.hump.hump_file import hump_text
-from synth.hump.making.template import example_short_toml
+from synth.hump.making.short_file import example_short_toml
 from tests.system.conftest import CLASS, SECOND_CLASS, Command, changed
 
 SENSORS = """\

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant_models.errors import require
-from synth.hump.trains.hump_position import Arrivals, Floats, Passed, evenly_braked_s
+from plant_models.frozen_arrays import Floats
+from synth.hump.trains.hump_position import Arrivals, Passed, evenly_braked_s
 from synth.hump.trains.normal_hump_position import LibraryBrake
 
 

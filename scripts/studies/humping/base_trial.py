@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from plant_models.frozen_arrays import Floats
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.trains.forecast import Given
-from synth.hump.trains.free_tracks import FreeTracks
 from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod
 from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.made_trial import made_trial
@@ -15,7 +15,7 @@ from synth.hump.trains.resolved_trial import resolve_trial
 from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_source import TrainSource
-from synth.hump.trains.trial import Control, Floats, HumpTrial, Sensing
+from synth.hump.trains.trial import Control, HumpTrial, Sensing
 
 NAME = "hump-day"
 
@@ -128,9 +128,10 @@ def with_planner(
     return replace(trial, planner=planner)
 
 
-def with_free(trial: HumpTrial, free: FreeTracks) -> HumpTrial:
-    """Other standing cars."""
-    return replace(trial, free=free)
+def with_free(trial: HumpTrial, free: tuple[float, float]) -> HumpTrial:
+    """Tracks free between these shares of their length."""
+    tracks = trial.tracks.model_copy(update={"free_low": free[0], "free_high": free[1]})
+    return replace(trial, tracks=tracks)
 
 
 def braked_by(trial: HumpTrial, share: float, place: int | None = None) -> HumpTrial:
@@ -156,15 +157,14 @@ def brake_of(position: object) -> LibraryBrake:
 
 
 @dataclass(frozen=True)
-class UnknownWind:
-    """The trains of `source` with a head wind that is `more_m_s` more than any control expects."""
+class UnknownWind(TrainSource):
+    """Trains with a head wind that is `more_m_s` more than any control expects."""
 
-    source: TrainSource
-    more_m_s: float
+    more_m_s: float = 0.0
 
     def trains(self, first: int, count: int) -> TrainCuts:
         """See `TrainSource`."""
-        cuts = self.source.trains(first, count)
+        cuts = super().trains(first, count)
         return replace(cuts, drawn=replace(cuts.drawn, head_wind_m_s=cuts.drawn.head_wind_m_s + self.more_m_s))
 
 

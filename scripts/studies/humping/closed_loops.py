@@ -12,7 +12,6 @@ from scripts.studies.humping.disturbances import OILED, WEAKER
 from scripts.studies.humping.frontier import OPEN_LOOP, WITH_FEEDBACK, WITH_SLOWING, Families, Family, sigma
 from scripts.studies.humping.table_positions import FRICTION, SUPPLY, TablePositions, table_positions
 from scripts.studies.study import Tell
-from synth.hump.trains.free_tracks import DrawnFree
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.trial import HumpTrial
 
@@ -78,7 +77,7 @@ class ClosedLoops:
     def couplings(self) -> dict[tuple[str, tuple[float, float]], Pair]:
         """A pair for each regulator and length of the free tracks, but the one that `pairs` have."""
         return {
-            (name, free): Pair(f"{name}, free {free[0]:g}–{free[1]:g}", with_free(made.on(self.base), DrawnFree(*free)))
+            (name, free): Pair(f"{name}, free {free[0]:g}–{free[1]:g}", with_free(made.on(self.base), free))
             for name, made in self.made.items()
             for free in FREE[:-1]
         }

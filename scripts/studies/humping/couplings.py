@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from scripts.studies.humping.base_trial import READING, Day, with_free
 from scripts.studies.humping.day_figures import Pair, PairFigures
 from scripts.studies.study import Tell
-from synth.hump.trains.free_tracks import DrawnFree
 
 SHARES = (1.0, 0.5, 0.25)
 """Of the error of the positions: as it was, halved, quartered."""
@@ -62,6 +61,6 @@ def coupling_pairs(day: Day, stds_m_s: tuple[float, ...], tell: Tell) -> dict[Ai
         made = Day(day.seed, day.cuts, std, aim_std, p, day.design_cuts, measured).trial()
         for free in FREE:
             aimed = Aimed(std, aim_std, p, free, measured)
-            pairs[aimed] = Pair(aimed.name, with_free(made, DrawnFree(*free)), READING if measured else None)
+            pairs[aimed] = Pair(aimed.name, with_free(made, free), READING if measured else None)
     tell("commands chosen for every exactness")
     return pairs

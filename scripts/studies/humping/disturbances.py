@@ -37,7 +37,10 @@ def disturbance_pairs(day: Day, base: HumpTrial, tell: Tell) -> list[Pair]:
         Pair("law TB 10062 at +10 °C", replace(day, more=TB).trial()),
         Pair("law TB 10062 at −20 °C, snow", replace(day, more=TB + cold).trial()),
         Pair(f"head wind {WIND_M_S:g} m/s, known", replace(day, more=wind).trial()),
-        Pair(f"head wind {WIND_M_S:g} m/s, not known", replace(base, source=UnknownWind(base.source, WIND_M_S))),
+        Pair(
+            f"head wind {WIND_M_S:g} m/s, not known",
+            replace(base, source=UnknownWind(**vars(base.source), more_m_s=WIND_M_S)),
+        ),
     ]
     tell("trials of bad days made")
     return pairs

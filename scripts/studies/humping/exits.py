@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from scripts.studies.aiming.trial import Value
 from scripts.studies.humping.base_trial import FEEDBACK
 from scripts.studies.humping.day_figures import PERCENT
 from scripts.studies.markdown_table import MarkdownTable, plus_minus, table
-from synth.hump.trains.hump_position import Arrivals, Floats, HumpPosition, Ints, Passed, evenly_braked_s
+from synth.hump.trains.hump_position import Arrivals, HumpPosition, Passed, evenly_braked_s
 from synth.hump.trains.train_figures import ratio
 from synth.hump.trains.trial import HumpTrial
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from scripts.studies.humping.base_trial import Locomotive, with_known_resistance, with_planner
 from scripts.studies.humping.day_figures import Pair
-from synth.hump.trains.hump_speed import PairByPair
-from synth.hump.trains.trial import ConstantSpeed, HumpTrial
+from synth.hump.trains.hump_speed import pair_by_pair
+from synth.hump.trains.trial import HumpTrial
 
 CONSTANT_M_S = (1.7, 2.2, 2.7)
 
@@ -31,10 +31,16 @@ def program_pairs(base: HumpTrial) -> list[Pair]:
         Pair(WORST, worst),
         *(Pair(capped(cap), with_planner(worst, locomotive=Locomotive(cap))) for cap in CAPS_M_S),
         Pair(WEAK, with_planner(base, locomotive=weak)),
-        Pair(PAIRWISE, with_planner(base, method=PairByPair())),
-        Pair(f"{PAIRWISE}, locomotive {WEAK_M_S2:g} m/s²", with_planner(base, method=PairByPair(), locomotive=weak)),
+        Pair(PAIRWISE, with_planner(base, method=pair_by_pair)),
+        Pair(f"{PAIRWISE}, locomotive {WEAK_M_S2:g} m/s²", with_planner(base, method=pair_by_pair, locomotive=weak)),
     ]
-    return pairs + [Pair(f"{each:g} m/s for all", replace(base, program=ConstantSpeed(each))) for each in CONSTANT_M_S]
+    return pairs + [Pair(f"{each:g} m/s for all", constant(base, each)) for each in CONSTANT_M_S]
+
+
+def constant(base: HumpTrial, speed_m_s: float) -> HumpTrial:
+    """All cuts pushed at one speed."""
+    limits = replace(base.planner.limits, steps_m_s=(speed_m_s,))
+    return replace(base, planner=replace(base.planner, limits=limits))
 
 
 def capped(cap_m_s: float) -> str:

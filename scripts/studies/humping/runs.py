@@ -18,17 +18,17 @@ from synth.hump.trains.trial import BATCH, HumpTrial
 
 T = TypeVar("T")
 
-PLANNED_WITH = ("source", "routes", "ways", "planner", "program", "aim", "usable_heads_m", "free")
+PLANNED_WITH = ("source", "routes", "ways", "planner", "aim", "usable_heads_m", "tracks")
 """What a program of hump speeds depends on."""
 
 
-@dataclass(frozen=True)
-class Planned:
-    """A program that was made before, of the same trains."""
+@dataclass(frozen=True, kw_only=True)
+class Planned(Planner):
+    """A planner that has `made` its plan before, of the same trains."""
 
     made: TrainPlan
 
-    def plan(self, planner: Planner, known: KnownCuts) -> TrainPlan:
+    def plan(self, known: KnownCuts) -> TrainPlan:
         """That."""
         return self.made
 
@@ -69,7 +69,7 @@ class Group:
         found: list[T] = []
         plan: TrainPlan | None = None
         for trial in self.trials.values():
-            now = trial if plan is None else replace(trial, program=Planned(plan))
+            now = trial if plan is None else replace(trial, planner=Planned(**vars(trial.planner), made=plan))
             trains, plan, memory = now.humped(first, count)
             found.append(kept.told(trial, trains, memory))
         return tuple(found)

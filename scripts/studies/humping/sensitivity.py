@@ -9,7 +9,6 @@ from plant_models.hump import HumpGraph, Signal, Switch
 from scripts.studies.humping.day_figures import Pair
 from synth.hump.trains.hump_routes import hump_routes
 from synth.hump.trains.route_ways import route_ways
-from synth.hump.trains.train_source import DrawnSource
 from synth.hump.trains.trial import HumpTrial
 
 THROWS_S = (0.8, 1.0)
@@ -61,7 +60,6 @@ def with_king_switch(graph: HumpGraph, lead: int, from_crest_m: float) -> HumpGr
 def on_graph(base: HumpTrial, graph: HumpGraph) -> HumpTrial:
     """The trial on another hump with the same tracks behind the last position, for which its aims were chosen."""
     routes, source = hump_routes(graph, base.routes.lead), base.source
-    assert isinstance(source, DrawnSource)
     return replace(
         base,
         source=replace(source, routes=routes.routes),

@@ -10,7 +10,6 @@ from plant_models.library.weight_category import WeightCategories
 from scripts.studies.humping.books import BOOKS, Regulator
 from synth.hump.trains.class_choice import ClassChoice
 from synth.hump.trains.table_hump_position import TableHumpPosition
-from synth.hump.trains.train_source import DrawnSource
 from synth.hump.trains.trial import HumpTrial
 from synth.retarder.configuration.plant_values import SLOPES, STAGE_PRESSURES, with_values
 from synth.retarder.table_class import TableClass
@@ -54,6 +53,5 @@ def keyed(plant: Plant, values: Mapping[str, float]) -> dict[str, float]:
 
 def table_positions(trial: HumpTrial, regulator: Regulator) -> TablePositions:
     """The books of all positions of `trial` under `regulator`; the same book is tuned once."""
-    assert isinstance(trial.source, DrawnSource)
     of_book = {book: regulator(book) for book in dict.fromkeys(BOOKS)}
     return TablePositions(tuple(of_book[book] for book in BOOKS), trial.source.people.categories)

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from plant_models.hump import Route, Switch
+from plant_models.library.hump_entry import HumpEntry
 from synth.aim.aiming import LIMITS_OF_USE, compute, head, limits, resolved, show, steps
 from synth.aim.configuration.aim_file import AimFile, parse_aim_file
+from synth.aim.resolved_aim import ResolvedAim
 from synth.frame.command import Asked, Command
 from synth.frame.input_error import InputError
+from synth.hump.aiming.hump_track import hump_track
 from synth.hump.aiming.options import AimOptions
-
-if TYPE_CHECKING:
-    from plant_models.hump import Route
-    from plant_models.library.hump_entry import HumpEntry
-    from synth.aim.resolved_aim import ResolvedAim
+from synth.hump.control.number_ranges import ranges
+from synth.hump.hump_file import load_hump
+from synth.hump.route_to import route_to
+from synth.hump.trains.aim_choice import last_retarder
+from synth.hump.trains.aim_design import positions_m
 
 ACCURACY: Final = "aim.exit_std_m_s"
 
@@ -29,8 +33,6 @@ def resolve(asked: Asked[AimFile, AimOptions]) -> ResolvedAim:
         if options.track is not None:
             raise InputError("--track is that of a hump; name the hump by --hump FILE, or leave --track out")
         return resolved(file.with_simulation(*simulation))
-    from synth.hump.aiming.hump_track import hump_track
-    from synth.hump.hump_file import load_hump
 
     require_no_track(file, f"--hump {options.hump}")
     hump = load_hump(options.hump)
@@ -54,10 +56,6 @@ def require_no_track(file: AimFile, option: str) -> None:
 
 def aimed_route(hump: HumpEntry, options: AimOptions) -> Route:
     """The way to the track that is asked for; `InputError` where none is, or nothing brakes on it."""
-    from synth.hump.control.number_ranges import ranges
-    from synth.hump.route_to import route_to
-    from synth.hump.trains.aim_design import positions_m
-
     if options.track is None:
         raise InputError(f"--track is missing; the hump {options.hump} has the tracks {ranges(hump.graph.tracks)}")
     route = route_to(hump.graph, options.track)
@@ -69,8 +67,6 @@ def aimed_route(hump: HumpEntry, options: AimOptions) -> Route:
 def with_accuracy(file: AimFile, route: Route) -> tuple[AimFile, bool]:
     """`file` with the accuracy of the last position of `route`, unless the file says how exactly it works, or the hump
     file does not; whether it was taken from there."""
-    from synth.hump.trains.aim_choice import last_retarder
-
     aim, std = file.settings.aim, last_retarder(route).exit_std_m_s
     if std is None or aim.tables is not None or "exit_std_m_s" in aim.model_fields_set:
         return file, False
@@ -80,9 +76,6 @@ def with_accuracy(file: AimFile, route: Route) -> tuple[AimFile, bool]:
 
 def switch_warnings(route: Route) -> Iterator[str]:
     """A sentence where switches are behind the position that aims."""
-    from plant_models.hump import Switch
-    from synth.hump.control.number_ranges import ranges
-
     behind = [e.number for e in route.elements if isinstance(e.vertex, Switch) and e.at_m > route.yard_from_m]
     if behind:
         yield (

@@ -10,7 +10,7 @@ from typing import Final
 
 from synth.frame.command import Asked
 from synth.frame.input_error import InputError
-from synth.hump.capacity.curve import Axis
+from synth.hump.capacity.curve import Axis, Curve
 from synth.hump.capacity.options import MOST_POINTS, CapacityOptions
 from synth.hump.capacity.variants import KeyValues, Variant, changed_text, key_values, variants
 from synth.hump.configuration.trial_file import TrialFile, parse_trial_file
@@ -47,6 +47,14 @@ class AskedCapacity:
     def every_point(self) -> tuple[AskedTrial, ...]:
         """Those of all curves."""
         return tuple(chain.from_iterable(self.points))
+
+
+@dataclass(frozen=True)
+class FoundCapacity:
+    """The curves that were asked for."""
+
+    asked: AskedCapacity
+    curves: tuple[Curve, ...]
 
 
 def asked_capacity(asked: Asked[TrialFile, CapacityOptions]) -> AskedCapacity:

@@ -6,20 +6,24 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Steps, Work
+from synth.frame.command import Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
+from synth.hump.capacity.asked_capacity import AskedCapacity, FoundCapacity, asked_capacity
+from synth.hump.capacity.curve import curves
 from synth.hump.capacity.options import CapacityOptions
-from synth.hump.configuration.trial_file import TrialFile, parse_trial_file, trial_text
+from synth.hump.capacity.shown import at_limit, points
+from synth.hump.configuration.trial_file import parse_trial_file, trial_text
 from synth.hump.limits_of_use import MODEL_ONLY, NO_SAFETY
-
-if TYPE_CHECKING:
-    from synth.hump.capacity.asked_capacity import AskedCapacity
-    from synth.hump.capacity.found_capacity import FoundCapacity
-    from synth.hump.trains.asked_trial import AskedTrial
-    from synth.hump.trains.resolved_trial import ResolvedTrial
-    from synth.hump.trains.trial import HumpTrial
+from synth.hump.trains.asked_trial import AskedTrial
+from synth.hump.trains.batch import batches
+from synth.hump.trains.made_trial import made_trial, planner_of
+from synth.hump.trains.resolved_trial import ResolvedTrial
+from synth.hump.trains.train_engine import engine_for
+from synth.hump.trains.train_run import run_of, run_trials
+from synth.hump.trains.trial import HumpTrial
+from synth.kernels.cache import guarded
+from tuning_tables.canonical import canonical_json
 
 LIMITS_OF_USE = (
     MODEL_ONLY,
@@ -30,17 +34,8 @@ LIMITS_OF_USE = (
 )
 
 
-def resolve(asked: Asked[TrialFile, CapacityOptions]) -> AskedCapacity:
-    """The trials of all points."""
-    from synth.hump.capacity.asked_capacity import asked_capacity
-
-    return asked_capacity(asked)
-
-
 def head(asked: AskedCapacity) -> Head:
     """What is said of it: the parameters are those of the trial as it is."""
-    from tuning_tables.canonical import canonical_json
-
     points = [each.config.canonical_json for each in asked.every_point]
     depends = canonical_json({"format": "hump-capacity", "points": points, "catch_ups": asked.options.catch_ups})
     config = asked.base.config
@@ -51,23 +46,15 @@ def head(asked: AskedCapacity) -> Head:
 
 def steps(asked: AskedCapacity) -> Steps:
     """A step for each batch of each point."""
-    from synth.hump.trains.batch import batches
-
     of_points = (batches(asked.number, each.config.settings.tracks.shift_trains) for each in asked.every_point)
     return Steps(sum(of_points), "humping", "batches")
 
 
 def compute(asked: AskedCapacity, work: Work) -> FoundCapacity:
     """Hump the trains of all points, those of earlier runs left out."""
-    from synth.hump.capacity.curve import curves
-    from synth.hump.capacity.found_capacity import FoundCapacity
-    from synth.hump.trains.train_engine import engine_for
-    from synth.hump.trains.train_run import run_of, run_trials
-    from synth.kernels.cache import guarded
-
     started, runs = time.monotonic(), []
-    for variant, points in zip(asked.variants, asked.points, strict=True):
-        for value, config, trial in zip(asked.axis.values, *guarded(trials_of, points), strict=True):
+    for variant, trials in zip(asked.variants, asked.points, strict=True):
+        for value, config, trial in zip(asked.axis.values, *guarded(trials_of, trials), strict=True):
             name = ", ".join(filter(None, (variant.name, f"{asked.axis.name} {value:g} {asked.axis.unit}")))
             runs.append(run_of(config, trial, asked.number, work.directory, name))
     outcomes = run_trials(runs, partial(engine_for, asked.options, work.progress.note), work.progress)
@@ -80,17 +67,13 @@ def compute(asked: AskedCapacity, work: Work) -> FoundCapacity:
 
 def trials_of(points: Sequence[AskedTrial]) -> tuple[list[ResolvedTrial], list[HumpTrial]]:
     """The trials of the points of a curve, which differ in how trains are pushed, so that aims are chosen once."""
-    from synth.hump.trains.made_trial import made_trial, planner_of, program_of
-
     configs = [each.config for each in points]
     first = made_trial(configs[0])
-    return configs, [replace(first, planner=planner_of(each), program=program_of(each)) for each in configs]
+    return configs, [replace(first, planner=planner_of(each)) for each in configs]
 
 
 def show(found: FoundCapacity) -> Iterator[Chapter]:
     """Cars an hour at the limit, then all points."""
-    from synth.hump.capacity.shown import at_limit, points
-
     yield Chapter("Cars an hour", tuple(at_limit(found)))
     yield Chapter("Points of the curves", tuple(points(found)))
 
@@ -99,7 +82,7 @@ COMMAND = Command(
     name="hump capacity",
     read=parse_trial_file,
     options=CapacityOptions,
-    resolve=resolve,
+    resolve=asked_capacity,
     head=head,
     steps=steps,
     compute=compute,

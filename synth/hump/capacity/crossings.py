@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.shift_sums import Ints, shift_sums
-from synth.hump.trains.trial import Floats
+from synth.hump.trains.shift_sums import shift_sums
 
 REPLICATES = 2000
 
@@ -19,7 +16,6 @@ FEWEST_EVENTS = 10.0
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Sums:
     """Of each bootstrap replicate (rows; the first is the sample itself) and each program, safest first: share of
     catch-ups, mean hump speed, cars an hour."""

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import decimals, per_cent, whole
+from synth.hump.capacity.asked_capacity import FoundCapacity
 from synth.hump.capacity.curve import Curve
-from synth.hump.capacity.found_capacity import FoundCapacity
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,9 +11,10 @@ import numpy as np
 from synth.frame.input_error import InputError
 from synth.frame.results_directory import SUMMARY
 from synth.hump.configuration.trial_file import INPUTS
-from synth.hump.trains.outcome_file import TRAINS, from_npz, trains_of
+from synth.hump.trains.outcome_file import TRAINS
 from synth.hump.trains.outcomes import TrainOutcomes, some_of
-from synth.hump.trains.resolved_trial import ResolvedTrial, load_trial
+from synth.hump.trains.resolved_trial import ResolvedTrial
+from synth.hump.trains.stored_trains import stored_trains
 from synth.hump.trains.trial_inputs import CONFIG
 
 
@@ -26,7 +27,11 @@ class HumpedRun:
     found: TrainOutcomes
 
 
-def runs_in(folders: Sequence[Path]) -> tuple[HumpedRun, ...]:
+Runs = tuple[HumpedRun, ...]
+"""The first is what the others are compared with."""
+
+
+def runs_in(folders: Sequence[Path]) -> Runs:
     """The runs in these directories, all with the same trains. `InputError`, `TableError` for a damaged file."""
     names = names_of(folders)
     runs = [run_in(folder, name) for folder, name in zip(folders, names, strict=True)]
@@ -61,11 +66,9 @@ def config_in(folder: Path) -> Path:
 
 def run_in(folder: Path, name: str) -> HumpedRun:
     """The run in one directory."""
-    config = load_trial(config_in(folder))
-    trial = trains_of(config)
-    path = folder / TRAINS
-    found = from_npz(path.read_bytes(), str(path), trial, config.settings.trains.number)
-    return HumpedRun(name, config, found)
+    config_in(folder)
+    stored = stored_trains(folder, str(folder))
+    return HumpedRun(name, stored.config, stored.found)
 
 
 def require_same_trains(one: HumpedRun, other: HumpedRun) -> None:

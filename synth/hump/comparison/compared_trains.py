@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Ints
 from synth.hump.comparison.compared_runs import HumpedRun
 from synth.hump.trains.chosen_trains import TYPICAL_AMONG, ChosenTrain
 
@@ -42,7 +42,7 @@ def compared_trains(runs: Sequence[HumpedRun]) -> tuple[ChosenTrain, ...]:
     return tuple(ChosenTrain(number, f"{said}, {counts_of(runs, number)}") for number, said in chosen)
 
 
-def first_of_largest(differences: NDArray[np.int64], overspeeds: NDArray[np.int64]) -> int:
+def first_of_largest(differences: Ints, overspeeds: Ints) -> int:
     """The train with the largest difference; of equal ones the most over-speeds, then the first."""
     return int(np.lexsort((np.arange(len(differences)), -overspeeds, -differences))[0])
 

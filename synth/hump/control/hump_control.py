@@ -8,20 +8,20 @@ from dataclasses import dataclass, field
 from plant_models.errors import require
 from synth.hump.control.axle_counters import AxleCounters
 from synth.hump.control.brake_task import BrakeTask, LeastInterval
-from synth.hump.control.event import Aspect, Kind, Why
-from synth.hump.control.event_log import EventLog
+from synth.hump.control.event import Aspect, Event, Kind, Why
 from synth.hump.control.hump_state import MOVING, HumpState
 from synth.hump.control.journal import Journal
 from synth.hump.control.misrouting import Misrouting
-from synth.hump.control.models import Information, Technology, TrackGeometry
+from synth.hump.control.models import Technology, TrackGeometry
 from synth.hump.control.practice_rules import PracticeRules
 from synth.hump.control.retarder_control import RetarderControl
 from synth.hump.control.route_store import RouteStore
 from synth.hump.control.route_table import RouteTable
 from synth.hump.control.section_counter import Finding
+from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.strobe import Strobe
 from synth.hump.control.switch_control import SwitchControl
-from synth.hump.control.technology import LeaderTrack
+from synth.hump.control.technology import leader_track
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Operation:
     """How a hump is operated: what is done with misrouted cuts, rules of practice, tasks of the retarders by
     (retarder, cut), the limits of exit speeds, and the braking of a cut that came too close."""
 
-    technology: Technology = field(default_factory=LeaderTrack)
+    technology: Technology = leader_track
     rules: PracticeRules = field(default_factory=PracticeRules)
     tasks: Mapping[tuple[int, int], BrakeTask] = field(default_factory=dict)
     strobe: Strobe = field(default_factory=Strobe)
@@ -44,7 +44,7 @@ class HumpControl:
     """
 
     def __init__(
-        self, table: RouteTable, train: Information, track: TrackGeometry, operation: Operation | None = None
+        self, table: RouteTable, train: SortingList, track: TrackGeometry, operation: Operation | None = None
     ) -> None:
         how, bare = operation or Operation(), table.uncounted_switch
         require(
@@ -52,7 +52,7 @@ class HumpControl:
             f"switch {bare} has no axle counters; give it some, or follow no rule of practice that needs them",
         )
         self._table, self._track, self._how, self._journal = table, track, how, Journal()
-        self.store = RouteStore(table, [cut for cut in train.cuts if cut.goes_over_the_hump])
+        self.store = RouteStore(table, train.humped)
         self.counters = AxleCounters(table, self.store, how.rules, self._counted)
         self.switches = SwitchControl(self.store, self.counters, track, how.rules, self._journal)
         self.retarders = RetarderControl(table, self.store, track, how.tasks, how.strobe, self._journal)
@@ -74,9 +74,9 @@ class HumpControl:
         return self._journal.state
 
     @property
-    def log(self) -> EventLog:
+    def events(self) -> tuple[Event, ...]:
         """What happened so far."""
-        return self._journal.log
+        return self._journal.events
 
     def tick(self, time_s: float) -> None:
         """Read the track at `time_s`, and command what follows."""

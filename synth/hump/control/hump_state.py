@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -53,10 +53,35 @@ class HumpState:
         return switch not in self.by_hand
 
     def apply(self, event: Event) -> None:
-        """The state after `event`."""
-        change = CHANGES.get(event.kind)
-        if change is not None:
-            change(self, event)
+        """The state after `event`; kinds that are not here change nothing but alarms."""
+        element, cut, value = event.element, event.cut, event.value
+        match event.kind:
+            case Kind.STORED | Kind.RE_ROUTED:
+                self.tracks[cut] = int(value)
+            case Kind.SIGNAL:
+                self.aspects[element] = int(value)
+            case Kind.MODE if value == 1.0:
+                self.by_hand.discard(element)
+            case Kind.MODE:
+                self.by_hand.add(element)
+            case Kind.OCCUPIED | Kind.NOT_SEPARATED | Kind.UNKNOWN_OBJECT:
+                self.occupants[element] = cut
+            case Kind.FREED:
+                self.occupants[element] = 0
+            case Kind.COMMANDED:
+                self.commanded[element] = int(value)
+            case Kind.POSITION:
+                self.positions[element] = int(value)
+            case Kind.MISROUTED:
+                self.misrouted.add(cut)
+            case Kind.ARRIVED if int(value) not in self.arrived.get(cut, ()):
+                self.arrived.setdefault(cut, []).append(int(value))
+            case Kind.BRAKED | Kind.RELEASED:
+                self.braking[element] = value
+            case Kind.ENTRY_COUNTER:
+                self.counters[element] = self.counters.get(element, Counters())._replace(entry=int(value))
+            case Kind.EXIT_COUNTER:
+                self.counters[element] = self.counters.get(element, Counters())._replace(exit=int(value))
         if event.kind in ALARMS:
             self.alarms.append(event)
 
@@ -67,89 +92,3 @@ def replayed(events: Iterable[Event]) -> HumpState:
     for event in events:
         state.apply(event)
     return state
-
-
-def on_stored(state: HumpState, event: Event) -> None:
-    """The cut has a track."""
-    state.tracks[event.cut] = int(event.value)
-
-
-def on_signal(state: HumpState, event: Event) -> None:
-    """The signal shows it."""
-    state.aspects[event.element] = int(event.value)
-
-
-def on_mode(state: HumpState, event: Event) -> None:
-    """The switch is controlled so."""
-    if event.value == 1.0:
-        state.by_hand.discard(event.element)
-    else:
-        state.by_hand.add(event.element)
-
-
-def on_occupied(state: HumpState, event: Event) -> None:
-    """The object is on it."""
-    state.occupants[event.element] = event.cut
-
-
-def on_freed(state: HumpState, event: Event) -> None:
-    """Nothing is on it."""
-    state.occupants[event.element] = 0
-
-
-def on_commanded(state: HumpState, event: Event) -> None:
-    """The points are to lie so."""
-    state.commanded[event.element] = int(event.value)
-
-
-def on_position(state: HumpState, event: Event) -> None:
-    """The points lie so."""
-    state.positions[event.element] = int(event.value)
-
-
-def on_misrouted(state: HumpState, event: Event) -> None:
-    """The cut is marked."""
-    state.misrouted.add(event.cut)
-
-
-def on_arrived(state: HumpState, event: Event) -> None:
-    """The cut, or a part of it, is on the track."""
-    tracks = state.arrived.setdefault(event.cut, [])
-    if int(event.value) not in tracks:
-        tracks.append(int(event.value))
-
-
-def on_braking(state: HumpState, event: Event) -> None:
-    """The retarder brakes so."""
-    state.braking[event.element] = event.value
-
-
-def on_entry(state: HumpState, event: Event) -> None:
-    """The entry counter shows it."""
-    state.counters[event.element] = Counters(int(event.value), state.counters.get(event.element, Counters()).exit)
-
-
-def on_exit(state: HumpState, event: Event) -> None:
-    """The exit counter shows it."""
-    state.counters[event.element] = Counters(state.counters.get(event.element, Counters()).entry, int(event.value))
-
-
-CHANGES: Mapping[Kind, Callable[[HumpState, Event], None]] = {
-    Kind.STORED: on_stored,
-    Kind.RE_ROUTED: on_stored,
-    Kind.SIGNAL: on_signal,
-    Kind.MODE: on_mode,
-    Kind.OCCUPIED: on_occupied,
-    Kind.NOT_SEPARATED: on_occupied,
-    Kind.UNKNOWN_OBJECT: on_occupied,
-    Kind.FREED: on_freed,
-    Kind.COMMANDED: on_commanded,
-    Kind.POSITION: on_position,
-    Kind.MISROUTED: on_misrouted,
-    Kind.ARRIVED: on_arrived,
-    Kind.BRAKED: on_braking,
-    Kind.RELEASED: on_braking,
-    Kind.ENTRY_COUNTER: on_entry,
-    Kind.EXIT_COUNTER: on_exit,
-}
-"""What an event changes; kinds that are not here change nothing but alarms."""

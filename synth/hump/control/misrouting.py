@@ -22,7 +22,7 @@ class Misrouting:
         changed by that. A cut that keeps its own track is no misrouted one."""
         tracks, belongs = tuple(sorted(reachable)), self._store.record(cut).track
         leader_track = self._store.track(leader) if leader in self._store else None
-        chosen = self._technology.track_for(Misroute(cut, element, why, leader, tracks, belongs, leader_track))
+        chosen = self._technology(Misroute(cut, element, why, leader, tracks, belongs, leader_track))
         require(
             chosen in tracks, f"technology: track {chosen} for cut {cut} cannot be reached from element {element}; "
             f"it must be one of {', '.join(map(str, tracks))}",

@@ -1,16 +1,15 @@
 """The other models that the control works with, as the published model has them: a trainer plugs in its own.
 
 Track geometry tells which object occupies which section and moves points; technology decides what is done with a cut
-that cannot go where the list says; information tells what the train is.
+that cannot go where the list says.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from synth.hump.control.cut_record import CutRecord
 from synth.hump.control.event import Why
 
 ENTRY = -1
@@ -96,16 +95,5 @@ class Misroute:
     leader_track: int | None
 
 
-class Technology(Protocol):
-    """What the yard does with a cut that cannot go where the list says."""
-
-    def track_for(self, misroute: Misroute) -> int:
-        """Where it goes: one of `misroute.reachable`."""
-
-
-class Information(Protocol):
-    """What is known of a train before it is humped; a `SortingList` is such."""
-
-    @property
-    def cuts(self) -> Sequence[CutRecord]:
-        """Its cuts, in the order in which they come over the hump."""
+Technology = Callable[[Misroute], int]
+"""What the yard does with a cut that cannot go where the list says: the track to which it goes, one of `reachable`."""

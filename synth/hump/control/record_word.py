@@ -1,18 +1,6 @@
 """The record of a cut as one word of 53 bits, by the fields that [hump-computer-1970s] lists; the widths are ours.
 
-| field | bits | values |
-|---|---|---|
-| serial number in the train | 6 | 1 to 64 |
-| mass | 10 | 0 to 2046 t in steps of 2 t |
-| length | 8 | 0 to 510 m in steps of 2 m |
-| pairs of axles | 7 | 1 to 128 |
-| cars | 6 | 1 to 64 |
-| weight category and rolling, one code | 4 | 3 · (category − 1) + rolling, 0 to 14 |
-| destination, a binary digit a switch | 6 | 0 to 63, the highest digit is the first switch |
-| hump speed | 5 | 0.5 to 3.6 m/s in steps of 0.1 m/s |
-| lead | 1 | 0 or 1 |
-
-The first field is the highest part of the word.
+docs/explanation/hump-control.md has the steps and ranges of the fields, of which the first is the highest part.
 """
 
 from __future__ import annotations

@@ -30,8 +30,3 @@ class SortingList:
     def humped(self) -> tuple[CutRecord, ...]:
         """The cuts that go over the hump."""
         return tuple(cut for cut in self.cuts if cut.goes_over_the_hump)
-
-    @property
-    def cars(self) -> int:
-        """Cars of the train."""
-        return sum(cut.cars for cut in self.cuts)

@@ -11,20 +11,16 @@ ResortingCost = Callable[[int, int], float]
 """From the track where a cut stands and the track where it belongs to what it costs to bring it there."""
 
 
-@dataclass(frozen=True)
-class LeaderTrack:
+def leader_track(misroute: Misroute) -> int:
     """The follower goes to the track of its leader: what the published model does unless told otherwise.
 
     Without a leader, or where its track cannot be reached, the cut keeps its own track, or goes to the first that can
     be reached.
     """
-
-    def track_for(self, misroute: Misroute) -> int:
-        """The track of the leader."""
-        for track in (misroute.leader_track, misroute.track):
-            if track is not None and track in misroute.reachable:
-                return track
-        return misroute.reachable[0]
+    for track in (misroute.leader_track, misroute.track):
+        if track is not None and track in misroute.reachable:
+            return track
+    return misroute.reachable[0]
 
 
 @dataclass(frozen=True)
@@ -35,7 +31,7 @@ class RejectionOrCheapest:
     rejection: tuple[int, ...]
     cost: ResortingCost
 
-    def track_for(self, misroute: Misroute) -> int:
+    def __call__(self, misroute: Misroute) -> int:
         """A rejection track or the cheapest."""
         for track in self.rejection:
             if track in misroute.reachable:

@@ -1,4 +1,4 @@
-"""A population of trains instead of a sorting list: it gives lists that nobody wrote."""
+"""A population of trains instead of a sorting list."""
 
 from __future__ import annotations
 
@@ -6,22 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.library.weight_category import WeightCategories
 from plant_models.rolling.car_mix import CarMix
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
-from synth.hump.control.cut_record import MOST_CUTS, USUAL_HUMP_SPEED_M_S, CutRecord
-from synth.hump.control.sorting_list import SortingList
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from synth.hump.control.cut_record import MOST_CUTS
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class DrawnTrains:
     """Trains of `cuts` cuts each, one row a cut, train by train: `cars` and `track` (rows,); `category` (rows,): place
     in the categories; `types` (rows, cars): places in `mix`; `mass_t` (rows, cars): 0 where a cut has no more cars."""
@@ -52,7 +46,6 @@ class TrainPopulation:
     track_shares: Mapping[int, float]
     cars_mean: float = 2.0
     most_cars: int = 20
-    hump_speed_m_s: float = USUAL_HUMP_SPEED_M_S
 
     def __post_init__(self) -> None:
         require_between("train: cars_mean", self.cars_mean, 1.0, 10.0)
@@ -64,27 +57,6 @@ class TrainPopulation:
         known = {category.number for category in self.categories.members}
         for number in self.category_shares:
             require(number in known, f"train: category_shares names {number}, which is none of {self.categories.name}")
-
-    def train(self, seed: int, cuts: int) -> SortingList:
-        """A train of `cuts` cuts; cut i of a seed is the same whatever the number of cuts. It is train 0 of `drawn`."""
-        drawn = self.drawn(seed, 0, 1, cuts)
-        real = drawn.mass_t > 0.0
-        axles = np.where(real, self.mix.axles[drawn.types], 0).sum(axis=1)
-        lengths = np.where(real, np.array([each.car.length_m for each in self.mix.cars])[drawn.types], 0.0).sum(axis=1)
-        records = (
-            CutRecord(
-                serial=row + 1,
-                cars=int(drawn.cars[row]),
-                axles=int(axles[row]),
-                mass_t=round(float(drawn.mass_t[row].sum()), 3),
-                category=self.categories.members[drawn.category[row]].number,
-                track=int(drawn.track[row]),
-                length_m=round(float(lengths[row]), 3),
-                hump_speed_m_s=self.hump_speed_m_s,
-            )
-            for row in range(cuts)
-        )
-        return SortingList(tuple(records))
 
     def drawn(self, seed: int, first: int, count: int, cuts: int) -> DrawnTrains:
         """Trains `first` … `first + count − 1` of the row `seed`, each of `cuts` cuts; a train is the same whatever

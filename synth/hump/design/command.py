@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
+from synth.frame.input_error import InputError
 from synth.hump.configuration.trial_file import TrialFile, parse_trial_file, trial_text
+from synth.hump.design.design_limits import design_limits
+from synth.hump.design.design_parameters import design_json, design_parameters
+from synth.hump.design.found_design import FoundDesign, found_design
+from synth.hump.design.hump_under_test import hump_under_test
 from synth.hump.design.options import DesignOptions
+from synth.hump.design.shown import design, fall_and_brakes, triple
 from synth.hump.limits_of_use import MODEL_ONLY, NO_SAFETY
-
-if TYPE_CHECKING:
-    from synth.hump.design.found_design import FoundDesign
-    from synth.hump.trains.asked_trial import AskedTrial
+from synth.hump.trains.asked_trial import AskedTrial
+from synth.hump.trains.resolved_trial import resolve_trial
+from synth.kernels.cache import guarded
 
 LIMITS_OF_USE = (
     MODEL_ONLY,
@@ -28,10 +32,6 @@ LIMITS_OF_USE = (
 
 def resolve(asked: Asked[TrialFile, DesignOptions]) -> AskedTrial:
     """The trial, with the hump speed that was typed."""
-    from synth.frame.input_error import InputError
-    from synth.hump.trains.asked_trial import AskedTrial
-    from synth.hump.trains.resolved_trial import resolve_trial
-
     file, speed = asked.settings, asked.options.speed
     if speed is not None:
         design = file.settings.design.model_copy(update={"hump_speed_m_s": speed})
@@ -44,39 +44,19 @@ def resolve(asked: Asked[TrialFile, DesignOptions]) -> AskedTrial:
 
 def head(asked: AskedTrial) -> Head:
     """What is said of it."""
-    from synth.hump.design.design_parameters import design_json, design_parameters
-
     told = asked.head(f"Design test. {asked.config.hump.title}", design_json(asked.config))
     return replace(told, parameters=design_parameters(asked.config))
 
 
-def steps(asked: AskedTrial) -> Steps:
-    """What progress counts."""
-    return Steps(1, "testing", "humps")
-
-
 def compute(asked: AskedTrial, work: Work) -> FoundDesign:
     """The whole test."""
-    from synth.hump.design.found_design import found_design
-    from synth.hump.design.hump_under_test import hump_under_test
-    from synth.kernels.cache import guarded
-
     found = guarded(found_design, asked, hump_under_test(asked.config))
     work.progress.done(f"{len(found.intervals.pairs)} pairs of tracks")
     return found
 
 
-def limits(found: FoundDesign) -> Iterable[Limit]:
-    """Fall, brakes, speeds at the entrances, intervals."""
-    from synth.hump.design.design_limits import design_limits
-
-    return design_limits(found)
-
-
 def show(found: FoundDesign) -> Iterator[Chapter]:
     """What is found first, then what it rests on."""
-    from synth.hump.design.shown import design, fall_and_brakes, triple
-
     yield Chapter("Design test", tuple(design(found)))
     yield Chapter("Fall and brakes", tuple(fall_and_brakes(found)))
     yield Chapter("The worst triple", tuple(triple(found)))
@@ -88,10 +68,10 @@ COMMAND = Command(
     options=DesignOptions,
     resolve=resolve,
     head=head,
-    steps=steps,
+    steps=lambda asked: Steps(1, "testing", "humps"),
     compute=compute,
     show=show,
-    limits=limits,
+    limits=design_limits,
     limits_of_use=LIMITS_OF_USE,
     text=trial_text,
 )

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.hump.design.hump_under_test import HumpUnderTest
 from synth.hump.design.intervals import Intervals, intervals, least_margins_s
 from synth.hump.design.runners_unbraked import Unbraked, unbraked
@@ -17,14 +16,11 @@ from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import TrainPlan
 from synth.hump.trains.train_trace import TrainTrace
 
-Floats = NDArray[np.float64]
-
 KEPT_M_S = 0.01
 """A command is kept where the exit is not faster than this above it."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class WorstTriple:
     """The triple with the least margin: its cars with their `plan`, and what becomes of each of them `alone`.
 

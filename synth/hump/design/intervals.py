@@ -7,17 +7,13 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.frame.settings.section import setting_limits
 from synth.hump.configuration.design_settings import DesignSettings
 from synth.hump.design.hump_under_test import HumpUnderTest
 from synth.hump.design.triples import Triples, margins_s, pairs_of, triples
 from synth.hump.trains.hump_routes import HumpRoutes
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 NEARLY_M_S: Final = 0.01
 """How exactly the highest hump speed is found."""
@@ -40,7 +36,6 @@ class Parting:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Intervals:
     """All `pairs` (t, 3) of tracks as rows of routes, with the least margin of each, `least_s` (t,); `partings`: the
     same by the switch that parts them, from the crest on."""
@@ -77,7 +72,6 @@ def intervals(hump: HumpUnderTest) -> Intervals:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class AllTriples:
     """Triples of which the worst of each `level` (t,) are wanted: with few exit speeds that are compared, `coarse`, and
     with many, `fine`."""

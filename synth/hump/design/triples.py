@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.design.hump_under_test import HumpUnderTest
 from synth.hump.design_runners import DesignRunner, bad_runner, good_runner, single_cars
 from synth.hump.trains.asked import Asked
@@ -24,9 +23,6 @@ from synth.hump.trains.train_plan import TrainPlan, shared_needs
 from synth.hump.trains.train_trace import TrainTrace, train_trace
 from synth.hump.trains.trial import reduced_gravity_m_s2
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 CARS: Final = 3
 """Of a triple."""
 
@@ -38,7 +34,6 @@ PAIRS: Final = ((0, 1), (1, 2), (0, 2))
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Triples:
     """Triples on `hump`, `route` (t, 3): rows of the routes of their cuts. Build them with `triples`.
 
@@ -84,7 +79,6 @@ class Triples:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Told:
     """Exit speeds (trains, cuts, positions) that are told before, of whatever position."""
 

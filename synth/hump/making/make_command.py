@@ -8,22 +8,26 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from plant_models.hump import Route
 from plant_models.library import SourcedValue
+from plant_models.library.hump_entry import HumpEntry
 from plant_models.library.sourced_value import SET_BY_USER
 from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter, Chart, File, Sentence
 from synth.frame.settings.numbers import numbers_of
+from synth.hump.checking.checked_hump import CheckedHump, checked_hump
+from synth.hump.design_runners import roll_runners
+from synth.hump.hump_file import parse_hump
+from synth.hump.making.hump_toml import hump_toml
 from synth.hump.making.make_options import MakeOptions
 from synth.hump.making.short_file import read_short_hump
 from synth.hump.making.short_hump import ShortHump
+from synth.kernels.cache import guarded
+from synth.retarder.configuration.plant_fault import in_file
 from tuning_tables.canonical import canonical_json
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from plant_models.hump import Route
-    from plant_models.library.hump_entry import HumpEntry
-    from synth.hump.checking.checked_hump import CheckedHump
 
 HUMP_FILE = "hump.toml"
 
@@ -52,11 +56,6 @@ class MadeHump:
 
 def resolve(asked: Asked[ShortHump, MakeOptions]) -> MadeHump:
     """The hump file, read again as every command reads it."""
-    from synth.hump.checking.checked_hump import checked_hump
-    from synth.hump.hump_file import parse_hump
-    from synth.hump.making.hump_toml import hump_toml
-    from synth.retarder.configuration.plant_fault import in_file
-
     text = hump_toml(asked.settings, Path(asked.place).name)
     hump = parse_hump(text, "hump", HUMP_FILE)
     with in_file(asked.place):
@@ -83,20 +82,13 @@ def show(made: MadeHump) -> Iterator[Chapter]:
             Chart("plan-and-profile", title, caption, partial(drawn, hump, route)),
         ),
     )
-    yield Chapter("What stands where", (*made.checked.exhibits(), *next_steps()))
-
-
-def next_steps() -> Iterator[Sentence]:
-    """What to do with the file."""
     told = f"'retarder-synth hump simulate {HUMP_FILE}' humps trains over it; every line of the file may be changed."
-    yield Sentence(told, {}, brief=True)
+    yield Chapter("What stands where", (*made.checked.exhibits(), Sentence(told, {}, brief=True)))
 
 
 def drawn(hump: HumpEntry, route: Route) -> Figure:
     """The picture of `hump draw`."""
     from synth.hump.control.pictures.hump_picture import hump_picture
-    from synth.hump.design_runners import roll_runners
-    from synth.kernels.cache import guarded
 
     return hump_picture(hump, route, guarded(roll_runners, route))
 

@@ -1,4 +1,4 @@
-"""Reading a short hump file: every fault of it at once, those of its keys and those between them."""
+"""Reading a short hump file: every fault at once, those of its keys and those between them; and one to start from."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from plant_models.library.near_miss import close_name
 from synth.frame.input_error import InputError
 from synth.frame.settings.file_fault import faults_in
+from synth.frame.settings.template import NOTHING, template
 from synth.frame.settings.toml_file import read_toml
 from synth.hump.file_kind import FileKind, require_kind
 from synth.hump.making.short_hump import EXAMPLE, ShortHump
@@ -43,3 +44,13 @@ def read_short_hump(text: str, place: str) -> ShortHump:
 
 NEEDED: Final = tuple(key for key, field in ShortHump.model_fields.items() if field.is_required())
 """Keys that stand in every short file."""
+
+EXAMPLE_LINES = (
+    "An example: put the numbers of your hump in place of its own.\n"
+    f"# What may not be left out: tracks or bunches, {', '.join(NEEDED)}; of a position type and from_m."
+)
+
+
+def example_short_toml() -> str:
+    """The hump `medium` of the library as a short file."""
+    return template(EXAMPLE, "Short hump file", "hump make", NOTHING, (), EXAMPLE_LINES)

@@ -8,14 +8,12 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.input_error import InputError
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.kernels.cache import guarded
-
-Floats = NDArray[np.float64]
 
 CUTS: Final = 1000
 """Cuts that are humped, or some more: whole trains."""

@@ -3,41 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from plant_models.frozen_arrays import Floats, Ints
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.expected_way import ExpectedWay
 from synth.hump.trains.hump_aim import HumpAim
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.stretch_reading import AimReading
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
-
-class AimedTrains(Protocol):
-    """What an aim must know of the cuts of some trains, rows = train·n + i; `TrainCuts` has it. `category`: place of
-    the weight category in its set."""
-
-    @property
-    def cuts(self) -> int:
-        """Cuts of a train."""
-
-    @property
-    def category(self) -> Ints:
-        """Of each cut."""
-
-    @property
-    def cars(self) -> Ints:
-        """Of each cut."""
-
-    @property
-    def last_axle_m(self) -> Floats:
-        """Behind the head."""
+from synth.hump.trains.train_cuts import TrainCuts
 
 
 @dataclass(frozen=True)
@@ -63,7 +37,7 @@ class AimControl:
 
     aim: HumpAim
     routes: HumpRoutes
-    trains: AimedTrains
+    trains: TrainCuts
     reading: AimReading | None = None
 
     def command(self, asked: Asked) -> Floats:

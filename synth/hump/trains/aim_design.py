@@ -7,9 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.hump import Retarder, Route
 from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
@@ -23,9 +22,6 @@ from synth.hump.trains.hump_aim import CategoryAim, HumpAim
 from synth.hump.trains.hump_routes import HumpRoutes
 from tuning_tables.aim import AimAxes
 from tuning_tables.aim.held_aim import aim_grid
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 CARS = (1, 2, 3, 5, 8)
 """Numbers of cars that speeds are chosen for."""
@@ -49,15 +45,12 @@ class MeasuredAhead:
     speed_mean_m_s: float = 4.5
     speed_spread_m_s: float = 0.5
 
-    def __post_init__(self) -> None:
-        require_between("measured stretch: speed_std_m_s", self.speed_std_m_s, 1e-4, 2.0)
-
 
 @dataclass(frozen=True)
 class AimDesign:
     """How exit speeds of the last position are chosen: for whom, for which position, and on how many drawn cuts of
-    each weight category and number of cars; a coupling faster than `coupling_speed_m_s` is over-speed. `threads` work
-    on them, 0: one a processor; they change no result."""
+    each weight category and number of `cars`, which rise from 1 on; a coupling faster than `coupling_speed_m_s` is
+    over-speed. `threads` work on them, 0: one a processor; they change no result."""
 
     population: CutPopulation
     position: PositionModel
@@ -68,12 +61,6 @@ class AimDesign:
     seed: int = 1
     threads: int = 0
     coupling_speed_m_s: float = COUPLING_SPEED_M_S
-
-    def __post_init__(self) -> None:
-        require(
-            len(self.cars) > 0 and self.cars[0] == 1 and list(self.cars) == sorted(set(self.cars)),
-            f"aim: cars is {self.cars}; the numbers must rise from 1 on",
-        )
 
 
 def hump_aim(routes: HumpRoutes, design: AimDesign, rows: Ints | None = None) -> HumpAim:

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.motion import Moving
 from synth.hump.trains.train_memory import TrainMemory
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Asked:
     """A control is asked for the exit speeds of cut number `cut` of the trains `lanes` (n,) in `position`.
 
@@ -34,7 +26,7 @@ class Asked:
     free_m: Floats
     memory: TrainMemory
 
-    def chosen(self, which: NDArray[np.bool_]) -> Asked:
+    def chosen(self, which: Bools) -> Asked:
         """Some of the cuts."""
         lanes, routes, start = self.lanes[which], self.routes[which], self.start.chosen(which)
         return Asked(self.cut, self.position, lanes, routes, start, self.free_m[which], self.memory)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from plant_models.errors import PlantError, require
+from plant_models.frozen_arrays import Bools
 from plant_models.library import SourcedValue, WeightCategories
 from synth.frame.settings.numbers import sourced
 from synth.hump.configuration.position_settings import (
@@ -22,13 +23,16 @@ from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.forecast import SpeedRange
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.position_choice import PositionChoice
-from synth.hump.trains.position_roles import Bools, Exits, Fixed, Roles, Spacing
+from synth.hump.trains.position_roles import Exits, Fixed, Roles, Spacing
 
 UNBRAKED_M_S: Final = 99.0
 """An exit speed that no cut has: whoever asks for it leaves the brake open."""
 
 OF_EXITS: Final = ("lowest_m_s", "highest_m_s", "most_entry_m_s")
 """Keys that say nothing of a position that aims."""
+
+Asked = Sequence[HumpPositionSettings]
+"""The settings of each position, in order from the crest."""
 
 Where = Callable[[Bools, Bools], Bools]
 """On which routes a position aims, of (those whose last position it is, those with a switch behind the last)."""
@@ -41,29 +45,20 @@ AIMS: Final[Mapping[RoleName | None, Where]] = {
 }
 
 
-@dataclass(frozen=True)
-class RoleSettings:
-    """The settings of each position, in order from the crest; the number of choices that are compared."""
-
-    positions: tuple[HumpPositionSettings, ...]
-    choices: int
-
-
-def settings_of(count: int, given: Sequence[HumpPositionSettings], choices: int) -> RoleSettings:
-    """Those of `count` positions, of which `given` tell some."""
+def settings_of(count: int, given: Sequence[HumpPositionSettings]) -> tuple[HumpPositionSettings, ...]:
+    """Those of `count` positions in order from the crest, of which `given` tell some."""
     told = {each.number: each for each in given}
-    numbers = range(1, count + 1)
-    return RoleSettings(tuple(told.get(n, HumpPositionSettings(number=n)) for n in numbers), choices)
+    return tuple(told.get(n, HumpPositionSettings(number=n)) for n in range(1, count + 1))
 
 
 def asked_roles(
-    asked: RoleSettings, choices: Sequence[PositionChoice], routes: HumpRoutes, categories: WeightCategories
+    asked: Asked, choices: Sequence[PositionChoice], routes: HumpRoutes, categories: WeightCategories, compared: int
 ) -> Roles:
-    """The roles; `PlantError` tells the key at fault."""
+    """The roles; so many exit speeds are `compared` in a position. `PlantError` tells the key at fault."""
     numbers = np.arange(1, routes.positions + 1)[:, None]
     held, last = routes.positions_of >= numbers, routes.positions_of == numbers
     aims = np.zeros(held.shape, dtype=bool)
-    for place, each in enumerate(asked.positions):
+    for place, each in enumerate(asked):
         aims[place] = AIMS[each.role_name](last[place], routes.parts_behind)
         require(
             each.role != "aim" or bool(last[place].any()),
@@ -71,8 +66,8 @@ def asked_roles(
             "to aim; give that one the role",
         )
     exits = tuple(
-        aiming(each) if (aims[place] == held[place]).all() else exits_of(each, choice, asked.choices, categories)
-        for place, (each, choice) in enumerate(zip(asked.positions, choices, strict=True))
+        aiming(each) if (aims[place] == held[place]).all() else exits_of(each, choice, compared, categories)
+        for place, (each, choice) in enumerate(zip(asked, choices, strict=True))
     )
     return Roles(exits, aims, held)
 
@@ -135,9 +130,9 @@ def exit_range(asked: HumpPositionSettings, choice: PositionChoice) -> tuple[flo
     return found if found[0] < found[1] else (low, high)
 
 
-def role_warnings(asked: RoleSettings, roles: Roles, routes: HumpRoutes) -> Iterator[str]:
+def role_warnings(asked: Asked, roles: Roles, routes: HumpRoutes) -> Iterator[str]:
     """A sentence for each role that does what hardly anybody wants."""
-    for place, each in enumerate(asked.positions):
+    for place, each in enumerate(asked):
         blocked = sorted(int(track) for track in routes.tracks[roles.aims[place] & routes.parts_behind])
         if blocked:
             yield (
@@ -146,10 +141,10 @@ def role_warnings(asked: RoleSettings, roles: Roles, routes: HumpRoutes) -> Iter
             )
 
 
-def role_values(asked: RoleSettings, roles: Roles, categories: WeightCategories) -> Iterator[SourcedValue]:
+def role_values(asked: Asked, roles: Roles, categories: WeightCategories) -> Iterator[SourcedValue]:
     """Every exit speed, with its origin."""
     fields = HumpPositionSettings.model_fields
-    for place, (each, exits) in enumerate(zip(asked.positions, roles.exits, strict=True)):
+    for place, (each, exits) in enumerate(zip(asked, roles.exits, strict=True)):
         key = f"position.{each.number}"
         if place not in roles.not_of_all:
             continue

@@ -44,7 +44,7 @@ def orders_of(trial: HumpTrial, trains_sha256: str, number: int) -> Iterator[Bat
     software = software_sha256()
     trains = hashlib.sha256(f"{trains_sha256}\0{software}".encode()).hexdigest()
     one_thread = replace(trial, threads=1)
-    most = trains_of_batch(trial.shift.trains)
+    most = trains_of_batch(trial.tracks.shift_trains)
     for first in range(0, number, most):
         count = min(most, number - first)
         yield BatchOrder(f"{trains[:32]}-{first}-{count}", first, count, software, one_thread)

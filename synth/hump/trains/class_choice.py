@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant_models import PlantError
+from plant_models.frozen_arrays import Ints
 from plant_models.library.weight_category import WeightCategories
-from synth.hump.trains.hump_position import Arrivals, Ints
+from synth.hump.trains.hump_position import Arrivals
 from synth.retarder.table_class import TableClass
 
 MOST_LONGER, MOST_SHORTER = 10.0 / 3.0, 1.5

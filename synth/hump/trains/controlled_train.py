@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from math import floor
 
 import numpy as np
@@ -36,20 +37,13 @@ class ControlledTrain:
     disagreements: tuple[Disagreement, ...]
 
 
-@dataclass(frozen=True)
-class OwnThenAhead:
+def own_then_ahead(track: HumpedTrack, misroute: Misroute) -> int:
     """What the simulation has of cuts that the control cannot send where the list says: a cut keeps its own track as
     long as it can reach it; else it goes the way of its leader, or, without one, of the cut that came there before."""
-
-    track: HumpedTrack
-
-    def track_for(self, misroute: Misroute) -> int:
-        """The first of them that can be reached."""
-        ahead = self.track.track_ahead(misroute.element, misroute.cut)
-        for track in (misroute.track, misroute.leader_track, ahead):
-            if track is not None and track in misroute.reachable:
-                return track
-        return misroute.reachable[0]
+    for number in (misroute.track, misroute.leader_track, track.track_ahead(misroute.element, misroute.cut)):
+        if number is not None and number in misroute.reachable:
+            return number
+    return misroute.reachable[0]
 
 
 def controlled_train(
@@ -69,13 +63,13 @@ def controlled_train(
     table = RouteTable(routes.graph)
     passages = train_passages(routes, trains, memory, lane)
     track = HumpedTrack(table, passages)
-    operation = Operation(OwnThenAhead(track), rules)
+    operation = Operation(partial(own_then_ahead, track), rules)
     control = HumpControl(table, sorting_list_of(routes, trains, memory, lane), track, operation)
     first, last = floor((passages.begins_s - LEAD_IN_S) / tick_s), floor(passages.ends_s / tick_s) + 1
     for tick in range(first, last + 1):
         control.tick(round(tick * tick_s, 6))
     control.finish()
-    return ControlledTrain(control.log.events, tuple(track.disagreements))
+    return ControlledTrain(control.events, tuple(track.disagreements))
 
 
 def sorting_list_of(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory, lane: int) -> SortingList:

@@ -7,12 +7,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.hump.trains.hump_routes import read_only
+from plant_models.frozen_arrays import Floats, Ints, read_only
 from synth.kernels.roll.lane_cuts import CutRows
 from synth.simulation.free_roll import long_steps
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Number = TypeVar("Number", bound=np.generic)
 
 

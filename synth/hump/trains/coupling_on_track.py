@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.hump.trains.motion import Cars, Moving
-
-Floats = NDArray[np.float64]
 
 PLACES = 48
 """Places on the track where both are compared, and once more about the one where they first touch, or come closest."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class OnTrack:
     """n cuts on their last free rolls, (n,) each: `cars` from `start` to the places `end_m` of their heads, where they
     stand from `still_s` on."""
@@ -29,7 +23,6 @@ class OnTrack:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Contact:
     """Where the head of each of n cuts behind touches the tail ahead, when, and how fast both are then; (n,) each, NaN
     where they do not touch while that ahead rolls."""

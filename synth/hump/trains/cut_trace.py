@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.trains.hump_routes import OF_FIRST_AXLE
 from synth.hump.trains.humping import Hump
 from synth.hump.trains.motion import even_speed_m_s
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SAMPLE_M = 1.0
 """Samples are so far apart at most; more stand where axles pass the marks of elements."""
@@ -26,7 +20,6 @@ SAME_M = 1e-6
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class CutTrace:
     """Where the head of a cut is (k,), metres from the crest, and how fast, at rising times; it stays at the end.
 

@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.trains.free_stretch import StretchSpeeds
 from synth.hump.trains.motion import Rolls
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ExpectedWay:
     """All cuts of some trains: `rolls` with mean bends and wind, their mean w0 `mean_n_per_kn` and g' (rows,)."""
 

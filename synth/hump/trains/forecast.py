@@ -6,17 +6,12 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.known_rolls import KnownRolls, Leg, Legs
 from synth.hump.trains.motion import Cars, Moving, Push, rolled_free
 from synth.kernels.roll import exit_choices as kernel
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 BOTH_MARKS = np.array([Mark.FIRST_IN, Mark.LAST_OUT])
 """Intervals need no other times."""
@@ -26,7 +21,6 @@ SLOWEST_M_S = 0.1
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Expected:
     """Cuts as a control knows them, (n,): `cars` roll as it expects; first and last axles behind the head;
     `braked_m2_s2` (n, positions): most loss of v² to the brake of each position; `rolled`: what was worked out of them
@@ -55,7 +49,6 @@ class Choices(Protocol):
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Given:
     """One exit speed for each cut, `speed_m_s` (n,)."""
 
@@ -87,7 +80,6 @@ class SpeedRange:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Compared:
     """n cuts with c choices each, (n, c): least margins to the cuts ahead and behind; whether the cut can have these
     speeds; how far it comes beyond the limits of entry of some position, 0 if it does not; when its last axle is out of
@@ -102,7 +94,6 @@ class Compared:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Forecast:
     """n cuts with one choice each: `first_in_s`, `last_out_s` (n, elements), NaN for what lies behind the cut, infinite
     behind a stop; (n, q) of the positions ahead: `exit_m_s`, and `ended_s`, when the passes end."""
@@ -215,7 +206,6 @@ def through(
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Stretch:
     """A position and the free roll behind it, as `Legs` has them."""
 

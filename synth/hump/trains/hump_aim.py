@@ -6,16 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.kernels.aim_speeds import aim_exit_speeds
 from tuning_tables.aim import AimAxes
 from tuning_tables.aim.held_aim import aim_grid
 from tuning_tables.programs.aim_table import AimGrid
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -32,7 +28,6 @@ class CategoryAim:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class HumpAim:
     """Exit speeds of the last position: `tables`, by group of routes and by place of the weight category in its set.
 

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
-from plant_models.frozen_arrays import frozen_arrays
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 
 OF_ALL = ("seed", "position")
 """What all arrivals share."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Arrivals:
     """m cuts, one entry each, that come to a position, the first of their way being `position` 0.
 
@@ -65,14 +59,13 @@ class Arrivals:
         """What tells the random numbers of the passes apart: train, cut, position."""
         return self.train, self.cut, np.full_like(self.cut, self.position)
 
-    def chosen(self, which: NDArray[np.bool_] | Ints | slice) -> Arrivals:
+    def chosen(self, which: Bools | Ints | slice) -> Arrivals:
         """Some of them."""
         arrays: dict[str, Any] = {name: values[which] for name, values in vars(self).items() if name not in OF_ALL}
         return Arrivals(**arrays, seed=self.seed, position=self.position)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Passed:
     """How m cuts passed: `exit_m_s` when the last axle is at the exit, `time_s` after the first was at the entrance.
 

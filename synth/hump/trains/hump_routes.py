@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays, read_only
 from plant_models.hump import HumpGraph, Retarder, Route, RouteElement, Signal, Switch
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Mark(IntEnum):
@@ -34,7 +28,6 @@ OF_FIRST_AXLE = np.array([True, False, True, False, True, False])
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class HumpRoutes:
     """Routes of `graph` from the signal `lead`, a row each by track; build it with `hump_routes`.
 
@@ -92,13 +85,13 @@ class HumpRoutes:
         return read_only(np.isfinite(self.entrance_m).sum(axis=1))
 
     @cached_property
-    def parts_behind(self) -> NDArray[np.bool_]:
+    def parts_behind(self) -> Bools:
         """Whether there is a switch behind the last position of each route, (routes,)."""
         last = self.retarder.max(axis=1, initial=-1)
         return read_only(((self.points >= 0) & (np.arange(self.elements) > last[:, None])).any(axis=1))
 
     @cached_property
-    def is_last(self) -> NDArray[np.bool_]:
+    def is_last(self) -> Bools:
         """Whether each of the `numbers` is the last position of some route."""
         rows, last = np.arange(len(self.routes)), self.retarder.max(axis=1, initial=-1)
         return read_only(np.isin(np.arange(len(self.numbers)), self.vertex[rows, last][last >= 0]))
@@ -133,12 +126,6 @@ class HumpRoutes:
         """
         same = (self.vertex[one] == self.vertex[other]) & (self.vertex[one] >= 0)
         return np.asarray(np.logical_and.accumulate(same, axis=1).sum(axis=1))
-
-
-def read_only(array: NDArray[Any]) -> NDArray[Any]:
-    """`array`, made so."""
-    array.setflags(write=False)
-    return array
 
 
 def hump_routes(graph: HumpGraph, lead: int) -> HumpRoutes:

@@ -16,9 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from synth.hump.control.models import ENTRY, AxlePass, Braking, Occupation
-from synth.hump.control.reference_points import ReferencePoints
-from synth.hump.control.reference_sections import ReferenceSections
 from synth.hump.control.route_table import RouteTable
+from synth.hump.control.track_points import TrackPoints
 from synth.hump.trains.train_passages import Passage, TrainPassages
 
 
@@ -50,8 +49,10 @@ class HumpedTrack:
     def __init__(self, table: RouteTable, passages: TrainPassages) -> None:
         self._table, self._passages, self._now_s = table, passages, float("-inf")
         self._serials = tuple(cut + 1 for cut in range(len(passages.ways)))
-        self._points = ReferencePoints(table.graph.switches, ())
-        self._sections = ReferenceSections((), sees_axles=False)
+        self._points = TrackPoints(table.graph.switches)
+        self._on: dict[int, tuple[int, ...]] = defaultdict(tuple)
+        self._told: dict[int, tuple[int, ...]] = defaultdict(tuple)
+        self._changed: list[int] = []
         self._axles: list[AxlePass] = []
         self._came: dict[int, list[int]] = defaultdict(list)
         self.disagreements: list[Disagreement] = []
@@ -78,7 +79,11 @@ class HumpedTrack:
 
     def occupations(self) -> Iterator[Occupation]:
         """Sections whose objects changed."""
-        return self._sections.news(self._now_s, self._serials)
+        changed, self._changed = dict.fromkeys(self._changed), []
+        for element in changed:
+            if self._told[element] != self._on[element]:
+                self._told[element] = self._on[element]
+                yield Occupation(element, self._on[element])
 
     def axles(self) -> Sequence[AxlePass]:
         """Axles that passed a counter."""
@@ -128,11 +133,15 @@ class HumpedTrack:
 
     def _enter(self, time_s: float, cut: int, passage: Passage, axle: int) -> None:
         if axle == 0:
-            self._sections.enters(passage.element, cut)
+            self._occupied_by(passage.element, (*self._on[passage.element], self._serials[cut]))
             self._came[passage.element].append(self._serials[cut])
             if self._table.is_switch(passage.element):
                 self._choose(time_s, cut, passage)
         self._count(time_s, passage.element, ENTRY)
+
+    def _occupied_by(self, element: int, objects: tuple[int, ...]) -> None:
+        self._on[element] = objects
+        self._changed.append(element)
 
     def _choose(self, time_s: float, cut: int, passage: Passage) -> None:
         switch = passage.element
@@ -142,7 +151,8 @@ class HumpedTrack:
 
     def _leave(self, time_s: float, cut: int, passage: Passage, axle: int) -> None:
         if axle == len(passage.out_s) - 1:
-            self._sections.leaves(passage.element, cut, last=True)
+            serial = self._serials[cut]
+            self._occupied_by(passage.element, tuple(each for each in self._on[passage.element] if each != serial))
         self._count(time_s, passage.element, passage.branch)
 
     def _count(self, time_s: float, element: int, end: int) -> None:

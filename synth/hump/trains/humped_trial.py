@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from synth.hump.trains.outcome_file import TrialTrains, trains_of
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.train_figures import TrainFigure, train_figures
@@ -22,16 +21,6 @@ class HumpedTrial:
 
     def __repr__(self) -> str:
         return f"HumpedTrial({self.config.title}: {len(self.found)} trains, {int(self.found.cuts.sum())} cuts)"
-
-    @property
-    def of_trial(self) -> TrialTrains:
-        """Of which trial the trains are, for their file."""
-        return trains_of(self.config)
-
-    @property
-    def category_names(self) -> tuple[str, ...]:
-        """Names of the weight categories in their places."""
-        return tuple(member.label for member in self.config.categories.members)
 
 
 def humped_trial(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes) -> HumpedTrial:

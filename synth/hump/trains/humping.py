@@ -3,37 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.asked import Asked, ExitSpeeds, HumpSpeeds
 from synth.hump.trains.hump_position import Arrivals, HumpPosition
 from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.hump.trains.meeting import Ahead, LastUsers, first_of, meeting
 from synth.hump.trains.motion import Cars, CoupledRolls, Moving, Push, braked_evenly, merged, rolled_free
 from synth.hump.trains.rolled_on import RolledOn, remember
-from synth.hump.trains.skates import NO_SKATES, Skates
 from synth.hump.trains.standing_cars import NEARLY_M, StandingCars
 from synth.hump.trains.tails import Tails, followed
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
-
-@dataclass(frozen=True)
+@frozen_arrays
 class Hump:
-    """A hump for trains: its routes, its positions in order from the crest, what rolls its cuts, and the skates on its
-    tracks."""
+    """A hump for trains: its routes, its positions in order from the crest, and what rolls its cuts.
+
+    `left_share` (routes,): of the speed of a cut, what the skates of a track leave just ahead of the standing cars;
+    None: all. A cut that stops before, or that meets one which still rolls, is not held by them.
+    """
 
     routes: HumpRoutes
     positions: tuple[HumpPosition, ...]
     rolls: CoupledRolls
-    skates: Skates = NO_SKATES
+    left_share: Floats | None = None
+
+    def coupled_m_s(self, routes: Ints, speed_m_s: Floats) -> Floats:
+        """With what speed cuts (n,) on `routes` (n,) couple that come with `speed_m_s` (n,)."""
+        return speed_m_s if self.left_share is None else self.left_share[routes] * speed_m_s
 
 
 def humped(hump: Hump, trains: TrainCuts, free_m: Floats, speeds: HumpSpeeds, control: ExitSpeeds) -> TrainMemory:
@@ -274,11 +275,11 @@ class OneCut:
         lanes, still = self.lanes[rolls], Moving(end.head_m, end.speed_m_s, ended).chosen(rolls)
         memory.end_m[lanes, cut], memory.end_time_s[lanes, cut] = still.head_m, still.time_s
         memory.tail_m[lanes, cut], memory.still_s[lanes, cut] = still.head_m - self.last_m[rolls], still.time_s
-        memory.end_speed_m_s[lanes, cut] = self.hump.skates.left_m_s(self.routes[rolls], still.speed_m_s)
+        memory.end_speed_m_s[lanes, cut] = self.hump.coupled_m_s(self.routes[rolls], still.speed_m_s)
         marks = self.heads_m(rolls)
         added = standing.add(lanes, self.cars(rolls), moving.chosen(rolls), still, self.length_m[rolls], marks)
         self.note_behind(marks[added.which], added)
-        coupled = self.hump.skates.left_m_s(added.route, added.end_m_s)
+        coupled = self.hump.coupled_m_s(added.route, added.end_m_s)
         remember(memory, self.trains, cut, added, coupled)
         standing.block(self.lanes[~rolls], self.routes[~rolls], self.length_m[~rolls])
 

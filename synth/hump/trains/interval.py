@@ -5,59 +5,43 @@ A margin is how much later than needed a cut comes to the element where it is le
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol
+from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Bools, Ints
 from synth.hump.trains.forecast import Compared
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-
 
 NONE_S = -1e6
 """Margins behind a cut that blocks the way are infinitely short; where all choices have such, a possible one is
 taken."""
 
 
-class IntervalRule(Protocol):
-    """Which choice of exit speeds is taken."""
-
-    def best(self, compared: Compared) -> Ints:
-        """Column of the choice for each cut, (n,)."""
+IntervalRule = Callable[[Compared], Ints]
+"""Which choice of exit speeds is taken: its column for each cut, (n,)."""
 
 
-@dataclass(frozen=True)
-class EarlyRule:
+def early(compared: Compared, ahead_s: float) -> Ints:
     """As early as the margin `ahead_s` to the cut ahead allows; where none does, what leaves it the most."""
-
-    ahead_s: float
-
-    def best(self, compared: Compared) -> Ints:
-        """See above."""
-        able = possible(compared)
-        enough = able & (compared.ahead_s >= self.ahead_s)
-        early = np.where(enough, -compared.arrival_s, -np.inf).argmax(axis=1)
-        most = np.where(able, np.maximum(compared.ahead_s, NONE_S), -np.inf).argmax(axis=1)
-        return np.asarray(np.where(enough.any(axis=1), early, most))
+    able = possible(compared)
+    enough = able & (compared.ahead_s >= ahead_s)
+    soonest = np.where(enough, -compared.arrival_s, -np.inf).argmax(axis=1)
+    most = np.where(able, np.maximum(compared.ahead_s, NONE_S), -np.inf).argmax(axis=1)
+    return np.asarray(np.where(enough.any(axis=1), soonest, most))
 
 
-@dataclass(frozen=True)
-class CentredRule:
+AMPLE_S = 5.0
+"""More margin is not asked for."""
+
+
+def centred(compared: Compared) -> Ints:
     """The least of both margins as large as can be: in the middle between both neighbours, τ = (δ2 − δ1)/2.
 
-    More than `ample_s` is not asked for: among such choices the one with the lowest speeds is taken, since slow cuts
-    leave more brake power to the positions behind.
+    Among choices with ample margins the one with the lowest speeds is taken, since slow cuts leave more brake power to
+    the positions behind.
     """
-
-    ample_s: float = 5.0
-
-    def best(self, compared: Compared) -> Ints:
-        """See above."""
-        margin = np.clip(np.minimum(compared.ahead_s, compared.behind_s), NONE_S, self.ample_s)
-        return np.asarray(np.where(possible(compared), margin - 1e-6 * compared.speeds_m_s, -np.inf).argmax(axis=1))
+    margin = np.clip(np.minimum(compared.ahead_s, compared.behind_s), NONE_S, AMPLE_S)
+    return np.asarray(np.where(possible(compared), margin - 1e-6 * compared.speeds_m_s, -np.inf).argmax(axis=1))
 
 
 NEARLY_M_S = 0.1

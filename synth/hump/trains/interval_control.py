@@ -6,13 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.trains.aim_control import AimControl
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.forecast import from_crest, from_entrance
-from synth.hump.trains.interval import IntervalRule, possible
+from synth.hump.trains.interval import centred, possible
 from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.motion import Moving, Push
 from synth.hump.trains.position_roles import Roles
@@ -21,12 +20,8 @@ from synth.hump.trains.sight import Sight
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import Planner, TrainPlan, apart_m, free_by_s
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ProgramSpeeds:
     """Hump speeds by a program, `speed_m_s` (trains, cuts)."""
 
@@ -84,12 +79,11 @@ class Feedback:
         planner: Planner,
         known: KnownCuts,
         plan: TrainPlan,
-        rule: IntervalRule,
         rollability: Rollability,
         aim: AimControl,
     ) -> None:
         self.planner, self.known, self.plan = planner, known, plan
-        self.rule, self.rollability, self.aim = rule, rollability, aim
+        self.rollability, self.aim = rollability, aim
         self.sight = Sight(planner.routes, known, plan, planner.roles)
 
     def command(self, asked: Asked) -> Floats:
@@ -102,14 +96,14 @@ class Feedback:
         cut, lanes, memory = asked.cut, asked.lanes, asked.memory
         self.sight.learn(cut, memory)
         rows = lanes * self.known.cuts + cut
-        resistance = self.rollability.resistance_n_per_kn(asked)
+        resistance = self.rollability(asked)
         expected = self.known.expected(rows, asked.routes, resistance)
         choices = self.known.choices(rows, asked.routes, self.planner.roles, asked.position)
         ways = from_entrance(routes, expected, asked.start, asked.position, choices)
         later = (memory.crest_s[lanes, cut] - self.plan.crest_s[lanes, cut])[:, None]
         free_by = later + free_by_s(routes, self.known, self.plan.first_in_s, asked.routes, lanes, cut)
         free_from = self.sight.free_from_s(cut, lanes, asked.routes, asked.start.time_s, memory)
-        taken = ways.followed(self.rule.best(ways.compared(free_from, free_by)))
+        taken = ways.followed(centred(ways.compared(free_from, free_by)))
         self.sight.decided(asked, resistance, taken)
         return np.asarray(taken.exit_m_s[:, 0])
 

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY
 from plant_models.rolling.random_cuts import DrawnCuts
 from synth.hump.trains.forecast import Choices, Expected, Given
@@ -18,12 +15,8 @@ from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.route_ways import RouteWays
 from synth.hump.trains.train_cuts import TrainCuts, expected
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class KnownCuts:
     """All cuts of some trains, a row each: `rolls` with mean bends and wind; resistance: `mean_n_per_kn`, and that of
     good and of bad runners, `good_n_per_kn` and `bad_n_per_kn` (rows,). `aim` (rows,): exit speeds of
@@ -82,7 +75,6 @@ def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, braked_m2_s2: Flo
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Runners:
     """Resistances (rows,) that a control reckons with: of mean, good and bad cuts, N/kN."""
 

@@ -7,18 +7,12 @@ they then roll as before.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.motion import Cars
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 MOST_NUMBERS: Final = 8_000_000
 """So many are kept of each leg, 64 MB; of longer trains every roll is worked out anew."""
@@ -28,7 +22,6 @@ Leg = tuple[str, int, int]
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Legs:
     """n cuts that roll with c speeds each, from time 0 on: when the heads are at k marks, `marks_s` (n, c, k); when,
     and with what speed, they are at the end of the leg, (n, c)."""

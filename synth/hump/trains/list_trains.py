@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import PlantError, require
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.hump import Route
 from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.car_mix import CarMix
@@ -16,9 +16,6 @@ from synth.hump.control.sorting_list import SortingList
 from synth.hump.control.train_population import DrawnTrains
 from synth.hump.trains.listed_cars import ListedCars
 from synth.hump.trains.train_cuts import Draw, TrainCuts, cuts_on_routes, routes_to
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def list_trains(

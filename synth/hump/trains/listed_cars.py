@@ -6,12 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.rolling.car_mix import CarMix
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 FITS_M = 0.5
 """Lengths that differ by no more fit the list; where none fits, the nearest do. Assumed: lists round."""

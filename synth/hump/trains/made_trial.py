@@ -11,26 +11,22 @@ from plant_models.cut import Car
 from plant_models.library import load_position
 from plant_models.library.position_entry import PositionEntry
 from synth.frame.input_error import InputError
-from synth.hump.control.sorting_list import SortingList
 from synth.hump.trains.class_choice import ClassChoice
-from synth.hump.trains.free_tracks import AsInFile, DrawnFree, FreeTracks
 from synth.hump.trains.hump_position import HumpPosition
-from synth.hump.trains.hump_speed import HumpSpeedLimits, PairByPair, SpeedMethod, WholeTrain
+from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, pair_by_pair, whole_train
 from synth.hump.trains.normal_hump_position import LibraryBrake, NormalHumpPosition
 from synth.hump.trains.position_choice import PositionChoice
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.route_ways import route_ways
-from synth.hump.trains.skates import Skates
 from synth.hump.trains.table_hump_position import TableHumpPosition
-from synth.hump.trains.tracks_between import Shift
 from synth.hump.trains.train_plan import Planner
-from synth.hump.trains.train_source import DrawnSource, ListSource, TrainSource
-from synth.hump.trains.trial import ConstantSpeed, Control, HumpTrial, Program, Sensing, SimulatedPairs
+from synth.hump.trains.train_source import TrainSource
+from synth.hump.trains.trial import Control, HumpTrial, Sensing
 from synth.hump.trains.trial_aim import trial_aim
 from synth.retarder.book_classes import book_classes
 from synth.retarder.table_class import TableClass
 
-METHODS: dict[str, SpeedMethod] = {"whole-train": WholeTrain(), "pair-by-pair": PairByPair()}
+METHODS: dict[str, SpeedMethod] = {"whole-train": whole_train, "pair-by-pair": pair_by_pair}
 
 
 def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
@@ -40,32 +36,23 @@ def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
     """
     brakes = tuple(brake_of(each, config) for each in config.positions)
     positions = tuple(position_of(each, brake, config) for each, brake in zip(config.positions, brakes, strict=True))
-    usable = config.settings.exit_speeds.usable_share
+    usable, trains = config.settings.exit_speeds.usable_share, config.settings.trains
     return HumpTrial(
-        source=source_of(config),
+        source=TrainSource(
+            config.trains, config.people, config.routes.routes, trains.seed, trains.cuts, trains.one_wind_a_train
+        ),
         routes=config.routes,
         ways=route_ways(config.people, config.routes.routes),
         positions=positions,
         planner=planner_of(config),
-        program=program_of(config),
         control=control_of(config),
         aim=trial_aim(config, threads),
         usable_heads_m=tuple(replace(brake, share=usable * brake.share).head_m for brake in brakes),
         full_heads_m=tuple(brake.head_m for brake in brakes),
-        free=free_of(config),
         threads=threads,
         couplings=config.settings.couplings,
-        skates=skates_of(config),
-        shift=shift_of(config),
+        tracks=config.settings.tracks,
     )
-
-
-def source_of(config: ResolvedTrial) -> TrainSource:
-    """Where trains come from."""
-    trains, routes = config.settings.trains, config.routes.routes
-    if isinstance(config.trains, SortingList):
-        return ListSource(config.trains, config.people, routes, trains.seed, trains.one_wind_a_train)
-    return DrawnSource(config.trains, config.people, routes, trains.seed, trains.cuts, trains.one_wind_a_train)
 
 
 def usual_car(config: ResolvedTrial) -> Car:
@@ -132,12 +119,6 @@ def steps_m_s(config: ResolvedTrial) -> tuple[float, ...]:
     return tuple(round(speed.lowest_m_s + place * speed.step_m_s, 6) for place in range(count))
 
 
-def program_of(config: ResolvedTrial) -> Program:
-    """How hump speeds are found."""
-    constant = config.settings.hump_speed.constant_m_s
-    return SimulatedPairs() if constant is None else ConstantSpeed(constant)
-
-
 def control_of(config: ResolvedTrial) -> Control:
     """How exit speeds are found while a train is humped."""
     exits, aim = config.settings.exit_speeds, config.settings.aim
@@ -146,21 +127,3 @@ def control_of(config: ResolvedTrial) -> Control:
     if for_intervals or for_aim:
         sensing = Sensing(config.settings.sensors.speed_std_m_s, for_aim, for_intervals)
     return Control(exits.feedback, sensing, config.settings.hump_speed.slow_down_s)
-
-
-def skates_of(config: ResolvedTrial) -> Skates:
-    """Skates on the tracks on which no position aims."""
-    rows = np.flatnonzero(~config.roles.aims.any(axis=0))
-    return Skates(config.settings.tracks.skates_share, tuple(rows.tolist()))
-
-
-def shift_of(config: ResolvedTrial) -> Shift:
-    """Which trains come to the same tracks."""
-    tracks = config.settings.tracks
-    return Shift(tracks.shift_trains, tracks.pulled_from_share)
-
-
-def free_of(config: ResolvedTrial) -> FreeTracks:
-    """Where cars stand before each train."""
-    tracks = config.settings.tracks
-    return AsInFile() if tracks.standing == "file" else DrawnFree(tracks.free_low, tracks.free_high)

@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 class LastUsers:
@@ -51,7 +44,6 @@ class LastUsers:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Ahead:
     """The cut ahead on each element of n routes, (n, elements): its place in the train, −1 nobody; how it left the
     points; `time_s` (n, elements, marks)."""
@@ -62,7 +54,6 @@ class Ahead:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Meeting:
     """What n cuts, of which `time_s` is known as far as it is not NaN, do with those ahead: (n, elements) each.
 

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.simulation.free_roll import Rolled
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Moving:
     """Where the heads of n cuts are, how fast, and when: (n,) each. A cut that stopped has speed 0 and time infinite;
     `head_m` is then where it stands."""
@@ -25,12 +19,12 @@ class Moving:
     speed_m_s: Floats
     time_s: Floats
 
-    def chosen(self, which: NDArray[np.bool_] | Ints) -> Moving:
+    def chosen(self, which: Bools | Ints) -> Moving:
         """Some of them."""
         return Moving(self.head_m[which], self.speed_m_s[which], self.time_s[which])
 
 
-def merged(all_lanes: Moving, some: Moving, which: NDArray[np.bool_]) -> Moving:
+def merged(all_lanes: Moving, some: Moving, which: Bools) -> Moving:
     """`all_lanes`, of which those `which` are now as in `some`."""
     head, speed, time = all_lanes.head_m.copy(), all_lanes.speed_m_s.copy(), all_lanes.time_s.copy()
     head[which], speed[which], time[which] = some.head_m, some.speed_m_s, some.time_s
@@ -63,7 +57,6 @@ class CoupledRolls(Rolls, Protocol):
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Cars:
     """Which cuts move, on which routes, (n,) each; `resistance_n_per_kn`: taken for their own, None: their own."""
 
@@ -72,7 +65,7 @@ class Cars:
     routes: Ints
     resistance_n_per_kn: Floats | None = None
 
-    def chosen(self, which: NDArray[np.bool_] | Ints) -> Cars:
+    def chosen(self, which: Bools | Ints) -> Cars:
         """Some of them."""
         own = self.resistance_n_per_kn
         return Cars(self.rolls, self.rows[which], self.routes[which], None if own is None else own[which])
@@ -126,7 +119,6 @@ def even_speed_m_s(entry_m_s: Floats, exit_m_s: Floats, share: Floats) -> Floats
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Push:
     """How n cuts are pushed before they are let go: at an even rate from the speed `before_m_s`, which the train had
     `apart_m` before, when the cut ahead was let go; (n,) each."""

@@ -11,12 +11,12 @@ from scipy.special import ndtri
 
 from plant_models.brake_power import FullBrake
 from plant_models.cut import Car
-from plant_models.errors import require_between
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.library.weight_category import WeightCategories
 from plant_models.retarder import RetarderPosition
 from plant_models.rolling.keyed_numbers import keyed_uniform
 from plant_models.rolling.random_numbers import Purpose
-from synth.hump.trains.hump_position import Arrivals, Floats, Ints, Passed, evenly_braked_s
+from synth.hump.trains.hump_position import Arrivals, Passed, evenly_braked_s
 
 SLOWEST_M_S = 0.3
 """A regulator lets a cut go before it is slower than this, whatever its error."""
@@ -60,9 +60,6 @@ class NormalHumpPosition:
 
     std_m_s: float
     full_brake_head_m: Callable[[Arrivals], Floats]
-
-    def __post_init__(self) -> None:
-        require_between("position: exit_std_m_s", self.std_m_s, 0.0, 3.0)
 
     def passed(self, arrivals: Arrivals) -> Passed:
         """See `HumpPosition`."""

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.tightest_pairs import tightest_pairs
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 USUAL_COUPLINGS = CouplingLimits()
 """By the practice of most yards."""
@@ -33,7 +29,6 @@ GAP_BINS_M = np.linspace(0.0, 600.0, 61)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TrainOutcomes:
     """n trains. Counts of cuts unless told otherwise, (n,).
 
@@ -119,7 +114,6 @@ def some_of(found: TrainOutcomes, rows: Ints) -> TrainOutcomes:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PassLimits:
     """What positions can do with some cuts, (rows, positions): `lowest_m_s`, the lowest command that the control may
     give, NaN where there is no choice; `braked_m2_s2`, most loss of v² to the brake, at mean friction."""
@@ -186,7 +180,6 @@ def outcomes(
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Ends:
     """How cuts ended, (trains, cuts): `caught` ahead of the last position, or `in_last`; `stopped` on the way."""
 

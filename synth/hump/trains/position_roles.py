@@ -6,14 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.forecast import Choices, Given, SpeedRange
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -37,7 +32,6 @@ class Spacing:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Fixed:
     """The exit speed is that of the weight category, `speed_m_s` (categories,), whoever is ahead or behind.
 
@@ -66,7 +60,6 @@ Exits = Spacing | Fixed
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ByRoute:
     """The choices `aim` for the cuts that are aimed, `aims` (n,); `kept` for the others."""
 
@@ -90,7 +83,6 @@ class ByRoute:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Roles:
     """The roles of the positions, in order from the crest.
 

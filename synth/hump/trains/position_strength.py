@@ -2,44 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
-from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.shift_sums import shift_sums
-from synth.hump.trains.train_figures import interval_of, share
+from synth.hump.trains.train_figures import TrainFigure, share
 
 MOST_SHORT: Final = 0.01
 """A position with a larger share of cuts that left too fast for want of brake is too weak for them: assumed."""
 
 
-@dataclass(frozen=True)
-class PositionStrength:
-    """Share of the passes of position `number` that ended faster than commanded for want of brake, with its interval;
-    NaN where there was no pass."""
-
-    number: int
-    share: float
-    low95: float
-    high95: float
-    passes: int
-
-    @property
-    def weak(self) -> bool:
-        """For sure above the limit."""
-        return self.low95 > MOST_SHORT
-
-    @property
-    def told(self) -> Interval | float:
-        """The share as it is shown."""
-        return interval_of(self.share, self.low95, self.high95, self.passes)
+def weak(short: TrainFigure) -> bool:
+    """Whether the share is for sure above the limit."""
+    return short.low95 > MOST_SHORT
 
 
-def strengths(found: TrainOutcomes) -> Iterator[PositionStrength]:
-    """Of all positions, in order from the crest."""
-    for place in range(found.passes.shape[1]):
-        short, passes = (shift_sums(found, each[:, place]) for each in (found.short, found.passes))
-        value, low, high, _ = share(short, passes)
-        yield PositionStrength(place + 1, value, low, high, int(passes.sum()))
+def strengths(found: TrainOutcomes) -> tuple[TrainFigure, ...]:
+    """Of all positions, in order from the crest: the share of the passes that ended faster than commanded for want of
+    brake; NaN where there was no pass."""
+    sums = (
+        [shift_sums(found, each[:, place]) for each in (found.short, found.passes)]
+        for place in range(found.passes.shape[1])
+    )
+    return tuple(TrainFigure("short", "1", *share(short, passes)[:3], int(passes.sum())) for short, passes in sums)

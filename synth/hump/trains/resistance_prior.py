@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY
 from plant_models.rolling.random_cuts import CutPopulation, bend_scales_m
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.train_cuts import TrainCuts
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ResistancePrior:
     """Before any measurement, (rows,): standard deviation of w0, and air of a cut per (m/s)². Head wind: normal.
 

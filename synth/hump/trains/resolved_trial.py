@@ -62,8 +62,6 @@ KEY_OF_PLANT_MESSAGE: Final = {
     "car mix: ": "cars.",
     "car mix: no car": "cars.mix: no car",
     "train: ": "trains.",
-    "tracks: ": "tracks.",
-    "hump speed: ": "hump_speed.",
 }
 """How the plant's messages begin, and the key path in a hump trial configuration that this means."""
 
@@ -156,15 +154,15 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         positions = position_choices(routes.routes, settings.position, file.hump_source.parent, file.folder)
         settings, usual = (filled(each, mix, categories, routes) for each in (settings, HumpTrialSettings()))
         require_whole_shifts(settings)
-        asked = settings_of(len(positions), settings.position, settings.exit_speeds.choices)
-        roles = asked_roles(asked, positions, routes, categories)
+        asked = settings_of(len(positions), settings.position)
+        roles = asked_roles(asked, positions, routes, categories, settings.exit_speeds.choices)
         people = population_of(mix, categories, settings)
         trains = trains_of(settings.trains, file.folder, people, routes)
         require_falling(routes, settings)
         aims = aim_choices(routes, roles, settings.aim, file.hump_source.parent, file.folder)
         for each in aims:
             require_fitting(each, routes, cars_of_cuts(trains, categories), settings.aim.knowledge == "measured")
-    needs = needed_tables(asked.positions, roles, trains, people)
+    needs = needed_tables(asked, roles, trains, people)
     lacking = tuple(unfitting_tables(place, positions, needs, trains, people))
     if lacking:
         raise InputError(*lacking)

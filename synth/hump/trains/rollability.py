@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.expected_way import ExpectedWay
 from synth.hump.trains.free_stretch import SHORTEST_M
@@ -17,30 +16,17 @@ from synth.hump.trains.resistance_prior import ResistancePrior, resistance_prior
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.train_cuts import TrainCuts
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Rollability = Callable[[Asked], Floats]
+"""What a control makes of the cuts that come to a position: the w0 (n,) with which they are expected to roll on, with
+mean bends and mean wind."""
 
 
-class Rollability(Protocol):
-    """What a control makes of the cuts that come to a position."""
-
-    def resistance_n_per_kn(self, asked: Asked) -> Floats:
-        """The w0 (n,) with which they are expected to roll on, with mean bends and mean wind."""
-
-
-@dataclass(frozen=True)
-class CategoryMean:
-    """Nothing is measured: the mean of the category."""
-
-    known: KnownCuts
-
-    def resistance_n_per_kn(self, asked: Asked) -> Floats:
-        """See the class."""
-        return self.known.mean_n_per_kn[asked.lanes * self.known.cuts + asked.cut]
+def mean_of_category(known: KnownCuts, asked: Asked) -> Floats:
+    """That of cuts of which nothing is measured: the mean of their category."""
+    return known.mean_n_per_kn[asked.lanes * known.cuts + asked.cut]
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Belief:
     """What is believed of n cuts, (n,) each: normal resistance whatever the speed, normal wind above its mean, and the
     `covariance` of both."""
@@ -73,7 +59,6 @@ class Belief:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Resistance:
     """Mean and standard deviation of what is expected of n cuts, (n,) each, N/kN."""
 

@@ -5,18 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.cut import GRAVITY_M_S2
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from synth.hump.trains.coupled_cuts import coupled_rows
 from synth.hump.trains.route_ways import RouteWays
 from synth.kernels.roll.felt_track import LANES, Cuts
 from synth.kernels.roll.lane_cuts import CutRows, lay_in_lanes
 from synth.simulation.free_roll import STEP_M, Rolled, in_lanes, long_steps, roll_lanes
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Ints
 from plant_models.hump import Route
 from plant_models.rolling.car_mix import CarMix
 from plant_models.rolling.random_cuts import CutPopulation, bend_scales_m
@@ -50,7 +50,7 @@ def route_ways(population: CutPopulation, routes: tuple[Route, ...], mix: CarMix
     return RouteWays(routes, of_mix, way, rows_of(population, routes, places * each[0].fall_m.size), first_m)
 
 
-def rows_of(population: CutPopulation, routes: tuple[Route, ...], rows_from: NDArray[np.int64]) -> RouteRows:
+def rows_of(population: CutPopulation, routes: tuple[Route, ...], rows_from: Ints) -> RouteRows:
     """What the kernel needs of `routes`, whose tables begin at `rows_from`."""
     bends = [route.roll_track.bends for route in routes]
     shape = len(routes), max(map(len, bends))

@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.hump.trains.outcomes import TrainOutcomes
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def in_shifts(found: TrainOutcomes) -> bool:

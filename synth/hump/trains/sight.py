@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.forecast import Forecast, Given, entrance_m, from_crest, from_entrance
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
@@ -13,9 +13,6 @@ from synth.hump.trains.motion import Moving
 from synth.hump.trains.position_roles import Roles
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import LEADERS, TrainPlan, push_of, shared_needs
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Sight:

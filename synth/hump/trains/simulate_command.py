@@ -3,22 +3,37 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.hump.configuration.trial_file import INPUTS, TrialFile, parse_trial_file, trial_text
 from synth.hump.limits_of_use import CHANCE_ONLY, MODEL_ONLY, NO_SAFETY
-from synth.hump.trains.simulate_options import SimulateOptions
-
-if TYPE_CHECKING:
-    from synth.hump.trains.asked_trial import AskedTrial
-    from synth.hump.trains.humped_trial import HumpedTrial
-    from synth.hump.trains.outcomes import TrainOutcomes
-    from synth.hump.trains.trial import HumpTrial
+from synth.hump.trains.asked_trial import AskedTrial, asked_trial
+from synth.hump.trains.batch import batches
+from synth.hump.trains.chosen_trains import chosen_trains
+from synth.hump.trains.humped_trial import HumpedTrial, humped_trial
+from synth.hump.trains.made_trial import made_trial
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.shift_sums import in_shifts
+from synth.hump.trains.shown.figures import figures
+from synth.hump.trains.shown.first_screen import first_screen
+from synth.hump.trains.shown.one_train import one_train_exhibits, traced_once
+from synth.hump.trains.shown.places import catch_ups, couplings
+from synth.hump.trains.shown.positions import positions
+from synth.hump.trains.shown.program import program_exhibits, pushed_chart
+from synth.hump.trains.shown.shift import shift
+from synth.hump.trains.speed_program import speed_program
+from synth.hump.trains.traced_train import one_train
+from synth.hump.trains.train_engine import engine_for
+from synth.hump.trains.train_run import run_of, run_trials
+from synth.hump.trains.trial import HumpTrial
+from synth.hump.trains.trial_inputs import write_inputs
+from synth.hump.trains.trial_limits import trial_limits
+from synth.hump.trains.trial_options import SimulateOptions
+from synth.kernels.cache import guarded
 
 LIMITS_OF_USE = (
     MODEL_ONLY,
@@ -50,8 +65,6 @@ def resolve(asked: Asked[TrialFile, SimulateOptions]) -> AskedTrains:
     """The trial with what was typed."""
     options = asked.options
     options.require_one("hump simulate")
-    from synth.hump.trains.asked_trial import asked_trial
-
     return AskedTrains(asked_trial(asked.settings, options, options.trains), options)
 
 
@@ -63,18 +76,11 @@ def head(asked: AskedTrains) -> Head:
 
 def steps(asked: AskedTrains) -> Steps:
     """A step for each batch."""
-    from synth.hump.trains.batch import batches
-
     return Steps(batches(asked.number, asked.trial.config.settings.tracks.shift_trains), "humping", "batches")
 
 
 def compute(asked: AskedTrains, work: Work) -> HumpedTrial:
     """All trains; the inputs are copied before, so that what ran can be repeated."""
-    from synth.hump.trains.humped_trial import humped_trial
-    from synth.hump.trains.made_trial import made_trial
-    from synth.hump.trains.trial_inputs import write_inputs
-    from synth.kernels.cache import guarded
-
     started, config = time.monotonic(), asked.trial.config
     write_inputs(asked.trial.file, config, work.directory)
     trial = guarded(made_trial, config)
@@ -85,36 +91,13 @@ def compute(asked: AskedTrains, work: Work) -> HumpedTrial:
 
 def humped(asked: AskedTrains, trial: HumpTrial, work: Work) -> TrainOutcomes:
     """The outcomes of all trains, those of earlier runs among them. Raises `Unfinished` for a batch that fails."""
-    from synth.hump.trains.train_engine import engine_for
-    from synth.hump.trains.train_run import run_of, run_trials
-
     run = run_of(asked.trial.config, trial, asked.number, work.directory)
     (found,) = run_trials((run,), partial(engine_for, asked.options, work.progress.note), work.progress)
     return found
 
 
-def limits(result: HumpedTrial) -> Iterable[Limit]:
-    """Those of the configuration."""
-    from synth.hump.trains.trial_limits import trial_limits
-
-    return trial_limits(result)
-
-
 def show(result: HumpedTrial) -> Iterator[Chapter]:
     """All trains first: whatever becomes of the one that is shown, their figures are written before it is humped."""
-    from synth.hump.trains.chosen_trains import chosen_trains
-    from synth.hump.trains.shift_sums import in_shifts
-    from synth.hump.trains.shown.figures import figures
-    from synth.hump.trains.shown.first_screen import first_screen
-    from synth.hump.trains.shown.one_train import one_train_exhibits, traced_once
-    from synth.hump.trains.shown.places import catch_ups, couplings
-    from synth.hump.trains.shown.positions import positions
-    from synth.hump.trains.shown.program import program_exhibits, pushed_chart
-    from synth.hump.trains.shown.shift import shift
-    from synth.hump.trains.speed_program import speed_program
-    from synth.hump.trains.traced_train import one_train
-    from synth.kernels.cache import guarded
-
     yield Chapter("At a glance", tuple(first_screen(result)))
     yield Chapter("Figures", tuple(figures(result)))
     yield Chapter("Catch-ups", tuple(catch_ups(result)))
@@ -139,7 +122,7 @@ COMMAND = Command(
     steps=steps,
     compute=compute,
     show=show,
-    limits=limits,
+    limits=trial_limits,
     limits_of_use=LIMITS_OF_USE,
     text=trial_text,
     inputs=INPUTS,

@@ -5,18 +5,18 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.hump.configuration.trial_file import TrialFile, parse_trial_file, trial_text
 from synth.hump.limits_of_use import MODEL_ONLY, NO_SAFETY
+from synth.hump.trains.asked_trial import AskedTrial, asked_trial
+from synth.hump.trains.made_trial import made_trial
+from synth.hump.trains.shown.program import planned_chart, program_exhibits
+from synth.hump.trains.speed_program import SpeedProgram, speed_program
 from synth.hump.trains.trial_options import SpeedOptions
+from synth.kernels.cache import guarded
 from tuning_tables.canonical import canonical_json
-
-if TYPE_CHECKING:
-    from synth.hump.trains.asked_trial import AskedTrial
-    from synth.hump.trains.speed_program import SpeedProgram
 
 LIMITS_OF_USE = (
     "A plan expects of each cut what is usual of its weight category, and brakes each position evenly along the path; "
@@ -36,8 +36,6 @@ class AskedProgram:
 
 def resolve(asked: Asked[TrialFile, SpeedOptions]) -> AskedProgram:
     """The trial with what was typed, and the train that is planned."""
-    from synth.hump.trains.asked_trial import asked_trial
-
     return AskedProgram(asked_trial(asked.settings, asked.options), asked.options.train - 1)
 
 
@@ -49,17 +47,8 @@ def head(asked: AskedProgram) -> Head:
     return asked.trial.head(title, canonical_json(depends).decode("utf-8"))
 
 
-def steps(asked: AskedProgram) -> Steps:
-    """What progress counts."""
-    return Steps(1, "planning", "trains")
-
-
 def compute(asked: AskedProgram, work: Work) -> SpeedProgram:
     """The program."""
-    from synth.hump.trains.made_trial import made_trial
-    from synth.hump.trains.speed_program import speed_program
-    from synth.kernels.cache import guarded
-
     program = guarded(speed_program, guarded(made_trial, asked.trial.config), asked.number)
     work.progress.done(f"train {asked.number + 1}: {len(program.rows)} cuts")
     return program
@@ -67,8 +56,6 @@ def compute(asked: AskedProgram, work: Work) -> SpeedProgram:
 
 def show(program: SpeedProgram) -> Iterator[Chapter]:
     """What is shown of it."""
-    from synth.hump.trains.shown.program import planned_chart, program_exhibits
-
     yield Chapter("Program", (*program_exhibits(program, brief=True), planned_chart(program)))
 
 
@@ -78,7 +65,7 @@ COMMAND = Command(
     options=SpeedOptions,
     resolve=resolve,
     head=head,
-    steps=steps,
+    steps=lambda asked: Steps(1, "planning", "trains"),
     compute=compute,
     show=show,
     limits_of_use=LIMITS_OF_USE,

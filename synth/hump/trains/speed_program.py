@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.position_roles import Roles
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_plan import TrainPlan
 from synth.hump.trains.trial import HumpTrial
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,7 @@ def speed_program(trial: HumpTrial, number: int, plan: TrainPlan | None = None) 
     """The program of train `number` of `trial`, whose `plan` may be known already; it is not humped."""
     trains, tracks = trial.train(number)
     known = trial.known(trains, tracks.free_m)
-    plan = trial.program.plan(trial.planner, known) if plan is None else plan
+    plan = trial.planner.plan(known) if plan is None else plan
     exits = planned_m_s(trains, plan, known.aim.speed_m_s, trial.planner.roles)
     return program_of(number, trains, plan, exits, trial.routes)
 

@@ -3,53 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from plant_models.errors import require_between
+from plant_models.frozen_arrays import Floats
 from plant_models.rolling.keyed_numbers import keyed_uniform
 from plant_models.rolling.random_numbers import Purpose
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.free_stretch import StretchSpeeds
 from synth.hump.trains.hump_routes import HumpRoutes
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from synth.hump.trains.train_cuts import TrainCuts
 
 SLOWEST_M_S = 0.05
 """No reading is less."""
-
-
-class SensedTrains(Protocol):
-    """What the sensors need of the cuts of some trains: their lengths and axles, rows = train·n + i, and the seed and
-    the numbers of the trains by which their errors are drawn. `TrainCuts` has it."""
-
-    @property
-    def cuts(self) -> int:
-        """Cuts of a train."""
-
-    @property
-    def numbers(self) -> Ints:
-        """Of the trains."""
-
-    @property
-    def seed(self) -> int:
-        """Of all that is drawn."""
-
-    @property
-    def length_m(self) -> Floats:
-        """Over couplers."""
-
-    @property
-    def first_axle_m(self) -> Floats:
-        """Behind the head."""
-
-    @property
-    def last_axle_m(self) -> Floats:
-        """Behind the head."""
 
 
 @dataclass(frozen=True)
@@ -58,11 +25,8 @@ class SpeedSensors:
     cut and place, the same whoever asks. The hump speed is known without error."""
 
     routes: HumpRoutes
-    trains: SensedTrains
+    trains: TrainCuts
     std_m_s: float = 0.1
-
-    def __post_init__(self) -> None:
-        require_between("speed sensors: std_m_s", self.std_m_s, 1e-4, 2.0)
 
     def stretch(self, asked: Asked, position: int) -> StretchSpeeds:
         """The free stretch ahead of `position`, which is the one asked for or one before it. What is not over when the

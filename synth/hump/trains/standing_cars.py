@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.hump.trains.coupled_cuts import in_turn
 from synth.hump.trains.coupling_on_track import Contact, OnTrack, contact_on_track
 from synth.hump.trains.motion import Cars, CoupledRolls, Moving, rolled_free
 from synth.hump.trains.rolled_on import RolledOn
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 NEARLY_M = 0.05
 """A cut that stops of itself is taken to stand when it has so much to go: the last of it takes time, but no place."""

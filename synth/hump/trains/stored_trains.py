@@ -32,8 +32,5 @@ def stored_trains(directory: Path, said: str) -> StoredTrains:
             raise InputError(f"{said}: there is no {name} in it; give what 'hump simulate' left")
     config = load_trial(directory / CONFIG)
     content = (directory / TRAINS).read_bytes()
-    trial, count = (
-        trains_of(config),
-        config.settings.trains.number,
-    )
-    return StoredTrains(config, from_npz(content, str(directory / TRAINS), trial, count), content)
+    found = from_npz(content, str(directory / TRAINS), trains_of(config), config.settings.trains.number)
+    return StoredTrains(config, found, content)

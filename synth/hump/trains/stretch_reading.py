@@ -6,18 +6,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.free_stretch import SHORTEST_M
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.route_rolling import RouteRolling
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.train_memory import TrainMemory
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class AimReading(Protocol):
@@ -28,7 +24,6 @@ class AimReading(Protocol):
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ReadOnStretch:
     """w = i − (v2² − v1²)/(2 g' L) by the speeds of the first axle at `stretch_m` (routes, 2), as
     `ResistanceByTwoSpeeds` reads it of the cuts that aim tables are made of; NaN for routes without such a stretch.

@@ -6,9 +6,9 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import PlantError, require
+from plant_models.frozen_arrays import Floats
 from plant_models.library.weight_category import WeightCategory
 from synth.aim.readings import MOST_N_PER_KN, ResistanceByTwoSpeeds
 from synth.aim.scene import MeasuredStretch
@@ -18,8 +18,6 @@ from synth.hump.trains.aim_design import AimDesign, MeasuredAhead, scene_of
 from synth.hump.trains.hump_aim import CategoryAim, HumpAim, no_speeds
 from synth.hump.trains.hump_routes import HumpRoutes
 from tuning_tables.aim import AimTable
-
-Floats = NDArray[np.float64]
 
 Kinds = Mapping[WeightCategory, Collection[int]]
 """Numbers of cars of the cuts of each weight category that trains can have."""

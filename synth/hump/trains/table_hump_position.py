@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.class_choice import ClassChoice
-from synth.hump.trains.hump_position import Arrivals, Floats, Ints, Passed
+from synth.hump.trains.hump_position import Arrivals, Passed
 from synth.kernels.loop.passes import Draws
 from synth.retarder.table_class import TableClass, chosen_draws, draws, taken
 from synth.simulation.closed_loop import ClosedLoop
@@ -55,13 +54,12 @@ class TableHumpPosition:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Looped:
     """What the closed loop makes of n cuts under their lower and their higher target, (2, n) each."""
 
     exit_m_s: Floats
     time_s: Floats
-    stalled: NDArray[np.bool_]
+    stalled: Bools
     switchings: Ints
 
     def between(self, share: Floats) -> Passed:

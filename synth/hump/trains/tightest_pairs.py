@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TightestPairs:
     """The tightest pair of each train, (trains,): `interval_s` more than its points needed, 0 where no two cuts share
     an element; `at`, place of the element among the numbers of the routes, −1 for none; `ahead`, `behind`: places

@@ -58,7 +58,7 @@ def one_train(trial: HumpTrial, number: int) -> OneTrain:
 def some_trains(trial: HumpTrial, numbers: Sequence[int]) -> tuple[OneTrain, ...]:
     """The trains `numbers`, from 0; where each has tracks of its own, those among the first few are humped together,
     which takes no longer than one."""
-    most = TYPICAL_AMONG if trial.shift.trains == 1 else 0
+    most = TYPICAL_AMONG if trial.tracks.shift_trains == 1 else 0
     early = [number for number in numbers if number < most]
     together = trial.humped(0, max(early) + 1) if early else None
     return tuple(

@@ -1,44 +1,21 @@
-"""Tracks between the trains of a shift: what stands on them, which are pushed up, and which are pulled."""
+"""Tracks before a train and between the trains of a shift: what stands on them, which are pushed up, and pulled."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.errors import require, require_between
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
+from plant_models.rolling.random_numbers import Purpose, uniform_numbers
+from synth.hump.configuration.settings import TracksSettings
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 SPARE_M = 30.0
 """Room that a cut gets besides its length (assumed)."""
 
 
-@dataclass(frozen=True)
-class Shift:
-    """`trains` come one after the other to the same tracks; a track is pulled between two of them where its cars take
-    `pulled_from_share` of its length."""
-
-    trains: int = 1
-    pulled_from_share: float = 0.8
-
-    def __post_init__(self) -> None:
-        require(self.trains >= 1, f"tracks: shift_trains is {self.trains}; it must be 1 or more")
-        require_between("tracks: pulled_from_share", self.pulled_from_share, 0.0, 1.0)
-
-
-ONE_TRAIN: Final = Shift()
-
-
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Tracks:
     """Tracks before some trains, (trains, routes): `free_m`, where the standing cars begin, metres from the crest;
     `cars_m`: length of all cars that stand there; whether they were `pushed_up`, or `pulled`, just before."""
@@ -47,6 +24,17 @@ class Tracks:
     cars_m: Floats
     pushed_up: Bools
     pulled: Bools
+
+
+def free_before_m(tracks: TracksSettings, routes: HumpRoutes, seed: int, first: int, count: int) -> Floats:
+    """Where standing cars begin on each route, from the crest, before the trains `first` … `first + count − 1`: (count,
+    routes). They stand as the hump file tells, or every share of the length of a track behind its last position and
+    fouling point, from the lowest to the highest, is free equally often."""
+    if tracks.standing == "file":
+        return np.tile(np.array([route.free_to_m for route in routes.routes]), (count, 1))
+    u = uniform_numbers(seed, Purpose.STANDING, first, count, len(routes.routes))
+    begins, low, high = routes.standing_from_m, tracks.free_low, tracks.free_high
+    return np.asarray(begins + (low + (high - low) * u) * (routes.length_m - begins))
 
 
 def tracks_as_drawn(routes: HumpRoutes, trains: TrainCuts, free_m: Floats) -> Tracks:

@@ -6,23 +6,18 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from plant_models.errors import PlantError
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays, read_only
 from plant_models.hump import Route
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts, air_n_per_kn, bend_draws
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
 from synth.hump.control.train_population import DrawnTrains, TrainPopulation
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TrainCuts:
     """Trains of the row `seed`, of `cuts` cuts each, with the `numbers` first, first + apart, …: cut i of train k of
     them is the row k·cuts + i. From `trains` or `list_trains`.
@@ -213,9 +208,3 @@ def routes_to(routes: tuple[Route, ...], lead: Ints, track: Ints) -> Ints:
         row = int(np.argmax(found < 0))
         raise PlantError(f"train: a cut goes to track {track[row]} over lead {lead[row]}; the hump has no such route")
     return found
-
-
-def read_only(array: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]  # of whatever numbers
-    """The same array, which can no longer be written."""
-    array.setflags(write=False)
-    return array

@@ -8,14 +8,12 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import betaincinv, stdtrit
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.shift_sums import in_shifts, longer_shifts, shift_sums
-
-Floats = NDArray[np.float64]
 
 CONFIDENCE = 0.95
 FEWEST_TRAINS = 2
@@ -145,12 +143,12 @@ class FigureOf:
         return value, value - half, value + half
 
 
-def of_cuts(name: str, hits: Callable[[TrainOutcomes], NDArray[np.int64]]) -> FigureOf:
+def of_cuts(name: str, hits: Callable[[TrainOutcomes], Ints]) -> FigureOf:
     """A share of all cuts."""
     return FigureOf(name, "1", lambda found: hits(found).astype(float), lambda found: found.cuts.astype(float), True)
 
 
-def of_judged(name: str, hits: Callable[[TrainOutcomes], NDArray[np.int64]]) -> FigureOf:
+def of_judged(name: str, hits: Callable[[TrainOutcomes], Ints]) -> FigureOf:
     """A share of the cuts that reached a track."""
     return FigureOf(name, "1", lambda found: hits(found).astype(float), lambda found: found.judged.astype(float), True)
 

@@ -6,13 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

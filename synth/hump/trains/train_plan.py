@@ -7,24 +7,19 @@ from the cut ahead by the least interval. Then the exit speeds are chosen anew, 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.forecast import Given, from_crest
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
-from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTrain
-from synth.hump.trains.interval import CentredRule, EarlyRule, IntervalRule, possible
+from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, whole_train
+from synth.hump.trains.interval import IntervalRule, centred, early, possible
 from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.meeting import Ahead, LastUsers
 from synth.hump.trains.motion import Moving, Push
 from synth.hump.trains.position_roles import Roles
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
-WHOLE_TRAIN = WholeTrain()
 
 LEADERS = 4
 """Cuts ahead whose headways are told one by one."""
@@ -37,7 +32,6 @@ FOLLOWERS = 3
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TrainPlan:
     """The plan of some trains, (trains, cuts): `crest_s`, `hump_speed_m_s`, `margin_s`: the largest to those ahead that
     some choice of exit speeds gives; with it, `margins_s` (…, leaders) to the cut 1, 2, … ahead.
@@ -71,20 +65,23 @@ class Planner:
     least_s: float = 0.5
     early_s: float = 0.2
     worst_pair: bool = False
-    method: SpeedMethod = WHOLE_TRAIN
+    method: SpeedMethod = whole_train
     fits: int = 2
     repairs: int = 3
 
     def plan(self, known: KnownCuts) -> TrainPlan:
-        """The plan with the fastest hump speeds that keep the interval; of all turns, the best one for each train."""
+        """The plan with the fastest hump speeds that keep the interval; of all turns, the best one for each train. With
+        one step there is no choice."""
+        if len(self.limits.steps_m_s) == 1:
+            return self.at_speeds(known, np.full((known.trains, known.cuts), self.limits.steps_m_s[0]))
         speeds = np.full((known.trains, known.cuts), self.limits.steps_m_s[len(self.limits.steps_m_s) // 2])
         needs_s = np.full((known.trains, known.cuts, LEADERS), -np.inf)
         best, least_cost = speeds, np.full(known.trains, np.inf)
         first_in_s = np.full((known.trains, known.cuts, self.routes.elements), np.nan)
         for turn in range(self.fits + self.repairs + 1):
             if turn > 0:
-                speeds = self.method.speeds(apart_m(known), needs_s, self.limits)
-            found = Sweep(self, known, speeds, None).run(EarlyRule(self.early_s))
+                speeds = self.method(apart_m(known), needs_s, self.limits)
+            found = Sweep(self, known, speeds, None).run(partial(early, ahead_s=self.early_s))
             cost = self.cost_s(found)
             better = cost < least_cost
             best = np.where(better[:, None], speeds, best)
@@ -92,21 +89,17 @@ class Planner:
             least_cost = np.minimum(cost, least_cost)
             enough = self.headways_s(found)
             needs_s = enough if turn < self.fits else np.maximum(needs_s, enough)
-        return Sweep(self, known, best, first_in_s).run(CentredRule())
+        return Sweep(self, known, best, first_in_s).run(centred)
 
     def cost_s(self, found: TrainPlan) -> Floats:
         """What each train costs (trains,): its time over the crest, and much more for intervals that are too short."""
         short = np.clip(self.least_s - found.margin_s - NEARLY_S, 0.0, MOST_SHORT_S)
         return np.asarray(found.crest_s[:, -1] + SHORT_COSTS * short.sum(axis=1))
 
-    def constant(self, known: KnownCuts, speed_m_s: float) -> TrainPlan:
-        """The plan where all cuts are pushed at one speed."""
-        return self.at_speeds(known, np.full((known.trains, known.cuts), speed_m_s))
-
     def at_speeds(self, known: KnownCuts, speeds_m_s: Floats) -> TrainPlan:
         """The plan with given hump speeds (trains, cuts): exit speeds in the middle between both neighbours."""
-        found = Sweep(self, known, speeds_m_s, None).run(EarlyRule(self.early_s))
-        return Sweep(self, known, speeds_m_s, found.first_in_s).run(CentredRule())
+        found = Sweep(self, known, speeds_m_s, None).run(partial(early, ahead_s=self.early_s))
+        return Sweep(self, known, speeds_m_s, found.first_in_s).run(centred)
 
     def headways_s(self, found: TrainPlan) -> Floats:
         """What each cut needs behind those ahead of it at the crest, (trains, cuts, leaders): what it had less what it
@@ -174,7 +167,7 @@ class Sweep:
         push = push_of(known, self.hump_speed_m_s, cut)
         ways = from_crest(planner.routes, expected, start, push, known.choices(rows, known.route[rows], planner.roles))
         compared = ways.compared(*self.neighbours(cut))
-        taken = ways.followed(rule.best(compared))
+        taken = ways.followed(rule(compared))
         margins = np.where(possible(compared), compared.ahead_s, -np.inf)
         self.margin_s[:, cut] = margins.max(axis=1)
         self.measure(cut, ways.followed(margins.argmax(axis=1)).first_in_s)
@@ -218,12 +211,8 @@ class Sweep:
         free_by = np.full((known.trains, routes.elements), np.inf)
         if self.before_s is not None:
             free_by = free_by_s(routes, known, self.before_s, own, lanes, cut)
-        return leaves_s(ahead) + throws_s(routes, own, ahead), free_by
-
-
-def leaves_s(ahead: Ahead) -> Floats:
-    """When the cuts ahead leave the elements; −∞ where nobody is."""
-    return np.where(ahead.cut >= 0, ahead.time_s[:, :, Mark.LAST_OUT], -np.inf)
+        leaves = np.where(ahead.cut >= 0, ahead.time_s[:, :, Mark.LAST_OUT], -np.inf)  # nobody is there
+        return leaves + throws_s(routes, own, ahead), free_by
 
 
 def throws_s(routes: HumpRoutes, own: Ints, ahead: Ahead) -> Floats:
@@ -245,7 +234,7 @@ def free_by_s(routes: HumpRoutes, known: KnownCuts, first_in_s: Floats, own: Int
     return free_by
 
 
-def shared_needs(routes: HumpRoutes, one: Ints, other: Ints) -> tuple[NDArray[np.bool_], Floats]:
+def shared_needs(routes: HumpRoutes, one: Ints, other: Ints) -> tuple[Bools, Floats]:
     """(which elements the routes `one` and `other` (n,) share, what the points need between two cuts on them), each
     (n, elements)."""
     shared = np.arange(routes.elements)[None, :] < routes.shared(one, other)[:, None]

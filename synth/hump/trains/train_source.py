@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 from plant_models.hump import Route
 from plant_models.rolling.random_cuts import CutPopulation
@@ -13,41 +12,20 @@ from synth.hump.trains.list_trains import list_trains
 from synth.hump.trains.train_cuts import TrainCuts, trains
 
 
-class TrainSource(Protocol):
-    """Where trains come from: a population, or one list again and again."""
-
-    def trains(self, first: int, count: int) -> TrainCuts:
-        """Trains `first` … `first + count − 1`; each is the same whatever the others."""
-
-
 @dataclass(frozen=True)
-class DrawnSource:
-    """Trains of `cuts` cuts of `population`, with law and weather of `people`, over `routes`."""
+class TrainSource:
+    """Trains of `cuts` cuts of a population, or the humped cuts of a list again and again, with cars, law and weather
+    of `people`, over `routes`."""
 
-    population: TrainPopulation
+    of: TrainPopulation | SortingList
     people: CutPopulation
     routes: tuple[Route, ...]
     seed: int
     cuts: int
-    one_wind_a_train: bool
+    one_wind_a_train: bool = False
 
     def trains(self, first: int, count: int) -> TrainCuts:
-        """See `TrainSource`."""
-        return trains(
-            self.population, self.people, self.routes, self.seed, first, count, self.cuts, self.one_wind_a_train
-        )
-
-
-@dataclass(frozen=True)
-class ListSource:
-    """The humped cuts of `cuts`, with cars, law and weather of `people`, over `routes`."""
-
-    cuts: SortingList
-    people: CutPopulation
-    routes: tuple[Route, ...]
-    seed: int
-    one_wind_a_train: bool
-
-    def trains(self, first: int, count: int) -> TrainCuts:
-        """See `TrainSource`."""
-        return list_trains(self.cuts, self.people, self.routes, self.seed, first, count, self.one_wind_a_train)
+        """Trains `first` … `first + count − 1`; each is the same whatever the others."""
+        if isinstance(self.of, SortingList):
+            return list_trains(self.of, self.people, self.routes, self.seed, first, count, self.one_wind_a_train)
+        return trains(self.of, self.people, self.routes, self.seed, first, count, self.cuts, self.one_wind_a_train)

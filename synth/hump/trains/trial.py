@@ -2,45 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
-from plant_models.errors import require, require_between
+from plant_models.errors import require
+from plant_models.frozen_arrays import Floats, Ints
 from synth.hump.configuration.coupling_limits import CouplingLimits
+from synth.hump.configuration.settings import TracksSettings
 from synth.hump.trains.aim_control import AimControl, ReadAhead
 from synth.hump.trains.asked import ExitSpeeds, HumpSpeeds
 from synth.hump.trains.expected_way import ExpectedWay
 from synth.hump.trains.forecast import Given
-from synth.hump.trains.free_tracks import FreeTracks
 from synth.hump.trains.hump_aim import HumpAim
 from synth.hump.trains.hump_position import HumpPosition
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.humping import Hump, humped
-from synth.hump.trains.interval import CentredRule, IntervalRule
 from synth.hump.trains.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
 from synth.hump.trains.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
 from synth.hump.trains.outcomes import USUAL_COUPLINGS, PassLimits, TrainOutcomes, in_order, outcomes
-from synth.hump.trains.rollability import CategoryMean, Rollability, measured_rollability
+from synth.hump.trains.rollability import Rollability, mean_of_category, measured_rollability
 from synth.hump.trains.route_rolling import RouteRolling, rolling_on
 from synth.hump.trains.route_ways import RouteWays
-from synth.hump.trains.skates import NO_SKATES, Skates
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.stretch_reading import AimReading, ReadByRoute, ReadOnStretch
-from synth.hump.trains.tracks_between import ONE_TRAIN, Shift, Tracks, tracks_as_drawn, tracks_left
+from synth.hump.trains.tracks_between import Tracks, free_before_m, tracks_as_drawn, tracks_left
 from synth.hump.trains.train_cuts import TrainCuts, expected
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_plan import Planner, TrainPlan
 from synth.hump.trains.train_source import TrainSource
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
-CENTRED = CentredRule()
+USUAL_TRACKS = TracksSettings()
 
 WORST_ENTRY_M_S = 1.0
 """Assumed: bad runners against the wind come to the last position with this at least."""
@@ -51,42 +46,8 @@ USUAL_M_S = 4.0
 BATCH = 250
 """Shifts that are humped side by side; no figure depends on it."""
 
-
-class BrakeHead(Protocol):
-    """What a position can take from cuts."""
-
-    def __call__(self, mass_t: Floats, axles: Ints, category: Ints) -> Floats:
-        """Energy head (rows,), metres."""
-
-
-class Program(Protocol):
-    """How hump speeds and the exit speeds before the train are found."""
-
-    def plan(self, planner: Planner, known: KnownCuts) -> TrainPlan:
-        """The plan of some trains."""
-
-
-@dataclass(frozen=True)
-class SimulatedPairs:
-    """Hump speeds from simulated pairs of cuts, by the method of the planner."""
-
-    def plan(self, planner: Planner, known: KnownCuts) -> TrainPlan:
-        """See `Program`."""
-        return planner.plan(known)
-
-
-@dataclass(frozen=True)
-class ConstantSpeed:
-    """One hump speed for all cuts."""
-
-    speed_m_s: float
-
-    def __post_init__(self) -> None:
-        require_between("hump speed: constant_m_s", self.speed_m_s, 0.3, 4.0)
-
-    def plan(self, planner: Planner, known: KnownCuts) -> TrainPlan:
-        """See `Program`."""
-        return planner.constant(known, self.speed_m_s)
+BrakeHead = Callable[[Floats, Ints, Ints], Floats]
+"""Energy head (rows,), metres, that a position can take from cuts, by mass, axles and category."""
 
 
 @dataclass(frozen=True)
@@ -106,13 +67,12 @@ class Control:
     """`feedback`: exit speeds of the interval positions are chosen when a cut comes; else as planned before the train.
 
     `sensing` None: the resistance of a cut is that of its category. `slow_down_s`: a feedback slows the train down for
-    a cut that would come closer than this to those ahead of it; None: never. `rule`: of the feedback.
+    a cut that would come closer than this to those ahead of it; None: never.
     """
 
     feedback: bool = True
     sensing: Sensing | None = None
     slow_down_s: float | None = None
-    rule: IntervalRule = CENTRED
 
 
 @dataclass(frozen=True)
@@ -129,11 +89,10 @@ class Turn:
 class HumpTrial:
     """Trains from `source` over `routes`, whose `ways` are the routes as their cars feel them.
 
-    `positions`: models in order from the crest, of every route that has so many; `planner` has their roles; `free`:
-    tracks before each train, or before the first one of each `shift`. `aim`: exit speeds of the positions that aim, by
-    route; `usable_heads_m`: energy head (rows,) that each position can be trusted to take from cuts, by mass, axles and
-    category; `full_heads_m`: what it takes at mean friction. `skates`: on the tracks. `couplings`: which couplings are
-    too fast.
+    `positions`: models in order from the crest, of every route that has so many; `planner` has their roles; `tracks`:
+    where cars stand before each train, or before the first one of each shift, and skates. `aim`: exit speeds of the
+    positions that aim, by route; `usable_heads_m`: what each position can be trusted to take from cuts; `full_heads_m`:
+    what it takes at mean friction. `couplings`: which couplings are too fast.
     """
 
     source: TrainSource
@@ -141,16 +100,13 @@ class HumpTrial:
     ways: RouteWays
     positions: tuple[HumpPosition, ...]
     planner: Planner
-    program: Program
     control: Control
     aim: HumpAim
     usable_heads_m: tuple[BrakeHead, ...]
     full_heads_m: tuple[BrakeHead, ...]
-    free: FreeTracks
     threads: int = 0
     couplings: CouplingLimits = USUAL_COUPLINGS
-    skates: Skates = NO_SKATES
-    shift: Shift = ONE_TRAIN
+    tracks: TracksSettings = USUAL_TRACKS
 
     def __post_init__(self) -> None:
         require(
@@ -167,7 +123,7 @@ class HumpTrial:
     def outcomes(self, trains: TrainCuts, memory: TrainMemory) -> TrainOutcomes:
         """What trains came to that were humped here."""
         able = self.able(trains, memory.route.ravel())
-        return outcomes(self.routes, trains, memory, able, self.couplings, self.shift.trains)
+        return outcomes(self.routes, trains, memory, able, self.couplings, self.tracks.shift_trains)
 
     def able(self, trains: TrainCuts, route: Ints) -> PassLimits:
         """What the positions can do with the cuts of `trains`, which went on `route` (rows,)."""
@@ -191,7 +147,7 @@ class HumpTrial:
 
         They are whole shifts, or the beginning of one.
         """
-        drawn, of_shift = self.source.trains(first, count), self.shift.trains
+        drawn, of_shift = self.source.trains(first, count), self.tracks.shift_trains
         trains = drawn.every(of_shift)
         turn = self.turn(trains, self.first_tracks(trains))
         yield turn
@@ -202,7 +158,7 @@ class HumpTrial:
 
     def train(self, number: int) -> tuple[TrainCuts, Tracks]:
         """The train `number` and the tracks that it finds; for these, the trains of its shift before it are humped."""
-        trains, place = self.source.trains(number, 1), number % self.shift.trains
+        trains, place = self.source.trains(number, 1), number % self.tracks.shift_trains
         if place == 0:
             return trains, self.first_tracks(trains)
         *_, before = self.turns(number - place, place)
@@ -210,18 +166,19 @@ class HumpTrial:
 
     def tracks_behind(self, turn: Turn, coming: TrainCuts) -> Tracks:
         """The tracks that the trains find which are `coming` behind those of `turn`."""
-        return tracks_left(self.routes, turn.tracks, turn.memory, turn.trains, coming, self.shift.pulled_from_share)
+        return tracks_left(self.routes, turn.tracks, turn.memory, turn.trains, coming, self.tracks.pulled_from_share)
 
     def first_tracks(self, trains: TrainCuts) -> Tracks:
         """The tracks that `trains` find which begin a shift."""
         numbers = trains.numbers
-        free_m = self.free.free_m(self.routes, trains.seed, trains.first, int(numbers[-1]) + 1 - trains.first)
+        count = int(numbers[-1]) + 1 - trains.first
+        free_m = free_before_m(self.tracks, self.routes, trains.seed, trains.first, count)
         return tracks_as_drawn(self.routes, trains, free_m[:: trains.apart])
 
     def turn(self, trains: TrainCuts, tracks: Tracks) -> Turn:
         """What becomes of `trains` that find these `tracks`."""
         known, rolls = self.known(trains, tracks.free_m), self.rolls_of(trains)
-        plan = self.program.plan(self.planner, known)
+        plan = self.planner.plan(known)
         hump = self.hump_for(rolls)
         control = self.control_of(trains, known, plan, self.aim_of(trains, known, rolls))
         speeds: HumpSpeeds = ProgramSpeeds(plan.hump_speed_m_s)
@@ -237,7 +194,8 @@ class HumpTrial:
 
     def hump_for(self, rolls: RouteRolling) -> Hump:
         """The hump for the trains whose `rolls` these are."""
-        return Hump(self.routes, self.positions, rolls, self.skates)
+        aimed, left = self.planner.roles.aims.any(axis=0), np.sqrt(1.0 - self.tracks.skates_share)
+        return Hump(self.routes, self.positions, rolls, np.where(aimed, 1.0, left))
 
     def known(self, trains: TrainCuts, free_m: Floats) -> KnownCuts:
         """What is known of trains before they are humped, and how they will be aimed if tracks stay as they are."""
@@ -283,11 +241,11 @@ class HumpTrial:
         if not self.control.feedback:
             return OpenLoop(plan, self.planner.roles, aim)
         sensing = self.control.sensing
-        rollability: Rollability = CategoryMean(known)
+        rollability: Rollability = partial(mean_of_category, known)
         if sensing is not None and sensing.for_intervals:
             sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
-            rollability = measured_rollability(sensors, trains, expected_way(trains, known))
-        return Feedback(self.planner, known, plan, self.control.rule, rollability, aim)
+            rollability = measured_rollability(sensors, trains, expected_way(trains, known)).resistance_n_per_kn
+        return Feedback(self.planner, known, plan, rollability, aim)
 
 
 def expected_way(trains: TrainCuts, known: KnownCuts) -> ExpectedWay:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Ints
 from synth.aim.knowledge import ByCategory, Requirement
 from synth.aim.position_models import NormalPosition
 from synth.hump.trains.aim_design import AimDesign, MeasuredAhead, hump_aim
@@ -18,7 +18,7 @@ from synth.retarder.forms.tables_at import tables_at
 
 def trial_aim(config: ResolvedTrial, threads: int) -> HumpAim:
     """The exit speeds of the position that aims on each route; `threads` choose them."""
-    parts: list[tuple[NDArray[np.int64], HumpAim]] = []
+    parts: list[tuple[Ints, HumpAim]] = []
     for choice in config.aims:
         design = design_of(config, threads, config.positions[-1])
         parts.append((np.array(choice.rows), table_aim(choice, config.routes, config.kinds, design)))

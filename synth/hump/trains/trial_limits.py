@@ -9,7 +9,7 @@ from synth.frame.command import Limit
 from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.outcomes import caught_at
-from synth.hump.trains.position_strength import strengths
+from synth.hump.trains.position_strength import strengths, weak
 from synth.hump.trains.train_figures import TrainFigure
 
 JUDGES_NOTHING: Final = 1.0
@@ -78,12 +78,12 @@ def not_aimed(result: HumpedTrial) -> str:
 
 def too_weak(result: HumpedTrial) -> str:
     """The positions whose brake is too weak for these trains."""
-    weak = (
-        f"position {each.number} let {100.0 * each.share:.3g} % of its cuts go too fast for want of brake"
-        for each in strengths(result.found)
-        if each.weak
+    told = (
+        f"position {number} let {100.0 * each.value:.3g} % of its cuts go too fast for want of brake"
+        for number, each in enumerate(strengths(result.found), start=1)
+        if weak(each)
     )
-    return "; ".join(weak)
+    return "; ".join(told)
 
 
 REASONS: Final[Mapping[str, tuple[Callable[[HumpedTrial], str], ...]]] = {

@@ -1,10 +1,11 @@
-"""What is typed behind every command that humps trains, and behind `hump speed`."""
+"""What is typed behind every command that humps trains, and behind `hump simulate` and `hump speed`."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from synth.frame.settings.options import BY_PLACE, Options, configured, number_option, word_option
+from synth.frame.workers.engine_options import EngineOptions
 from synth.hump.configuration.counted_trains import CountedTrains
 
 
@@ -16,6 +17,12 @@ class TrialOptions(Options):
     )
     sorting_list: Path | None = word_option("--list", "CSV", None, "A sorting list, that of every train.")
     seed: int | None = configured("--seed", "N", CountedTrains, "seed", "Of the random numbers")
+
+
+class SimulateOptions(TrialOptions, EngineOptions):
+    """How many trains, and where they are humped."""
+
+    trains: int | None = configured("--trains", "N", CountedTrains, "number", "Trains")
 
 
 class SpeedOptions(TrialOptions):

@@ -57,19 +57,13 @@ def trial_numbers(
 def sections_in_force(settings: HumpTrialSettings, designed: bool) -> Iterator[str]:
     """The sections whose numbers trains depend on, or by which they are judged."""
     measured = "measured" in (settings.aim.knowledge, settings.exit_speeds.knowledge)
-    conditions = {
-        "trains": True,
-        "weather": True,
-        "resistance": settings.resistance.law == "hump-norm",
-        "tracks": True,
-        "hump_speed": True,
-        "exit_speeds": True,
-        "aim": designed,
-        "couplings": True,
-        "sensors": measured,
-        "acceptance": True,
-    }
-    return (section for section, counts in conditions.items() if counts)
+    yield from ("trains", "weather")
+    yield from ("resistance",) if settings.resistance.law == "hump-norm" else ()
+    yield from ("tracks", "hump_speed", "exit_speeds")
+    yield from ("aim",) if designed else ()
+    yield "couplings"
+    yield from ("sensors",) if measured else ()
+    yield "acceptance"
 
 
 def category_values(settings: HumpTrialSettings, categories: WeightCategories) -> Iterator[SourcedValue]:

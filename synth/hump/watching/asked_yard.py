@@ -13,6 +13,7 @@ from synth.frame.command import Asked, Head
 from synth.frame.input_error import InputError
 from synth.frame.settings.numbers import numbers_of
 from synth.hump.configuration.trial_file import read_trial_file
+from synth.hump.trains.asked_trial import AskedTrial
 from synth.hump.trains.position_choice import retarders_at
 from synth.hump.trains.resolved_trial import ResolvedTrial, resolve_trial
 from synth.hump.trains.trial_inputs import files_read
@@ -48,20 +49,12 @@ class AskedPosition:
 
 
 @dataclass(frozen=True)
-class PricedOn:
-    """The trial that tells what a drift costs; `reads`: what it was read from."""
-
-    config: ResolvedTrial
-    reads: tuple[Path, ...]
-
-
-@dataclass(frozen=True)
 class AskedYard:
-    """All positions, and the trial, if there is one."""
+    """All positions, and the trial that tells what a drift costs, if there is one."""
 
     settings: YardWatchSettings
     positions: tuple[AskedPosition, ...]
-    trial: PricedOn | None
+    trial: AskedTrial | None
 
     @property
     def head(self) -> Head:
@@ -89,7 +82,7 @@ class AskedYard:
     def _reads(self) -> Iterator[Path]:
         for each in self.positions:
             yield from each.reads
-        yield from () if self.trial is None else self.trial.reads
+        yield from () if self.trial is None else files_read(self.trial.file, self.trial.config)
 
 
 def asked_yard(asked: Asked[YardWatchSettings, YardWatchOptions]) -> AskedYard:
@@ -133,7 +126,7 @@ def mapping_in(path: Path | None) -> LogMapping | None:
         raise InputError(str(fault)) from None
 
 
-def priced_on(asked: Asked[YardWatchSettings, YardWatchOptions]) -> PricedOn:
+def priced_on(asked: Asked[YardWatchSettings, YardWatchOptions]) -> AskedTrial:
     """The trial, with the trains that drifts are priced on."""
     assert asked.settings.trial is not None
     cost = asked.settings.cost
@@ -145,7 +138,7 @@ def priced_on(asked: Asked[YardWatchSettings, YardWatchOptions]) -> PricedOn:
             f"{asked.place}: cost.number is {cost.number}, but a shift of {file.place} has {of_shift} trains; give "
             f"{FEWEST_SHIFTS * of_shift} or more"
         )
-    return PricedOn(config, tuple(files_read(file, config)))
+    return AskedTrial(file, config)
 
 
 def hump_positions(config: ResolvedTrial) -> dict[int, int]:
@@ -155,7 +148,7 @@ def hump_positions(config: ResolvedTrial) -> dict[int, int]:
 
 
 def hump_position(
-    each: WatchedPositionSettings, places: dict[int, int], trial: PricedOn | None, place: str
+    each: WatchedPositionSettings, places: dict[int, int], trial: AskedTrial | None, place: str
 ) -> int | None:
     """The position of its retarder; `InputError` where the hump has no such retarder."""
     if each.retarder is None or trial is None:

@@ -11,10 +11,9 @@ from functools import reduce
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.frame.interval import Interval
 from synth.hump.trains.batch import trains_of_batch
 from synth.hump.trains.hump_position import Arrivals, HumpPosition, Passed
@@ -23,8 +22,7 @@ from synth.hump.trains.outcomes import TrainOutcomes, joined
 from synth.hump.trains.shift_sums import shift_sums
 from synth.hump.trains.train_figures import Of
 from synth.hump.trains.trial import HumpTrial
-
-Floats = NDArray[np.float64]
+from synth.hump.watching.settings import CostSettings
 
 FEWEST_ERRORS: Final = 10
 """Passes on each side of the beginning of a drift; fewer do not tell how cuts leave."""
@@ -37,7 +35,6 @@ SUMMED: Final = ("value", "residual", "slope", "least")
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class MeasuredRetarder:
     """A position of which one `retarder` lets cuts go with measured errors, and the others as `others` do.
 
@@ -66,15 +63,6 @@ class MeasuredRetarder:
 
 
 @dataclass(frozen=True)
-class Weights:
-    """What counts in the order of repairs, in cars that must be humped again: `overspeed` of a coupling that is too
-    fast, `gap_m` of a metre of gap."""
-
-    overspeed: float
-    gap_m: float
-
-
-@dataclass(frozen=True)
 class Retarder:
     """One retarder of the hump of `trial`, by its number, that of its position from 0, and its `brake`."""
 
@@ -89,13 +77,12 @@ class Retarder:
         positions[self.position] = MeasuredRetarder(
             positions[self.position], self.number, np.sort(errors_m_s, axis=1), self.brake
         )
-        trial, most = replace(self.trial, positions=tuple(positions)), trains_of_batch(self.trial.shift.trains)
+        trial, most = replace(self.trial, positions=tuple(positions)), trains_of_batch(self.trial.tracks.shift_trains)
         parts = [trial.batch(first, min(most, trains - first)) for first in range(0, trains, most)]
         return joined(parts)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Difference:
     """A figure with the drift less without: its `value`, what each shift of trains differs from that by (shifts,), its
     `slope` (2,) over mean and spread of the drawn errors, whose covariance `law` is (2, 2), and the `least` half width
@@ -147,13 +134,13 @@ class DriftCost:
     cars_lost_per_hour: Difference
     gap_m_per_hour: Difference
 
-    def weight_per_hour(self, weights: Weights) -> Difference:
+    def weight_per_hour(self, weights: CostSettings) -> Difference:
         """All that has become worse, in cars an hour. What has become better does not make up for it: a drift towards
         slow exits has fewer over-speeds, and is a drift all the same."""
         parts = (
             (1.0, self.cars_lost_per_hour),
-            (weights.overspeed, self.overspeeds_per_hour),
-            (weights.gap_m, self.gap_m_per_hour),
+            (weights.cars_per_overspeed, self.overspeeds_per_hour),
+            (weights.cars_per_gap_m, self.gap_m_per_hour),
         )
         worse = [part.times(weight) for weight, part in parts if part.value > 0.0]
         return reduce(Difference.plus, worse) if worse else self.cars_lost_per_hour
@@ -167,7 +154,7 @@ def drift_cost(retarder: Retarder, before_m_s: Floats, since_m_s: Floats, trains
     rng = np.random.Generator(np.random.SFC64(np.random.SeedSequence(retarder.number)))
     drawn = [each[rng.integers(0, len(each), (trains, len(each)))] for each in known]
     found = [retarder.humped(each, trains) for each in drawn]
-    law = np.stack([moment(drawn[1]) - moment(drawn[0]) for moment in (mean_of, std_of)], axis=1)
+    law = np.stack([moment(drawn[1], axis=1) - moment(drawn[0], axis=1) for moment in (np.mean, np.std)], axis=1)
 
     hours = float(found[0].span_s.sum()) / 3600.0
 
@@ -191,16 +178,6 @@ def overspeeds(found: TrainOutcomes) -> Floats:
 def good_cars(found: TrainOutcomes) -> Floats:
     """Cars of each train that need not be humped again: those of cuts that caught up must be."""
     return np.asarray(found.span_cars - found.caught * found.cars / found.cuts)
-
-
-def mean_of(errors: Floats) -> Floats:
-    """Of each train."""
-    return np.asarray(errors.mean(axis=1))
-
-
-def std_of(errors: Floats) -> Floats:
-    """Of each train."""
-    return np.asarray(errors.std(axis=1))
 
 
 def difference(found: list[TrainOutcomes], of: Of, law: Floats, least: float) -> Difference:

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import stdtrit
 from scipy.stats import chi2
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.interval import Interval
 
 FEWEST = 3
@@ -24,7 +24,7 @@ class ExitLaw:
     std_m_s: Interval
 
 
-def exit_law(errors_m_s: NDArray[np.float64]) -> ExitLaw | None:
+def exit_law(errors_m_s: Floats) -> ExitLaw | None:
     """Of the errors that are known; None for fewer than `FEWEST`."""
     known = errors_m_s[np.isfinite(errors_m_s)]
     n = len(known)

@@ -11,6 +11,7 @@ from plant_models.hump.element_number import RETARDERS
 from plant_models.library.sourced_value import JUDGEMENT
 from synth.frame.settings.output import OutputSettings
 from synth.frame.settings.section import Section, choice, many, optional, setting
+from synth.frame.settings.template import NOTHING, template
 from synth.frame.settings.value_forms import Title, printable
 from synth.hump.configuration.counted_trains import CountedTrains
 
@@ -104,3 +105,12 @@ class YardWatchSettings(Section):
 EXAMPLE: Final = YardWatchSettings(
     position=(WatchedPositionSettings(name="401"), WatchedPositionSettings(name="402")),
 )
+
+EXAMPLE_LINES = (
+    "Two positions as an example:\n# put those of your yard in their place. A name is all that a position needs."
+)
+
+
+def example_yard_toml() -> str:
+    """Two positions with the built-in plant."""
+    return template(EXAMPLE, "Yard that is watched", "hump watch", NOTHING, (), EXAMPLE_LINES)

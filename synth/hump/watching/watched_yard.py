@@ -18,7 +18,7 @@ from synth.hump.trains.made_trial import brake_of, made_trial
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.trial import HumpTrial
 from synth.hump.watching.asked_yard import AskedPosition, AskedYard
-from synth.hump.watching.drift_cost import Difference, DriftCost, Retarder, Weights, drift_cost
+from synth.hump.watching.drift_cost import Difference, DriftCost, Retarder, drift_cost
 from synth.logs.drift.kept_file import from_npz, to_npz
 from synth.logs.drift.kept_watch import KeptWatch, WatchedNight, watched_night
 from synth.logs.drift.watch import Drift, Watch
@@ -147,7 +147,6 @@ def passes_of(asked: AskedPosition) -> tuple[PassLog | None, tuple[str, ...]]:
 def repairs_in(asked: AskedYard, positions: Sequence[WatchedPosition], progress: Progress) -> Iterator[Repair]:
     """The drifts of all positions, each priced where that can be done."""
     cost = asked.settings.cost
-    weights = Weights(cost.cars_per_overspeed, cost.cars_per_gap_m)
     pricing = None if asked.trial is None else Pricing(asked.trial.config)
     for each, watch in ((each, each.night.found) for each in positions):
         if watch is None or watch.drift is None:
@@ -159,7 +158,7 @@ def repairs_in(asked: AskedYard, positions: Sequence[WatchedPosition], progress:
             found = drift_cost(retarder, watch.errors_m_s[:begin], watch.errors_m_s[begin:], cost.number)
             why = FEW_PASSES if found is None else ""
             progress.note(f"{each.asked.name}: drift priced on {cost.number} trains")
-        weight = None if found is None else found.weight_per_hour(weights)
+        weight = None if found is None else found.weight_per_hour(cost)
         yield Repair(each, watch, watch.drift, found, weight, why)
 
 

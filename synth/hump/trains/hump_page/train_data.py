@@ -7,8 +7,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from plant_models.hump import HumpGraph
 from synth.hump.trains.train_trace import Alarm, AlarmKind, TracedCut, TrainTrace
 
@@ -100,7 +100,7 @@ def words(alarm: Alarm, graph: HumpGraph) -> str:
     return told if alarm.number is None else f"{told} at {graph.element_called(alarm.number)}"
 
 
-def differences(values: NDArray[np.float64]) -> list[int]:
+def differences(values: Floats) -> list[int]:
     """The first value and the steps to the next ones, in hundredths; sums of them err by half a hundredth at most."""
     whole = np.round(values * HUNDREDTHS).astype(np.int64)
     return [int(step) for step in np.diff(whole, prepend=0)]

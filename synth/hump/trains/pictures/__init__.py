@@ -2,16 +2,15 @@
 
 from synth.hump.trains.pictures.catch_ups import catch_ups
 from synth.hump.trains.pictures.couplings import couplings
-from synth.hump.trains.pictures.hump_speed_program import hump_speed_program, planned_train, pushed_train
+from synth.hump.trains.pictures.hump_speed_program import PushedTrain, hump_speed_program
 from synth.hump.trains.pictures.speed_path import speed_path
 from synth.hump.trains.pictures.time_path import time_path
 
 __all__ = [
+    "PushedTrain",
     "catch_ups",
     "couplings",
     "hump_speed_program",
-    "planned_train",
-    "pushed_train",
     "speed_path",
     "time_path",
 ]

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.typing import LineStyleType
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.frame.picture.house_style import (
     BLUE,
     INK,
@@ -26,8 +26,6 @@ from synth.frame.picture.house_style import (
 from synth.frame.printed_numbers import counted
 from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.outcomes import GAP_BINS_M, SPEED_BINS_M_S, USUAL_COUPLINGS, TrainOutcomes
-
-Counts = NDArray[np.int64]
 
 CLASS_LINES: tuple[tuple[str, LineStyleType], ...] = ((ORANGE, "-"), (VERMILLION, "--"), (PURPLE, "-."))
 """Of where each class of over-speeds begins."""
@@ -57,7 +55,7 @@ def couplings(found: TrainOutcomes, limits: CouplingLimits = USUAL_COUPLINGS) ->
     return figure
 
 
-def draw_bins(axes: Axes, counts: Counts, edges: NDArray[np.float64]) -> None:
+def draw_bins(axes: Axes, counts: Ints, edges: Floats) -> None:
     """Bars up to the last bin that has any; empty bins behind it are left out."""
     if not counts.any():
         axes.text(0.5, 0.5, "none", transform=axes.transAxes, ha="center", va="center", fontsize=11, color=INK)

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.frame.picture.house_style import BLUE, INK, SKY, dress, legend_below, new_figure, place
-from synth.hump.trains.speed_program import SpeedProgram
-from synth.hump.trains.train_trace import TrainTrace
-
-Floats = NDArray[np.float64]
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PushedTrain:
     """Hump speeds of the train `number`, from 0, (cuts,): each cut has `speed_m_s` at `crest_s`, when its middle is at
     the crest; between two such moments the train is pushed at an even rate."""
@@ -36,25 +28,6 @@ class PushedTrain:
             return float(self.speed_m_s[0])
         pushed = self.length_m.sum() - 0.5 * (self.length_m[0] + self.length_m[-1])
         return float(pushed / (self.crest_s[-1] - self.crest_s[0]))
-
-
-def pushed_train(trace: TrainTrace) -> PushedTrain:
-    """How a traced train was pushed."""
-    cuts = trace.cuts
-    return PushedTrain(
-        trace.number,
-        np.array([cut.crest_s for cut in cuts]),
-        np.array([cut.hump_speed_m_s for cut in cuts]),
-        np.array([cut.length_m for cut in cuts]),
-    )
-
-
-def planned_train(program: SpeedProgram) -> PushedTrain:
-    """How a train is to be pushed; times since its first cut was at the crest."""
-    time_s, speed_m_s, length_m = (
-        np.array([getattr(row, key) for row in program.rows]) for key in ("time_s", "hump_speed_m_s", "length_m")
-    )
-    return PushedTrain(program.number, time_s, speed_m_s, length_m)
 
 
 def hump_speed_program(program: PushedTrain) -> Figure:

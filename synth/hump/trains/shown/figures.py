@@ -10,7 +10,7 @@ from synth.frame.exhibits import Column, Exhibit, File, Row, Sentence, Table
 from synth.frame.printed_numbers import three_figures
 from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.outcome_file import TRAINS, to_npz
+from synth.hump.trains.outcome_file import TRAINS, to_npz, trains_of
 from synth.hump.trains.shift_sums import in_shifts
 from synth.hump.trains.train_figures import TrainFigure
 
@@ -80,7 +80,7 @@ def figures(result: HumpedTrial) -> Iterator[Exhibit]:
     yield Table("means", "Means over trains", (*MEANS, counted), means, brief=True)
     yield Table("shares", "Shares of cuts", SHARES, shares, brief=True)
     yield Sentence(HOW_TO_READ)
-    yield File(TRAINS, to_npz(found, result.of_trial))
+    yield File(TRAINS, to_npz(found, trains_of(config)))
 
 
 def titles_of(limits: CouplingLimits) -> dict[str, str]:

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Ints
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import decimals, three_figures
 from synth.hump.trains.humped_trial import HumpedTrial
@@ -103,7 +103,7 @@ def where_closest(result: HumpedTrial) -> str:
         return "What limits the speed: no two cuts shared an element."
     counts = np.bincount(found.tightest_at[there], minlength=len(routes.numbers))
     places = told_most(counts, [routes.graph.element_called(number) for number in routes.numbers])
-    names = result.category_names
+    names = [member.label for member in result.config.categories.members]
     pairs = np.bincount(
         found.tightest_ahead[there] * len(names) + found.tightest_behind[there], minlength=len(names) ** 2
     )
@@ -116,7 +116,7 @@ def where_closest(result: HumpedTrial) -> str:
     )
 
 
-def told_most(counts: NDArray[np.int64], names: Sequence[str]) -> str:
+def told_most(counts: Ints, names: Sequence[str]) -> str:
     """The most frequent in words, each with its share."""
     order = np.argsort(-counts, kind="stable")[:MOST_PLACES]
     return ", ".join(f"{names[k]} ({100.0 * counts[k] / counts.sum():.0f} %)" for k in order if counts[k] > 0)

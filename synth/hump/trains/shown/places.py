@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from plant_models.frozen_arrays import Ints
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Table
 from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.hump_routes import HumpRoutes
@@ -59,7 +57,7 @@ def couplings(found: TrainOutcomes, limits: CouplingLimits) -> Iterator[Exhibit]
     yield Chart("hump-couplings", "Coupling speeds and gaps", COUPLINGS, lambda: _pictures().couplings(found, limits))
 
 
-def by_element(routes: HumpRoutes, counts: NDArray[np.int64]) -> dict[int, int]:
+def by_element(routes: HumpRoutes, counts: Ints) -> dict[int, int]:
     """`counts` (trains, numbers) of all trains, by the number of the element."""
     return {number: int(count) for number, count in zip(routes.numbers, counts.sum(axis=0), strict=True)}
 

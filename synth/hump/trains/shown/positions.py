@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals
@@ -17,11 +18,11 @@ from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.position_choice import PositionChoice
 from synth.hump.trains.position_roles import Fixed
-from synth.hump.trains.position_strength import MOST_SHORT, strengths
+from synth.hump.trains.position_strength import MOST_SHORT, strengths, weak
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from synth.hump.trains.shift_sums import shift_sums
 from synth.hump.trains.shown.figures import in_hundred
-from synth.hump.trains.train_figures import Floats, interval_of, ratio, share
+from synth.hump.trains.train_figures import interval_of, ratio, share
 from synth.hump.trains.trial_aim import stated_exit_std_m_s
 
 POSITIONS: Final = (
@@ -61,14 +62,14 @@ AIMED: Final = (
 
 def positions(result: HumpedTrial) -> Iterator[Exhibit]:
     """A row for each position, and for each aim table."""
-    strong = {each.number: each for each in strengths(result.found)}
+    short = strengths(result.found)
     rows = [position_row(result, choice, place) for place, choice in enumerate(result.config.positions)]
-    rows = [{**row, "short": strong[row["number"]].told} for row in rows]
-    yield Table("positions", "Positions", POSITIONS, rows, brief=True, bad=lambda row: strong[row["number"]].weak)
-    for each in strong.values():
-        if each.weak:
+    rows = [{**row, "short": each.told} for row, each in zip(rows, short, strict=True)]
+    yield Table("positions", "Positions", POSITIONS, rows, brief=True, bad=lambda row: weak(short[row["number"] - 1]))
+    for number, each in enumerate(short, start=1):
+        if weak(each):
             yield Sentence(
-                f"Warning: the brake of position {each.number} is too weak for these cuts: {100.0 * each.share:.3g} % "
+                f"Warning: the brake of position {number} is too weak for these cuts: {100.0 * each.value:.3g} % "
                 "left faster than commanded with all of it.",
                 brief=True,
             )

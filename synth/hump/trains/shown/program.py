@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table
 from synth.frame.printed_numbers import decimals
@@ -71,27 +73,21 @@ def row_of(row: ProgramRow) -> Row:
 
 
 def planned_chart(program: SpeedProgram) -> Chart:
-    """The hump speeds that are planned."""
-
-    def drawn() -> Figure:
-        from synth.hump.trains.pictures import hump_speed_program, planned_train
-
-        return hump_speed_program(planned_train(program))
-
-    return chart_of(program.number, drawn)
+    """The hump speeds that are planned; times since the first cut was at the crest."""
+    return chart_of(program.number, lambda: [(row.time_s, row.hump_speed_m_s, row.length_m) for row in program.rows])
 
 
 def pushed_chart(number: int, traced: Callable[[], TrainTrace]) -> Chart:
     """The hump speeds that the train had, which a control may have slowed down."""
+    return chart_of(number, lambda: [(cut.crest_s, cut.hump_speed_m_s, cut.length_m) for cut in traced().cuts])
+
+
+def chart_of(number: int, pushed: Callable[[], Sequence[tuple[float, float, float]]]) -> Chart:
+    """The picture of the train `number`, from 0; `pushed`: when each cut is at the crest, how fast, and its length."""
 
     def drawn() -> Figure:
-        from synth.hump.trains.pictures import hump_speed_program, pushed_train
+        from synth.hump.trains.pictures import PushedTrain, hump_speed_program
 
-        return hump_speed_program(pushed_train(traced()))
+        return hump_speed_program(PushedTrain(number, *map(np.array, zip(*pushed(), strict=True))))
 
-    return chart_of(number, drawn)
-
-
-def chart_of(number: int, drawn: Callable[[], Figure]) -> Chart:
-    """The picture of hump speeds of the train `number`, from 0."""
     return Chart("hump-speed-program", f"Hump speed program of train {number + 1}", PUSHED, drawn)

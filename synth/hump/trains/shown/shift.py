@@ -32,7 +32,7 @@ COLUMNS: Final = (
 
 def shift(result: HumpedTrial) -> Iterator[Exhibit]:
     """The table, and by which rule tracks are pushed up and pulled."""
-    found, share = result.found, result.trial.shift.pulled_from_share
+    found, share = result.found, result.trial.tracks.pulled_from_share
     yield Table("shift", "The trains of a shift", COLUMNS, list(rows(found)))
     yield Sentence(
         f"{shifts_in(found)} shifts are independent; their first trains find tracks as drawn. Between two trains a "

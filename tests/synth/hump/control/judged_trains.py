@@ -9,16 +9,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from plant_models.hump import HumpGraph
-from synth.hump.control.cut_motion import MovingCut
 from synth.hump.control.cut_record import CutRecord, Mark
 from synth.hump.control.event import ALARMS, Kind
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.hump_state import replayed
 from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
-from synth.hump.control.reference_faults import Fault, LateSwitch
-from synth.hump.control.reference_track import ReferenceTrack
 from synth.hump.control.route_table import RouteTable
 from tests.plant_models.hump.random_humps import random_hump
+from tests.synth.hump.control.cut_motion import MovingCut
 from tests.synth.hump.control.made_trains import (
     LONG_M,
     USUAL_M,
@@ -31,6 +29,8 @@ from tests.synth.hump.control.made_trains import (
     uncoupled,
 )
 from tests.synth.hump.control.queue_of_cuts import FOULING_M, random_stalls
+from tests.synth.hump.control.reference_faults import Fault, LateSwitch
+from tests.synth.hump.control.reference_track import ReferenceTrack
 
 SURE, NEAR = 1.25, 2.0
 """A gap within a cut that is wider than the rule asks for by the first factor is one for sure; so is one between two
@@ -81,7 +81,7 @@ class Humping:
     def thrown_beside(self) -> Iterator[tuple[float, int, int]]:
         """Points that were commanded to move while an object behind them stood or crawled, its last axle short of the
         fouling point: (time, switch, object), from the tables of the motions alone."""
-        for event in self.control.log.events:
+        for event in self.control.events:
             for number, each in enumerate(self.objects):
                 if event.kind is not Kind.COMMANDED or (event.element, number) not in self.track.truth.came_s:
                     continue
@@ -107,7 +107,7 @@ class Humping:
 
     def replays(self) -> bool:
         """Whether the log leads to the same state."""
-        return replayed(self.control.log.events) == self.control.state
+        return replayed(self.control.events) == self.control.state
 
     def catch_ups(self) -> tuple[set[tuple[int, int]], set[tuple[int, int]]]:
         """(section, follower) of true catch-ups, and of those that the counters told."""

@@ -8,11 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.hump.control.cut_motion import MovingCut
 from synth.hump.control.cut_record import CutRecord, Mark
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.models import ENTRY
-from synth.hump.control.reference_faults import (
+from synth.hump.control.route_table import RouteTable
+from synth.hump.control.sorting_list import SortingList
+from tests.synth.hump.control.cut_motion import MovingCut
+from tests.synth.hump.control.queue_of_cuts import NO_STALLS, Queue, Stall
+from tests.synth.hump.control.reference_faults import (
     CounterSlip,
     FalselyFree,
     FalselyOccupied,
@@ -20,10 +23,7 @@ from synth.hump.control.reference_faults import (
     LateSwitch,
     StuckSwitch,
 )
-from synth.hump.control.reference_track import ReferenceTrack
-from synth.hump.control.route_table import RouteTable
-from synth.hump.control.sorting_list import SortingList
-from tests.synth.hump.control.queue_of_cuts import NO_STALLS, Queue, Stall
+from tests.synth.hump.control.reference_track import ReferenceTrack
 
 TICK_S = 0.1
 GRID_M = 10.0

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from synth.hump.control.cut_motion import MovingCut, moving_cut
 from synth.hump.control.event import Event, Kind
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.route_table import RouteTable
 from tests.plant_models.hump.random_humps import small_hump
+from tests.synth.hump.control.cut_motion import MovingCut, moving_cut
 from tests.synth.hump.control.made_trains import axle_places, humped, record
 
 TABLE = RouteTable(small_hump())
@@ -19,7 +19,7 @@ def rolling(cut: int, start_s: float, speed_m_s: float = 5.0, cars: int = 1, bas
 
 def told(control: HumpControl, *kinds: Kind) -> list[Event]:
     """The events of some kinds."""
-    return [event for event in control.log.events if event.kind in kinds]
+    return [event for event in control.events if event.kind in kinds]
 
 
 def commands(control: HumpControl) -> list[tuple[int, int, float]]:

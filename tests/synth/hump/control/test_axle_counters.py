@@ -6,17 +6,17 @@ from collections.abc import Iterator
 
 import pytest
 
-from synth.hump.control.cut_motion import MovingCut, moving_cut
 from synth.hump.control.event import Event, Kind, Why
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.hump_state import Counters
 from synth.hump.control.models import ENTRY
 from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
-from synth.hump.control.reference_faults import CounterSlip, LateSwitch
 from synth.hump.control.route_table import RouteTable
 from synth.hump.control.section_counter import Finding, SectionCounter
 from tests.plant_models.hump.random_humps import small_hump
+from tests.synth.hump.control.cut_motion import MovingCut, moving_cut
 from tests.synth.hump.control.made_trains import axle_places, humped, record
+from tests.synth.hump.control.reference_faults import CounterSlip, LateSwitch
 
 TABLE = RouteTable(small_hump())
 
@@ -28,7 +28,7 @@ def rolling(cut: int, start_s: float, cars: int = 1) -> MovingCut:
 
 def told(control: HumpControl, *kinds: Kind) -> list[tuple[Kind, int, int, float]]:
     """Kind, element, cut and value of the events of some kinds."""
-    return [(e.kind, e.element, e.cut, e.value) for e in control.log.events if e.kind in kinds]
+    return [(e.kind, e.element, e.cut, e.value) for e in control.events if e.kind in kinds]
 
 
 @pytest.mark.requirement("HUMP-04")
@@ -44,7 +44,7 @@ def test_a_cut_that_stays_coupled_is_told_recorded_and_no_longer_awaited() -> No
 
 def commands(control: HumpControl) -> list[Event]:
     """Throws of switch 1."""
-    return [e for e in control.log.events if e.kind is Kind.COMMANDED and e.element == 1]
+    return [e for e in control.events if e.kind is Kind.COMMANDED and e.element == 1]
 
 
 def test_points_are_held_for_the_rest_of_a_cut_that_came_apart() -> None:
@@ -60,7 +60,7 @@ def test_points_are_held_for_the_rest_of_a_cut_that_came_apart() -> None:
 def test_axles_that_never_come_are_told_after_some_time() -> None:
     """Half of cut 1 stays behind: switch 1 is free from 12.5 s on, and patience is 30 m at 2 m/s."""
     control, _ = humped(TABLE, [record(1, 2, cars=2)], [rolling(1, 0.0)])
-    first = next(e for e in control.log.events if e.kind is Kind.TOO_FEW_AXLES)
+    first = next(e for e in control.events if e.kind is Kind.TOO_FEW_AXLES)
     assert (first.element, first.cut, first.value) == (1, 1, 4.0)
     assert first.time_s == pytest.approx(12.5 + 15.0, abs=0.2)
     assert set(control.counters.left_over()) == {e.element for e in control.state.alarms if e.element != 201}
@@ -80,7 +80,7 @@ def test_the_rest_of_a_cut_may_go_another_way_and_no_counter_waits_for_it(start_
     assert control.counters.left_over() == {}
     assert set(control.state.counters.values()) == {Counters()}
     assert told(control, Kind.COUNTER_FAULT) == []
-    came = next(e.time_s for e in control.log.events if e.kind is Kind.MISROUTED)
+    came = next(e.time_s for e in control.events if e.kind is Kind.MISROUTED)
     assert came == pytest.approx(start_s + 34.0 / 5.0 if home else 13.3, abs=0.11)
     assert not track.truth.moved_under
 
@@ -185,7 +185,7 @@ def test_a_lone_axle_that_a_counter_took_for_another_cut_puts_no_cut_on_another_
     at the left exit, and cut 2 lacks an axle at the end."""
     objects, slip = [rolling(1, 0.0), rolling(2, 8.0)], [CounterSlip(1, 1, 3, -1)]
     control, _ = humped(TABLE, [record(1, 2), record(2, 1)], objects, slip, Operation(rules=PUBLISHED_MODEL))
-    of_cut_1 = [e.time_s for e in control.log.events if (e.kind, e.element, e.cut) == (Kind.EXIT_COUNTER, 1, 1)]
+    of_cut_1 = [e.time_s for e in control.events if (e.kind, e.element, e.cut) == (Kind.EXIT_COUNTER, 1, 1)]
     assert max(of_cut_1) == pytest.approx(8.0 + 52.0 / 5.0)
     assert control.state.arrived == {1: [2], 2: [1]}
     assert told(control, Kind.MISROUTED) == [(Kind.MISROUTED, 1, 2, Why.NOT_SEEN)]

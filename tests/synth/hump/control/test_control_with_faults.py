@@ -10,13 +10,16 @@ import pytest
 
 from plant_models.errors import PlantError
 from plant_models.hump import HumpGraph, Signal
-from synth.hump.control.cut_motion import MovingCut, moving_cut
 from synth.hump.control.cut_record import CutRecord, Mark
 from synth.hump.control.event import Block, Kind, Why
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.models import ENTRY
 from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
-from synth.hump.control.reference_faults import (
+from synth.hump.control.route_table import RouteTable
+from tests.plant_models.hump.random_humps import small_vertices
+from tests.synth.hump.control.cut_motion import MovingCut, moving_cut
+from tests.synth.hump.control.made_trains import LONG_M, axle_places, humped, record
+from tests.synth.hump.control.reference_faults import (
     CounterSlip,
     FalselyFree,
     FalselyOccupied,
@@ -24,10 +27,7 @@ from synth.hump.control.reference_faults import (
     LateSwitch,
     StuckSwitch,
 )
-from synth.hump.control.reference_track import ReferenceTrack
-from synth.hump.control.route_table import RouteTable
-from tests.plant_models.hump.random_humps import small_vertices
-from tests.synth.hump.control.made_trains import LONG_M, axle_places, humped, record
+from tests.synth.hump.control.reference_track import ReferenceTrack
 from tests.synth.hump.control.small_hump_trains import TABLE, close_pair, commands, rolling, told
 
 

@@ -10,16 +10,16 @@ import pytest
 
 from plant_models.errors import PlantError
 from synth.hump.control.brake_task import ManualBraking, TableBraking, UniformBraking, ZoneBraking
-from synth.hump.control.cut_motion import moving_cut
 from synth.hump.control.cut_record import Mark
 from synth.hump.control.event import Aspect, Block, Kind, Why
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.models import ExitSpeed, Misroute, Resistance
 from synth.hump.control.practice_rules import PUBLISHED_MODEL
-from synth.hump.control.reference_track import ReferenceTrack
 from synth.hump.control.route_store import RouteStore
 from synth.hump.control.sorting_list import SortingList
+from tests.synth.hump.control.cut_motion import moving_cut
 from tests.synth.hump.control.made_trains import axle_places, humped, record
+from tests.synth.hump.control.reference_track import ReferenceTrack
 from tests.synth.hump.control.small_hump_trains import TABLE, close_pair, commands, rolling, told
 
 
@@ -85,7 +85,7 @@ class LastInReach:
     def __init__(self) -> None:
         self.asked: list[Misroute] = []
 
-    def track_for(self, misroute: Misroute) -> int:
+    def __call__(self, misroute: Misroute) -> int:
         """The last track that can be reached."""
         self.asked.append(misroute)
         return misroute.reachable[-1]
@@ -99,12 +99,8 @@ def test_another_technology_may_decide_where_a_follower_goes() -> None:
 
 
 def test_a_technology_that_names_a_track_out_of_reach_is_refused() -> None:
-    class Elsewhere:
-        def track_for(self, misroute: Misroute) -> int:
-            return 1
-
     with pytest.raises(PlantError, match="track 1 for cut 2 cannot be reached from element 1; it must be one of 2, 3"):
-        close_pair(Operation(Elsewhere()))
+        close_pair(Operation(lambda misroute: 1))
 
 
 def test_a_switch_by_hand_stays_until_it_is_thrown_by_hand() -> None:

@@ -16,11 +16,11 @@ from synth.hump.control.axle_counters import AxleCounters
 from synth.hump.control.cut_record import Mark
 from synth.hump.control.event import Kind
 from synth.hump.control.misrouting import Misrouting
-from synth.hump.control.reference_faults import LateSwitch
 from tests.effort import sized
 from tests.synth.hump.control.judged_trains import Humping, Scene, judgement, random_humping
 from tests.synth.hump.control.many_trains import SCENES
 from tests.synth.hump.control.queue_of_cuts import APART_M
+from tests.synth.hump.control.reference_faults import LateSwitch
 
 SEEDS = st.integers(0, 2**32 - 1)
 NEVER = ("thrown under", "thrown beside", "lost", "silent counters", "other states")

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
-from synth.hump.control.cut_motion import MovingCut, moving_cut
 from synth.hump.control.models import ENTRY, AxlePass, Occupation
-from synth.hump.control.reference_faults import (
+from synth.hump.control.route_table import RouteTable
+from tests.plant_models.hump.random_humps import small_hump
+from tests.synth.hump.control.cut_motion import MovingCut, moving_cut
+from tests.synth.hump.control.reference_faults import (
     NOBODY,
     CounterSlip,
     FalselyFree,
@@ -17,9 +19,7 @@ from synth.hump.control.reference_faults import (
     LateSwitch,
     StuckSwitch,
 )
-from synth.hump.control.reference_track import ReferenceTrack
-from synth.hump.control.route_table import RouteTable
-from tests.plant_models.hump.random_humps import small_hump
+from tests.synth.hump.control.reference_track import ReferenceTrack
 
 TABLE = RouteTable(small_hump())
 AXLES = (0.0, 1.85, 8.65, 10.5)

@@ -6,9 +6,9 @@ import time
 
 import numpy as np
 
-from synth.hump.control.cut_motion import MovingCut
 from synth.hump.control.cut_record import CutRecord
 from synth.hump.control.route_table import RouteTable
+from tests.synth.hump.control.cut_motion import MovingCut
 from tests.synth.hump.control.full_humps import full_hump
 from tests.synth.hump.control.made_trains import axle_places, humped, record
 
@@ -37,7 +37,7 @@ def test_it_is_2000_times_faster_than_the_hump() -> None:
         control, _ = humped(table, train, objects)
         best = min(best, time.process_time() - begin)
     assert len(control.state.arrived) == 40
-    assert control.log.events[-1].time_s / best > LEAST_TIMES
+    assert control.events[-1].time_s / best > LEAST_TIMES
 
 
 def test_the_log_grows_with_the_cuts_and_the_switches_of_a_route() -> None:
@@ -45,7 +45,7 @@ def test_the_log_grows_with_the_cuts_and_the_switches_of_a_route() -> None:
 
     def lines(levels: int, cuts: int) -> int:
         table = RouteTable(full_hump(levels))
-        return len(humped(table, *dense_train(table, cuts))[0].log)
+        return len(humped(table, *dense_train(table, cuts))[0].events)
 
     assert lines(5, 80) <= 4.1 * lines(5, 20)
     assert lines(6, 40) <= 1.3 * lines(5, 40)

@@ -14,16 +14,16 @@ from synth.hump.control.models import Misroute, Resistance
 from synth.hump.control.practice_rules import PracticeRules
 from synth.hump.control.route_table import RouteTable
 from synth.hump.control.strobe import Strobe
-from synth.hump.control.technology import LeaderTrack, RejectionOrCheapest
+from synth.hump.control.technology import RejectionOrCheapest, leader_track
 from tests.plant_models.hump.random_humps import random_hump
 
 LOST = Misroute(7, 1, Why.NOT_SEPARATED, 6, (4, 5, 8), 2, 5)
 
 
 def test_the_follower_goes_to_the_track_of_its_leader() -> None:
-    assert LeaderTrack().track_for(LOST) == 5
-    assert LeaderTrack().track_for(replace(LOST, leader_track=1)) == 4
-    assert LeaderTrack().track_for(replace(LOST, leader=0, leader_track=None, track=8)) == 8
+    assert leader_track(LOST) == 5
+    assert leader_track(replace(LOST, leader_track=1)) == 4
+    assert leader_track(replace(LOST, leader=0, leader_track=None, track=8)) == 8
 
 
 def test_a_rejection_track_comes_first_and_then_the_cheapest() -> None:
@@ -33,8 +33,8 @@ def test_a_rejection_track_comes_first_and_then_the_cheapest() -> None:
         assert belongs == 2
         return prices[track]
 
-    assert RejectionOrCheapest((9, 8), price).track_for(LOST) == 8
-    assert RejectionOrCheapest((9,), price).track_for(LOST) == 5
+    assert RejectionOrCheapest((9, 8), price)(LOST) == 8
+    assert RejectionOrCheapest((9,), price)(LOST) == 5
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -11,6 +11,7 @@ from plant_models.errors import PlantError
 from plant_models.library import load_car, load_weight_categories
 from plant_models.rolling.car_mix import CarMix, MixedCar
 from synth.hump.control.train_population import TrainPopulation, chosen
+from tests.synth.hump.control.drawn_list import drawn_list
 
 CATEGORIES = load_weight_categories()
 MIX = CarMix(tuple(MixedCar(load_car(name).car, share, 10.0) for name, share in (("gondola-4", 0.7), ("tank-4", 0.3))))
@@ -20,17 +21,17 @@ MANY = 999
 
 def test_cuts_have_a_geometric_number_of_cars() -> None:
     """P(n) = q·(1 − q)^(n − 1) with q = 1/2, of 10 × 999 cuts; χ² with five classes below its 99.9 % quantile."""
-    cars = np.array([cut.cars for seed in range(10) for cut in POPULATION.train(seed, MANY).cuts])
+    cars = np.array([cut.cars for seed in range(10) for cut in drawn_list(POPULATION, seed, MANY).cuts])
     counts = np.array([*(np.sum(cars == n) for n in range(1, 5)), np.sum(cars >= 5)])
     expected = len(cars) * np.array([1 / 2, 1 / 4, 1 / 8, 1 / 16, 1 / 16])
     assert float(np.sum((counts - expected) ** 2 / expected)) < 18.5
-    assert {cut.cars for cut in replace(POPULATION, cars_mean=1.0).train(1, 200).cuts} == {1}
-    assert max(cut.cars for cut in replace(POPULATION, cars_mean=8.0, most_cars=9).train(1, MANY).cuts) == 9
+    assert {cut.cars for cut in drawn_list(replace(POPULATION, cars_mean=1.0), 1, 200).cuts} == {1}
+    assert max(cut.cars for cut in drawn_list(replace(POPULATION, cars_mean=8.0, most_cars=9), 1, MANY).cuts) == 9
 
 
 def test_categories_and_tracks_have_their_shares() -> None:
     """Within four standard deviations."""
-    cuts = [cut for seed in range(10) for cut in POPULATION.train(seed, MANY).cuts]
+    cuts = [cut for seed in range(10) for cut in drawn_list(POPULATION, seed, MANY).cuts]
     for number, share in {1: 0.4, 2: 0.0, 3: 0.2, 4: 0.0, 5: 0.4}.items():
         found = sum(cut.category == number for cut in cuts) / len(cuts)
         assert abs(found - share) <= 4.0 * (share * (1.0 - share) / len(cuts)) ** 0.5
@@ -42,7 +43,7 @@ def test_categories_and_tracks_have_their_shares() -> None:
 def test_every_cut_is_of_its_category() -> None:
     """Axle loads of its cars, so of the cut too, lie between the limits of the category."""
     limits = [category.mass_above_t for category in CATEGORIES.members]
-    for cut in POPULATION.train(3, MANY).cuts:
+    for cut in drawn_list(POPULATION, 3, MANY).cuts:
         place = next(n for n, category in enumerate(CATEGORIES.members) if category.number == cut.category)
         per_car = cut.mass_t / cut.axles * 4.0
         assert limits[place] <= per_car + 1e-3
@@ -51,10 +52,10 @@ def test_every_cut_is_of_its_category() -> None:
 
 
 def test_a_seed_is_a_train_and_a_longer_train_begins_with_the_shorter() -> None:
-    train = POPULATION.train(5, 40)
-    assert train == POPULATION.train(5, 40)
-    assert POPULATION.train(5, 60).cuts[:40] == train.cuts
-    assert POPULATION.train(6, 40) != train
+    train = drawn_list(POPULATION, 5, 40)
+    assert train == drawn_list(POPULATION, 5, 40)
+    assert drawn_list(POPULATION, 5, 60).cuts[:40] == train.cuts
+    assert drawn_list(POPULATION, 6, 40) != train
 
 
 def test_a_share_of_none_is_never_chosen() -> None:
@@ -75,7 +76,7 @@ def test_cuts_that_follow_each_other_go_to_different_tracks() -> None:
     assert abs(np.mean(after == 2) - 0.6) < 4.0 * (0.24 / len(after)) ** 0.5
     first = some.drawn(3, 0, 4000, 1).track
     assert abs(np.mean(first == 1) - 0.5) < 4.0 * (0.25 / 4000) ** 0.5
-    assert {cut.track for cut in replace(POPULATION, track_shares={7: 1.0, 8: 0.0}).train(1, 20).cuts} == {7}
+    assert {cut.track for cut in drawn_list(replace(POPULATION, track_shares={7: 1.0, 8: 0.0}), 1, 20).cuts} == {7}
 
 
 def test_a_train_is_the_same_whatever_is_drawn_beside_it() -> None:
@@ -102,4 +103,4 @@ def test_what_no_population_can_be_is_refused(change: dict[str, object], words: 
 def test_a_train_has_1_to_999_cuts() -> None:
     for cuts in (0, 1000):
         with pytest.raises(PlantError, match="must have 1 to 999"):
-            POPULATION.train(1, cuts)
+            drawn_list(POPULATION, 1, cuts)

@@ -17,13 +17,11 @@ from synth.frame.input_error import InputError
 from synth.hump.checking.checked_hump import checked_hump
 from synth.hump.hump_file import parse_hump
 from synth.hump.making.hump_toml import hump_toml
-from synth.hump.making.short_file import read_short_hump
+from synth.hump.making.short_file import example_short_toml, read_short_hump
 from synth.hump.making.short_hump import EXAMPLE
-from synth.hump.making.template import example_short_toml
 from synth.hump.making.track_tree import Fork, Tree, levels_needed, track_tree
 from synth.hump.trains.hump_routes import Mark
 from synth.hump.trains.train_passages import train_passages
-from synth.hump.trains.trial import ConstantSpeed
 from tests.effort import sized
 from tests.synth.hump.making.random_shorts import random_short
 from tests.synth.hump.trains.made_trials import Day
@@ -190,7 +188,7 @@ from_m = 94
 
 def test_a_long_cut_that_goes_astray_while_it_is_pushed_passes_all_joints_of_its_new_way() -> None:
     graph = parse_hump(hump_toml(read_short_hump(FLAT, "s.toml"), "s.toml"), "hump", "hump.toml").graph
-    trial = Day(cuts=10, cars_mean=8.0, most_cars=12, program=ConstantSpeed(1.3)).on(graph)
+    trial = Day(cuts=10, cars_mean=8.0, most_cars=12, constant_m_s=1.3).on(graph)
     trains, _, memory = trial.humped(0, 16)
     lane, cut = np.nonzero(memory.misrouted_at < memory.time_s.shape[2])
     came_s = memory.time_s[lane, cut, memory.misrouted_at[lane, cut], Mark.FIRST_IN]

@@ -32,6 +32,7 @@ from synth.hump.trains.position_choice import HeldTables
 from synth.hump.trains.resolved_trial import load_trial, resolve_trial
 from synth.retarder.configuration.config_file import parse_config
 from tests.effort import every, sized
+from tests.synth.hump.control.drawn_list import drawn_list
 from tests.system.conftest import changed
 
 GRAPHS = {name: load_hump(name).graph for name in sorted(hump_names())}
@@ -78,7 +79,7 @@ def test_all_cuts_that_are_drawn_are_of_the_kinds_that_are_needed(tmp_path: Path
     assert isinstance(config.trains, TrainPopulation)
     members = config.categories.members
     places = {member.number: place for place, member in enumerate(members)}
-    cuts = [cut for seed in range(8) for cut in config.trains.train(seed, 900).cuts]
+    cuts = [cut for seed in range(8) for cut in drawn_list(config.trains, seed, 900).cuts]
     drawn = {(places[cut.category], cut.axles) for cut in cuts}
     assert kinds_of_cuts(config.trains, config.people) == drawn
     assert {axles for _, axles in drawn} == {4, 6, 8, 10, 12}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from plant_models.library import load_hump
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from synth.hump.trains.motion import Moving
+from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 from synth.simulation.free_roll import Rolled
 
@@ -81,6 +83,11 @@ class AlikeCuts:
     def last_axle_m(self) -> Floats:
         """Behind the head."""
         return np.full(self.trains, LAST_M)
+
+
+def alike_cuts(trains: int, category: Ints, cars: Ints, seed: int = 3) -> TrainCuts:
+    """What controls ask of cuts."""
+    return cast(TrainCuts, AlikeCuts(trains, category, cars, seed=seed))
 
 
 def asked_at(routes: HumpRoutes, position: int, memory: TrainMemory, comes_m_s: Floats, free_m: Floats) -> Asked:

@@ -7,7 +7,8 @@ from functools import cache
 
 import numpy as np
 
-from synth.hump.trains.hump_position import Arrivals, Floats
+from plant_models.frozen_arrays import Floats
+from synth.hump.trains.hump_position import Arrivals
 from synth.problem.aim import Aim
 from synth.retarder.class_setup import class_setup, origin_of, validation_passes
 from synth.retarder.configuration.config_file import parse_config

@@ -19,7 +19,7 @@ from synth.hump.trains.hump_routes import Mark
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_trace import user_ahead
-from synth.hump.trains.trial import ConstantSpeed, HumpTrial
+from synth.hump.trains.trial import HumpTrial
 from tests.synth.hump.trains.made_trials import Day
 
 CUTS = 12
@@ -102,7 +102,7 @@ def compare(tally: Tally, train: int, truth: Simulated, control: ControlledTrain
 
 def compared(hump: str, number: int, tick_s: float) -> Tally:
     """`number` trains of `CUTS` cuts over a hump of the library, with ticks of `tick_s`."""
-    trial = Day(cuts=CUTS, program=ConstantSpeed(SPEEDS_M_S[hump])).on(hump)
+    trial = Day(cuts=CUTS, constant_m_s=SPEEDS_M_S[hump]).on(hump)
     trains, _, memory = trial.humped(0, number)
     tally = Tally()
     for lane in range(number):

@@ -11,22 +11,22 @@ from numpy.typing import NDArray
 from plant_models.hump import HumpGraph
 from plant_models.library import WeightCategories, load_weight_categories
 from plant_models.library.hump_entry import load_hump
-from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw
 from plant_models.rolling.weather import Weather
+from synth.hump.configuration.settings import TracksSettings
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.trains.forecast import SpeedRange
-from synth.hump.trains.free_tracks import DrawnFree, FreeTracks
 from synth.hump.trains.hump_aim import CategoryAim, HumpAim
 from synth.hump.trains.hump_position import Arrivals
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
-from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTrain
+from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, whole_train
+from synth.hump.trains.known_cuts import KnownCuts
 from synth.hump.trains.normal_hump_position import NormalHumpPosition
 from synth.hump.trains.position_roles import Roles, Spacing
 from synth.hump.trains.route_ways import route_ways
-from synth.hump.trains.train_cuts import TrainCuts, trains
-from synth.hump.trains.train_plan import Planner
-from synth.hump.trains.trial import Control, HumpTrial, Program, SimulatedPairs
+from synth.hump.trains.train_plan import Planner, TrainPlan
+from synth.hump.trains.train_source import TrainSource
+from synth.hump.trains.trial import Control, HumpTrial
 from tests.plant_models.rolling.populations import MIX, population
 from tuning_tables.aim import AimAxes
 from tuning_tables.aim.held_aim import aim_grid
@@ -64,18 +64,14 @@ class UsableHead:
 
 
 @dataclass(frozen=True)
-class DrawnTrains:
-    """Trains of a population over some routes."""
+class ConstantPlanner(Planner):
+    """Pushes all cuts at `speed_m_s`, whatever steps there are."""
 
-    people: CutPopulation
-    lists: TrainPopulation
-    routes: HumpRoutes
-    seed: int
-    cuts: int
+    speed_m_s: float = 1.7
 
-    def trains(self, first: int, count: int) -> TrainCuts:
-        """See `TrainSource`."""
-        return trains(self.lists, self.people, self.routes.routes, self.seed, first, count, self.cuts)
+    def plan(self, known: KnownCuts) -> TrainPlan:
+        """See `Planner`."""
+        return self.at_speeds(known, np.full((known.trains, known.cuts), self.speed_m_s))
 
 
 def even_aim(routes: HumpRoutes, near_m_s: float, far_m_s: float) -> HumpAim:
@@ -102,9 +98,9 @@ class Day:
     steps_m_s: tuple[float, ...] = STEPS_M_S
     acceleration_m_s2: float = 0.05
     control: Control = field(default_factory=Control)
-    program: Program = field(default_factory=SimulatedPairs)
-    method: SpeedMethod = field(default_factory=WholeTrain)
-    free: FreeTracks = field(default_factory=DrawnFree)
+    constant_m_s: float | None = None
+    method: SpeedMethod = whole_train
+    standing: TracksSettings = field(default_factory=TracksSettings)
     worst_pair: bool = False
     heads_m: tuple[float, ...] = (2.4, 2.4, 1.5)
     ranges: tuple[SpeedRange, ...] = RANGES
@@ -124,19 +120,21 @@ class Day:
         last, held = routes.positions_of == numbers, routes.positions_of >= numbers
         roles = Roles(tuple(Spacing(each) for each in (*self.ranges[: own - 1], UNUSED)), last, held)
         limits = HumpSpeedLimits(self.steps_m_s, self.acceleration_m_s2)
+        planner = Planner(routes, limits, roles, worst_pair=self.worst_pair, method=self.method)
+        if self.constant_m_s is not None:
+            planner = ConstantPlanner(**vars(planner), speed_m_s=self.constant_m_s)
         heads = (*self.heads_m[: own - 1], self.heads_m[-1])
         return HumpTrial(
-            source=DrawnTrains(people, lists, routes, self.seed, self.cuts),
+            source=TrainSource(lists, people, routes.routes, self.seed, self.cuts),
             routes=routes,
             ways=route_ways(people, routes.routes, MIX),
             positions=tuple(NormalHumpPosition(self.std_m_s, GivenHead(head)) for head in heads),
-            planner=Planner(routes, limits, roles, worst_pair=self.worst_pair, method=self.method),
-            program=self.program,
+            planner=planner,
             control=self.control,
             aim=even_aim(routes, self.aim_m_s, self.aim_far_m_s or self.aim_m_s),
             usable_heads_m=tuple(UsableHead(0.8 * head) for head in heads),
             full_heads_m=tuple(UsableHead(head) for head in heads),
-            free=self.free,
+            tracks=self.standing,
             threads=self.threads,
         )
 

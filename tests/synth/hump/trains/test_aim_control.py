@@ -29,8 +29,8 @@ from tests.synth.hump.trains.asked_cuts import (
     GRADE,
     GRAVITY_M_S2,
     LAST_M,
-    AlikeCuts,
     EvenSlope,
+    alike_cuts,
     asked_at,
     large,
 )
@@ -135,7 +135,7 @@ def linear_aim() -> HumpAim:
 
 
 def test_command_by_hand() -> None:
-    trains = AlikeCuts(4, np.zeros(4, dtype=np.int64), np.ones(4, dtype=np.int64))
+    trains = alike_cuts(4, np.zeros(4, dtype=np.int64), np.ones(4, dtype=np.int64))
     own, mean = np.array([0.5, 1.5, 3.0, 1.0]), np.full(4, 1.3)
     memory = TrainMemory(4, 1, ROUTES)
     memory.exit_m_s[:, 0, 1], memory.end_s[:, 0, 1] = [5.0, 4.0, 3.0, np.nan], 50.0  # the last speed was not read
@@ -158,7 +158,7 @@ def test_command_by_hand() -> None:
 
 def test_readings_scatter_as_they_say() -> None:
     count = 4000
-    trains = AlikeCuts(count, np.zeros(count, dtype=np.int64), np.ones(count, dtype=np.int64))
+    trains = alike_cuts(count, np.zeros(count, dtype=np.int64), np.ones(count, dtype=np.int64))
     own, gravity = np.full(count, 2.0), np.full(count, GRAVITY_M_S2)
     memory = TrainMemory(count, 1, ROUTES)
     memory.exit_m_s[:, 0, 1], memory.end_s[:, 0, 1] = 5.0, 50.0

@@ -14,7 +14,7 @@ from synth.hump.trains.humping import Hump, humped
 from synth.hump.trains.interval_control import Feedback, FeedbackSpeeds
 from synth.hump.trains.rollability import Rollability
 from synth.hump.trains.route_rolling import rolling_on
-from synth.hump.trains.tracks_between import with_room
+from synth.hump.trains.tracks_between import free_before_m, with_room
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.trial import Control, HumpTrial, Sensing
 from tests.effort import every
@@ -58,10 +58,10 @@ class Misjudged:
     rollability: Rollability
     fate: Fate
 
-    def resistance_n_per_kn(self, asked: Asked) -> Floats:
+    def __call__(self, asked: Asked) -> Floats:
         """Much more, where it is late enough."""
         late = asked.start.time_s > self.fate.after_s
-        return self.rollability.resistance_n_per_kn(asked) + np.where(late, 4.0, 0.0)
+        return self.rollability(asked) + np.where(late, 4.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -81,9 +81,9 @@ class Fated:
 def run(trial: HumpTrial, after_s: float) -> tuple[Fate, TrainMemory]:
     """As `HumpTrial.humped`, but with a fate."""
     trains = trial.source.trains(0, TRAINS)
-    free_m = with_room(trial.routes, trains, trial.free.free_m(trial.routes, trains.seed, 0, TRAINS))
+    free_m = with_room(trial.routes, trains, free_before_m(trial.tracks, trial.routes, trains.seed, 0, TRAINS))
     known = trial.known(trains, free_m)
-    plan = trial.program.plan(trial.planner, known)
+    plan = trial.planner.plan(known)
     fate = Fate(after_s)
     rolls = rolling_on(trial.ways, trains.population, trains.drawn, 1)
     control = trial.control_of(trains, known, plan, trial.aim_of(trains, known, rolls))
@@ -135,7 +135,8 @@ def test_the_plan_of_the_first_cuts_does_not_depend_on_later_trains_nor_trains_o
 
     def planned(first: int, count: int) -> tuple[Floats, ...]:
         trains = trial.source.trains(first, count)
-        plan = trial.program.plan(trial.planner, trial.known(trains, trial.free.free_m(trial.routes, 5, first, count)))
+        free_m = free_before_m(trial.tracks, trial.routes, 5, first, count)
+        plan = trial.planner.plan(trial.known(trains, free_m))
         return plan.hump_speed_m_s, plan.crest_s, plan.exit_m_s, plan.margins_s, plan.first_in_s, plan.last_out_s
 
     for whole, part in zip(planned(0, 9), planned(0, 4), strict=True):

@@ -18,7 +18,6 @@ from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_passages import train_passages
-from synth.hump.trains.trial import ConstantSpeed
 from tests.effort import every
 from tests.synth.hump.trains.control_and_simulation import SPEEDS_M_S, Tally, compare, compared, recorded, simulated
 from tests.synth.hump.trains.humped_trains import humped_trains
@@ -86,7 +85,7 @@ def test_the_counters_see_all_axles_and_each_catch_up() -> None:
 
 def test_a_simulation_that_takes_points_for_quicker_is_found_out() -> None:
     """Where points are thrown a second later than the simulation has it, the control misroutes others."""
-    trial = Day(cuts=12, program=ConstantSpeed(SPEEDS_M_S["dumper"])).on("dumper")
+    trial = Day(cuts=12, constant_m_s=SPEEDS_M_S["dumper"]).on("dumper")
     quick = replace(trial, routes=replace(trial.routes, throw_s=np.maximum(trial.routes.throw_s - 1.0, 0.0)))
     trains, _, memory = quick.humped(0, 10)
     tally = Tally()

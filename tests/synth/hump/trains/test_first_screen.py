@@ -14,7 +14,7 @@ from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.humped_trial import HumpedTrial, humped_trial
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.outcomes import TrainOutcomes, outcomes
-from synth.hump.trains.position_strength import strengths
+from synth.hump.trains.position_strength import strengths, weak
 from synth.hump.trains.resolved_trial import resolve_trial
 from synth.hump.trains.shown.first_screen import first_screen, one_in
 from synth.hump.trains.shown.positions import positions
@@ -45,9 +45,9 @@ def test_a_brake_that_is_too_weak_is_told_everywhere(full: tuple[HumpedTrial, Tr
     result, _, memory = full
     (brake,) = strengths(result.found)
     far = memory.exit_m_s - memory.command_m_s > 6.0 * 0.15  # no error of the regulator is so large
-    assert brake.weak
+    assert weak(brake)
     assert np.nansum(far) <= result.found.short.sum() <= (memory.exit_m_s > memory.command_m_s).sum()
-    assert np.nansum(far) > 0.5 * brake.passes
+    assert np.nansum(far) > 0.5 * brake.n
     limits = {limit.sentence.partition(":")[0]: limit for limit in trial_limits(result)}
     assert limits["couplings above 1.39 m/s"].kept is False
     assert "position 1 let" in limits["couplings above 1.39 m/s"].sentence

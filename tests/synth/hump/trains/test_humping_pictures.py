@@ -13,7 +13,7 @@ from matplotlib.text import Text
 from plant_models.library.hump_entry import load_hump
 from synth.frame.picture.figure_file import draw
 from synth.hump.trains.outcomes import TrainOutcomes, outcomes
-from synth.hump.trains.pictures import catch_ups, couplings, hump_speed_program, pushed_train, speed_path, time_path
+from synth.hump.trains.pictures import catch_ups, couplings, hump_speed_program, speed_path, time_path
 from synth.hump.trains.pictures.element_strip import levels
 from synth.hump.trains.pictures.hump_speed_program import PushedTrain
 from synth.hump.trains.shown.places import by_element
@@ -39,13 +39,19 @@ def found(humped: HumpedTrains) -> TrainOutcomes:
     return outcomes(humped.hump.routes, humped.trains, humped.memory)
 
 
+def pushed(trace: TrainTrace) -> PushedTrain:
+    """How a traced train was pushed."""
+    kept = ((cut.crest_s, cut.hump_speed_m_s, cut.length_m) for cut in trace.cuts)
+    return PushedTrain(trace.number, *map(np.array, zip(*kept, strict=True)))
+
+
 @pytest.fixture(scope="module")
 def figures(humped: HumpedTrains, trace: TrainTrace, found: TrainOutcomes) -> dict[str, Figure]:
     counts = by_element(humped.hump.routes, found.misrouted)
     return {
         "time_path": time_path(trace),
         "speed_path": speed_path(trace, CATEGORY_TYPES),
-        "program": hump_speed_program(pushed_train(trace)),
+        "program": hump_speed_program(pushed(trace)),
         "catch_ups": catch_ups(humped.entry, counts, TRAINS * CUTS, "misroutes"),
         "no catch_ups": catch_ups(humped.entry, {}, TRAINS * CUTS),
         "couplings": couplings(found),

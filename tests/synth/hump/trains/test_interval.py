@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from synth.hump.trains.forecast import Compared
-from synth.hump.trains.interval import NEARLY_M_S, CentredRule, EarlyRule, possible
+from synth.hump.trains.interval import NEARLY_M_S, centred, early, possible
 
 INF = np.inf
 
@@ -42,7 +42,7 @@ def compared(**changes: list[float] | list[bool]) -> Compared:
 def test_a_centred_cut_is_in_the_middle_of_what_it_can(changes: dict[str, list[float]], place: int) -> None:
     """min(ahead, behind) is 0.1, 1, 1.9, 0.5; more than 5 s is not asked for, and the slowest then; among choices of
     which no one can be kept apart, one that the cut can have."""
-    assert CentredRule().best(compared(**changes)).tolist() == [place]
+    assert centred(compared(**changes)).tolist() == [place]
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_a_centred_cut_is_in_the_middle_of_what_it_can(changes: dict[str, list[f
     ],
 )
 def test_an_early_cut_is_as_early_as_its_margin_allows(changes: dict[str, list[float]], place: int) -> None:
-    assert EarlyRule(0.5).best(compared(**changes)).tolist() == [place]
+    assert early(compared(**changes), 0.5).tolist() == [place]
 
 
 def test_limits_of_entry_are_kept_or_missed_by_as_little_as_can_be() -> None:

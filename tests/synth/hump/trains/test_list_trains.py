@@ -16,6 +16,7 @@ from synth.hump.trains.list_trains import list_trains
 from synth.hump.trains.listed_cars import FITS_M, ListedCars
 from synth.hump.trains.train_cuts import TrainCuts, trains
 from tests.plant_models.rolling.populations import FLAT, GONDOLA, LONG_TANK, TANK, population
+from tests.synth.hump.control.drawn_list import drawn_list
 from tests.synth.hump.trains.test_train_cuts import OWN_MIX, PEOPLE, ROUTES, TRAINS
 
 LISTED = replace(PEOPLE, mix=OWN_MIX)
@@ -28,7 +29,7 @@ def made(*records: CutRecord, first: int = 0, count: int = 20) -> TrainCuts:
 
 def test_what_a_list_tells_stands_in_every_train() -> None:
     """A list that a population gave: its cars fit to the millimetre, so lengths do."""
-    listed = TRAINS.train(9, 40)
+    listed = drawn_list(TRAINS, 9, 40)
     found = list_trains(listed, LISTED, ROUTES, 5, 0, 30)
     for name in ("cars", "axles", "track", "mass_t"):
         told = np.tile([getattr(cut, name) for cut in listed.cuts], 30)
@@ -43,7 +44,7 @@ def test_what_a_list_tells_stands_in_every_train() -> None:
 
 
 def test_a_train_of_a_list_is_the_same_whatever_is_drawn_beside_it() -> None:
-    listed = TRAINS.train(9, 40).cuts
+    listed = drawn_list(TRAINS, 9, 40).cuts
     whole, part = made(*listed), made(*listed, first=7, count=5)
     for name in ("types", "mass_t", "basic_n_per_kn", "head_wind_m_s", "bend_v2_m_s2"):
         np.testing.assert_array_equal(getattr(part.drawn, name), getattr(whole.drawn, name)[280:480], err_msg=name)
@@ -122,7 +123,7 @@ def test_cuts_that_are_not_humped_are_left_out() -> None:
 
 def test_a_list_and_the_population_have_the_same_resistances_and_winds() -> None:
     """Common numbers: the first cars of the same seed are the same runners in the same wind."""
-    listed = TRAINS.train(5, 40)
+    listed = drawn_list(TRAINS, 5, 40)
     of_list, drawn = list_trains(listed, LISTED, ROUTES, 5, 0, 1), trains(TRAINS, PEOPLE, ROUTES, 5, 0, 1, 40)
     width = of_list.drawn.cars
     np.testing.assert_array_equal(of_list.drawn.basic_n_per_kn, drawn.drawn.basic_n_per_kn[:, :width])

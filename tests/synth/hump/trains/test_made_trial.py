@@ -17,7 +17,7 @@ from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.forms import hump_csv
 from synth.hump.hump_file import hump_text
 from synth.hump.trains.hump_position import Arrivals
-from synth.hump.trains.hump_speed import PairByPair
+from synth.hump.trains.hump_speed import pair_by_pair
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.position_choice import HeldTables
 from synth.hump.trains.resolved_trial import load_trial, resolve_trial
@@ -50,7 +50,7 @@ def test_steps_end_where_signal_or_uncoupling_ends() -> None:
         steps = made(f"[hump_speed]\nlowest_m_s = 1.0\n{text}\n").planner.limits.steps_m_s
         np.testing.assert_allclose(steps, np.arange(1.0, last + 0.05, 0.1), atol=1e-9)
     trial = made('[hump_speed]\nmethod = "pair-by-pair"\nworst_pair = true\nleast_s = 0.8\nacceleration_m_s2 = 0.1\n')
-    assert isinstance(trial.planner.method, PairByPair)
+    assert trial.planner.method is pair_by_pair
     assert (trial.planner.worst_pair, trial.planner.least_s) == (True, 0.8)
     assert trial.planner.limits.acceleration_m_s2 == 0.1
 

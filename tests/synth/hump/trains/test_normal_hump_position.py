@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from plant_models import PlantError
 from plant_models.library.catalogue import load_car, load_position, load_weight_categories
 from synth.hump.trains.hump_position import Arrivals
 from synth.hump.trains.normal_hump_position import SLOWEST_M_S, LibraryBrake, NormalHumpPosition
@@ -74,7 +73,5 @@ def test_a_cut_passes_the_same_whoever_is_beside_it(arrivals: Callable[..., Arri
 
 
 def test_bad_values_are_refused(arrivals: Callable[..., Arrivals]) -> None:
-    with pytest.raises(PlantError, match="exit_std_m_s"):
-        NormalHumpPosition(-0.1, BRAKE)
     with pytest.raises(ValueError, match="mass_t has the shape"):
         replace(arrivals(5), mass_t=np.ones(4))

@@ -14,7 +14,6 @@ import pytest
 
 from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
 from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.trial import ConstantSpeed
 from tests.synth.hump.trains.made_trials import CATEGORIES, Day
 from tuning_tables import DamagedTable
 from tuning_tables.seal import seal_of
@@ -27,7 +26,7 @@ LARGEST = 2_000_000
 @cache
 def stored() -> tuple[TrialTrains, TrainOutcomes, bytes]:
     """Some trains and their file."""
-    trial = Day(cuts=4, program=ConstantSpeed(1.5)).on("medium")
+    trial = Day(cuts=4, constant_m_s=1.5).on("medium")
     found = trial.batch(0, TRAINS)
     of = TrialTrains(trial.routes, "a" * 64, len(CATEGORIES.members))
     return of, found, to_npz(found, of)

@@ -7,9 +7,8 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from plant_models import PlantError
 from plant_models.library import load_hump
-from synth.hump.trains.free_tracks import AsInFile, DrawnFree
+from synth.hump.configuration.settings import TracksSettings
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from synth.hump.trains.outcomes import (
     GAP_BINS_M,
@@ -20,7 +19,7 @@ from synth.hump.trains.outcomes import (
     joined,
     outcomes,
 )
-from synth.hump.trains.tracks_between import SPARE_M, with_room
+from synth.hump.trains.tracks_between import SPARE_M, free_before_m, with_room
 from synth.hump.trains.train_memory import TrainMemory
 from tests.plant_models.rolling.populations import population
 from tests.synth.hump.trains.bare_cuts import LEAD, BareTrains, one_switch
@@ -137,20 +136,16 @@ def test_histograms_are_those_of_numpy_with_all_beyond_in_the_last_bin() -> None
 def test_free_tracks_are_drawn_evenly_and_are_the_same_in_any_batch() -> None:
     routes = hump_routes(load_hump("large").graph, 201)
     begins = np.array([route.yard_from_m for route in routes.routes])
-    drawn = DrawnFree(0.3, 0.7).free_m(routes, 5, 0, 400)
+    drawn_between = TracksSettings(free_low=0.3, free_high=0.7)
+    drawn = free_before_m(drawn_between, routes, 5, 0, 400)
     share = (drawn - begins) / (routes.length_m - begins)
     assert share.min() > 0.3
     assert share.max() < 0.7
     assert abs(share.mean() - 0.5) < 4.0 * 0.4 / np.sqrt(12 * share.size)
     assert abs(share.std() - 0.4 / np.sqrt(12)) < 0.002
-    np.testing.assert_array_equal(DrawnFree(0.3, 0.7).free_m(routes, 5, 37, 3), drawn[37:40])
-    np.testing.assert_array_equal(AsInFile().free_m(routes, 5, 0, 2), np.tile(routes.length_m, (2, 1)))
-
-
-@pytest.mark.parametrize(("low", "high"), [(-0.1, 0.5), (0.5, 1.1), (0.6, 0.5)])
-def test_shares_of_free_track_are_checked(low: float, high: float) -> None:
-    with pytest.raises(PlantError, match="tracks: free_"):
-        DrawnFree(low, high)
+    np.testing.assert_array_equal(free_before_m(drawn_between, routes, 5, 37, 3), drawn[37:40])
+    as_in_file = free_before_m(TracksSettings(standing="file"), routes, 5, 0, 2)
+    np.testing.assert_array_equal(as_in_file, np.tile(routes.length_m, (2, 1)))
 
 
 def test_a_track_has_room_for_all_that_go_there_as_far_as_it_is_long_enough() -> None:

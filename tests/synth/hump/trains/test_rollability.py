@@ -15,7 +15,7 @@ from synth.hump.trains.rollability import MeasuredRollability
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.train_memory import TrainMemory
 from synth.simulation.free_roll import Rolled
-from tests.synth.hump.trains.asked_cuts import CUT_M, FIRST_M, GRADE, GRAVITY_M_S2, LAST_M, AlikeCuts, asked_at, large
+from tests.synth.hump.trains.asked_cuts import CUT_M, FIRST_M, GRADE, GRAVITY_M_S2, LAST_M, alike_cuts, asked_at, large
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -107,7 +107,7 @@ def rolled(n_per_kn: Floats, wind_m_s: Floats, seed: int, position: int = 1) -> 
         memory.begin_s[:, 0, place], memory.end_s[:, 0, place] = 20.0 * place, 20.0 * place + 5.0
         memory.entry_m_s[:, 0, place], memory.exit_m_s[:, 0, place] = speeds[place], EXITS_M_S[place]
     asked = asked_at(ROUTES, position, memory, speeds[position], np.full(count, 900.0))
-    trains = AlikeCuts(count, np.zeros(count, dtype=np.int64), np.ones(count, dtype=np.int64), seed=seed)
+    trains = alike_cuts(count, np.zeros(count, dtype=np.int64), np.ones(count, dtype=np.int64), seed=seed)
     spread = np.broadcast_to(BENDS_M_S2 / np.sqrt(3.0), (32, 3))
     prior = ResistancePrior(np.full(count, STD), np.full(count, AIR), 0.0, WIND, spread, np.zeros((32, 3)))
     mean = tuple(WindySlope(np.full(count, MEAN), np.zeros(count), np.full(count, c)) for c in BENDS_M_S2)

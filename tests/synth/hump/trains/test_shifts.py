@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from synth.frame.input_error import InputError
+from synth.hump.configuration.settings import TracksSettings
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.trains.batch import batches, orders_of
 from synth.hump.trains.hump_routes import HumpRoutes
@@ -18,9 +19,9 @@ from synth.hump.trains.resolved_trial import resolve_trial
 from synth.hump.trains.shift_sums import longer_shifts, shift_sums, shifts_in
 from synth.hump.trains.shown.shift import rows
 from synth.hump.trains.traced_train import one_train
-from synth.hump.trains.tracks_between import SPARE_M, Shift
+from synth.hump.trains.tracks_between import SPARE_M
 from synth.hump.trains.train_figures import FIGURES, ratio, train_figures
-from synth.hump.trains.trial import ConstantSpeed, HumpTrial, Turn
+from synth.hump.trains.trial import HumpTrial, Turn
 from tests.synth.hump.trains.made_trials import Day
 from tests.synth.hump.trains.test_trial import assert_same, balanced
 
@@ -33,8 +34,8 @@ TRAINS = 5
 def shifts_of(share: float = 0.5, trains: int = TRAINS, threads: int = 1) -> HumpTrial:
     """Trains of 12 long cuts to two tracks, which are full after two or three of them."""
     tracks = dict.fromkeys((1, 2), 1.0)
-    day = Day(cuts=12, cars_mean=3.0, most_cars=6, tracks=tracks, program=ConstantSpeed(1.4), threads=threads)
-    return replace(day.on("medium"), shift=Shift(trains, share))
+    day = Day(cuts=12, cars_mean=3.0, most_cars=6, tracks=tracks, constant_m_s=1.4, threads=threads)
+    return replace(day.on("medium"), tracks=TracksSettings(shift_trains=trains, pulled_from_share=share))
 
 
 @cache

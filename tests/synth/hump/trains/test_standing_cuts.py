@@ -25,11 +25,10 @@ from synth.hump.trains.simulate_command import show
 from synth.hump.trains.traced_train import OneTrain, one_train
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.train_passages import TrainPassages, train_passages, with_contacts
-from synth.hump.trains.trial import ConstantSpeed
 from tests.synth.hump.trains.made_trials import Day
 from tests.system.conftest import changed
 
-STORM = Day(cuts=10, weather=Weather(10.0, 0.0, 15.0), program=ConstantSpeed(0.3))
+STORM = Day(cuts=10, weather=Weather(10.0, 0.0, 15.0), constant_m_s=0.3)
 SPEED_EDGE = "grade_permille = [[0.0, 45.0], [40.0, 22.0]]"
 
 

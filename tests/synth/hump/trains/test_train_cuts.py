@@ -18,6 +18,7 @@ from plant_models.rolling.weather import Weather
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.trains.train_cuts import TrainCuts, expected, trains
 from tests.plant_models.rolling.populations import CATEGORIES, GONDOLA, LONG_TANK, MIX, TANK, population
+from tests.synth.hump.control.drawn_list import drawn_list
 from tests.synth.hump.trains.rolling_cuts import route_rolling
 
 OWN_MIX = CarMix((MixedCar(GONDOLA, 0.5, 11.6), MixedCar(TANK, 0.3, 10.5), MixedCar(LONG_TANK, 0.2, 12.0)))
@@ -32,7 +33,7 @@ def some(first: int, count: int, cuts: int = 40, **options: bool) -> TrainCuts:
 
 
 def test_the_first_train_is_the_list_of_the_population() -> None:
-    listed, made = TRAINS.train(5, 40), some(0, 1)
+    listed, made = drawn_list(TRAINS, 5, 40), some(0, 1)
     for name in ("cars", "axles", "track"):
         assert getattr(made, name).tolist() == [getattr(cut, name) for cut in listed.cuts]
     assert [CATEGORIES.members[place].number for place in made.category] == [cut.category for cut in listed.cuts]

@@ -9,11 +9,11 @@ import pytest
 
 from plant_models.rolling.resistance_law import Tb10062Law
 from plant_models.rolling.weather import Weather
-from synth.hump.trains.free_tracks import DrawnFree
-from synth.hump.trains.hump_speed import PairByPair
+from synth.hump.configuration.settings import TracksSettings
+from synth.hump.trains.hump_speed import pair_by_pair
 from synth.hump.trains.outcomes import TrainOutcomes, joined
 from synth.hump.trains.train_figures import train_figures
-from synth.hump.trains.trial import ConstantSpeed, Control, Sensing
+from synth.hump.trains.trial import Control, Sensing
 from tests.effort import every
 from tests.synth.hump.trains.made_trials import Day
 
@@ -41,7 +41,7 @@ def test_a_train_is_the_same_in_any_batch_and_with_any_threads(day: Day) -> None
 
 
 def test_trains_alone_are_those_of_a_batch_where_cuts_touch_and_push_one_another() -> None:
-    trial = Day(cuts=8, tracks={1: 1.0, 2: 1.0}, program=ConstantSpeed(2.8)).on("medium")
+    trial = Day(cuts=8, tracks={1: 1.0, 2: 1.0}, constant_m_s=2.8).on("medium")
     whole = trial.batch(0, 16)
     assert_same(joined([trial.batch(number, 1) for number in range(16)]), whole)
     assert whole.caught_on_track.any()
@@ -74,10 +74,15 @@ ODD = {
     "wind behind": Day(weather=Weather(-60.0, -30.0, 15.0), control=MEASURED),
     "deep snow": Day(weather=Weather(-20.0, 0.0, 3.0, 10.0)),
     "tb 10062": Day(law=Tb10062Law()),
-    "pairs": Day(method=PairByPair(), control=MEASURED),
-    "constant": Day(program=ConstantSpeed(2.5), control=Control(False)),
+    "pairs": Day(method=pair_by_pair, control=MEASURED),
+    "constant": Day(constant_m_s=2.5, control=Control(False)),
     "full tracks": Day(
-        cuts=20, cars_mean=8.0, most_cars=60, tracks={1: 1.0, 2: 1.0}, free=DrawnFree(0.0, 0.0), control=MEASURED
+        cuts=20,
+        cars_mean=8.0,
+        most_cars=60,
+        tracks={1: 1.0, 2: 1.0},
+        standing=TracksSettings(free_low=0.0, free_high=0.0),
+        control=MEASURED,
     ),
     "no brake": Day(heads_m=(0.0, 0.0, 0.0), control=MEASURED),
 }
@@ -101,7 +106,7 @@ def test_all_humps_of_the_library_are_humped(hump: str, lead: int) -> None:
 
 
 def test_a_constant_speed_is_kept() -> None:
-    trains, _, memory = Day(program=ConstantSpeed(2.5)).on().humped(0, 20)
+    trains, _, memory = Day(constant_m_s=2.5).on().humped(0, 20)
     assert (memory.hump_speed_m_s == 2.5).all()
     length = trains.length_m.reshape(20, -1)
     apart = 0.5 * (length[:, 1:] + length[:, :-1])
@@ -110,7 +115,7 @@ def test_a_constant_speed_is_kept() -> None:
 
 def test_a_feedback_only_slows_the_train_down_and_within_what_the_locomotive_can() -> None:
     """A program that is too fast makes it do so; it never falls below the lowest step."""
-    day = Day(cuts=25, program=ConstantSpeed(3.2), control=Control(slow_down_s=0.5))
+    day = Day(cuts=25, constant_m_s=3.2, control=Control(slow_down_s=0.5))
     trains, plan, memory = day.on().humped(0, 30)
     slower = memory.hump_speed_m_s < plan.hump_speed_m_s - 1e-9
     assert 0.02 < slower.mean() < 0.8

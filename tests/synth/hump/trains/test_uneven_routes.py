@@ -25,7 +25,7 @@ from synth.hump.trains.speed_program import speed_program
 from synth.hump.trains.train_cuts import expected
 from synth.hump.trains.train_figures import ratio
 from synth.hump.trains.train_trace import body_of
-from synth.hump.trains.trial import ConstantSpeed, Control, HumpTrial, Sensing
+from synth.hump.trains.trial import Control, HumpTrial, Sensing
 from synth.simulation.free_roll import rolling_cuts
 from tests.effort import every
 from tests.plant_models.hump.small_hump import SMALL
@@ -171,7 +171,7 @@ def test_a_feedback_catches_no_more_than_an_open_loop(name: str) -> None:
     """The same trains, too fast, with inexact positions; what a feedback saves by train, with its interval."""
     caught = {}
     for key, control in (("open", Control(False)), ("closed", Control())):
-        day = Day(cuts=16, std_m_s=0.3, program=ConstantSpeed(2.6), control=control)
+        day = Day(cuts=16, std_m_s=0.3, constant_m_s=2.6, control=control)
         caught[key] = trial_on(name, day).batch(0, 80).caught
     value, low, _ = ratio((caught["closed"] - caught["open"]).astype(float), np.full(80, 16.0))
     assert low <= 0.0

@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from plant_models.frozen_arrays import Floats
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.trains.made_trial import brake_of, made_trial
 from synth.hump.trains.resolved_trial import ResolvedTrial, resolve_trial
 from synth.hump.watching.drift_cost import (
     Difference,
-    Floats,
     MeasuredRetarder,
     Retarder,
-    Weights,
     difference,
     drift_cost,
 )
+from synth.hump.watching.settings import CostSettings
 from tests.synth.hump.trains.conftest import arriving
 from tests.system.test_hump_trials import SMALL
 
@@ -54,7 +54,7 @@ def test_faster_exits_cost_over_speeds_and_slower_ones_gaps(config: ResolvedTria
     assert slow.gap_m_per_hour.told.low95 > 0.0
     for each in vars(none).values():
         assert each.told.low95 < 0.0 < each.told.high95
-    weights = Weights(1.0, 0.0)
+    weights = CostSettings(cars_per_overspeed=1.0, cars_per_gap_m=0.0)
     assert fast.weight_per_hour(weights).above(slow.weight_per_hour(weights))
     assert not none.weight_per_hour(weights).above(slow.weight_per_hour(weights))
     assert drift_cost(retarder, calm[:9], calm, trains) is None

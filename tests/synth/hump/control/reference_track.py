@@ -15,12 +15,12 @@ from itertools import count
 from math import isfinite
 
 from plant_models.hump.switch import Switch
-from synth.hump.control.cut_motion import MovingCut
 from synth.hump.control.models import ENTRY, AxlePass, Braking, Occupation
-from synth.hump.control.reference_faults import CounterSlip, Fault
-from synth.hump.control.reference_points import ReferencePoints
-from synth.hump.control.reference_sections import ReferenceSections
 from synth.hump.control.route_table import RouteTable
+from tests.synth.hump.control.cut_motion import MovingCut
+from tests.synth.hump.control.faulty_points import FaultyPoints
+from tests.synth.hump.control.reference_faults import CounterSlip, Fault
+from tests.synth.hump.control.reference_sections import ReferenceSections
 
 
 class Step(IntEnum):
@@ -60,7 +60,7 @@ class ReferenceTrack:
         self._table, self._cuts, self.truth, self._now_s = table, tuple(cuts), Truth(), float("-inf")
         self._names = [cut.cut for cut in cuts]
         self._sections = ReferenceSections(faults, sees_axles)
-        self._points = ReferencePoints(table.graph.switches, faults)
+        self._points = FaultyPoints(table.graph.switches, faults)
         self._slips = {(f.element, f.end, f.axle): f.change for f in faults if isinstance(f, CounterSlip)}
         self._counted: dict[tuple[int, int], int] = defaultdict(int)
         self._passes: list[AxlePass] = []

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from synth.hump.control.models import Occupation
-from synth.hump.control.reference_faults import NOBODY, FalselyFree, FalselyOccupied, Fault
+from tests.synth.hump.control.reference_faults import NOBODY, FalselyFree, FalselyOccupied, Fault
 
 
 class ReferenceSections:

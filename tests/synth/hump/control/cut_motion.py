@@ -7,12 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require
-from plant_models.frozen_arrays import frozen_arrays
-
-Floats = NDArray[np.float64]
+from plant_models.frozen_arrays import Floats, frozen_arrays
 
 
 @frozen_arrays
