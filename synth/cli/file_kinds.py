@@ -160,7 +160,7 @@ FILE_KINDS: Final = (
         "sweep",
         "Configuration with a sweep",
         "synth.retarder.sweep.sweep_settings:SweepFileSettings",
-        "synth.retarder.sweep.template:default_sweep_toml",
+        "synth.retarder.sweep.sweep_settings:default_sweep_toml",
     ),
     declared(
         "aim",

@@ -16,8 +16,8 @@ from synth.retarder.tuned_case import Case
 if TYPE_CHECKING:
     from synth.frame.results_directory import ResultsDirectory
     from synth.retarder.found_book import FoundBook
-    from synth.retarder.solving_options import SolvingOptions
     from synth.retarder.tune import Book, CaseDone
+    from synth.retarder.tune_options import TuneOptions
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class AskedTune(Generic[Case, Table]):
 
 
 def asked_tune(
-    config: ResolvedConfig, place: str, epochs: Epochs[Case, Table], options: SolvingOptions
+    config: ResolvedConfig, place: str, epochs: Epochs[Case, Table], options: TuneOptions
 ) -> AskedTune[Case, Table]:
     """A tune of `config`, the file `place`, refused where it does not fit into memory."""
     workers = options.workers_for(len(config.cuts))

@@ -11,17 +11,17 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.requirement_found import Finding
+from synth.retarder.checked_design import GridCheck
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.measured import Measured
-from synth.retarder.feasibility import Feasibility
-from synth.retarder.grid_check import GridCheck
+from synth.retarder.comparison.served_entry import Feasibility
 from synth.retarder.off_nominal.outcome import OffNominal
 from synth.retarder.pareto.pareto_front import ParetoFront
 from synth.retarder.tuned_case import TunedCase
 from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import ControllerTable
 
-if TYPE_CHECKING:  # who draws or reports a case needs no kernels
+if TYPE_CHECKING:
     from synth.retarder.tuned_table import AnyEstimate
 
 

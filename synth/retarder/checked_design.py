@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from typing import Final, Generic, Protocol, TypeVar
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.retarder.grid_check import GridCheck
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.scenarios import persistent_scenarios
@@ -23,6 +22,31 @@ from synth.solver.polynomial_fit import Fit
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.required_lines import RequiredLines, required_lines
 from synth.solver.tuned_lines import fitted
+
+
+@dataclass(frozen=True)
+class GridCheck:
+    """The rms of polished lines on the grid of their design, and what an independent computation says of it.
+
+    `again`: whether the design is a second one, on finer speeds, as the first was not believed. `most_off`: factor
+    between the two, either way, beyond which the grid is not believed.
+    """
+
+    design_rms_m_s: float
+    independent_rms_m_s: float
+    again: bool
+    most_off: float
+
+    @property
+    def share(self) -> float:
+        """The first over the second; 1 where the second is 0."""
+        return self.design_rms_m_s / self.independent_rms_m_s if self.independent_rms_m_s > 0.0 else 1.0
+
+    @property
+    def is_believed(self) -> bool:
+        """Whether the two agree."""
+        return 1.0 / self.most_off <= self.share <= self.most_off
+
 
 FINER_SPEED: Final = 2.0
 FINER_FRICTIONS, FINER_RESISTANCES = 9, 5

@@ -20,10 +20,10 @@ from plant_models import (
     TrackProfile,
 )
 from synth.retarder.case_result import CaseResult, CaseStudy, PolicyMap
+from synth.retarder.checked_design import GridCheck
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.measured import Measured
-from synth.retarder.feasibility import Feasibility
-from synth.retarder.grid_check import GridCheck
+from synth.retarder.comparison.served_entry import Feasibility
 from synth.retarder.off_nominal.condition import CONDITIONS
 from synth.retarder.off_nominal.outcome import OffNominal, Outcome
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio

@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from synth.retarder.bench.bench_pass import BenchPass
     from synth.retarder.bench.cases import BenchCase
     from synth.retarder.bench.clock import Clock
-    from synth.retarder.bench.found_bench import FoundBench
-    from synth.retarder.bench.score import Errors
+    from synth.retarder.bench.score import Errors, FoundBench
     from synth.retarder.served_class import ServedClass
     from tuning_tables import ControllerTable
     from tuning_tables.table_book import TableBook
@@ -93,10 +92,9 @@ def benched(asked: AskedBench, work: Work) -> FoundBench:
     from synth.retarder.bench.cases import class_seeds, coming_cuts
     from synth.retarder.bench.clock import Cycles, InStep, RealTime, before_all_others
     from synth.retarder.bench.exchange import Exchange
-    from synth.retarder.bench.found_bench import FoundBench
-    from synth.retarder.bench.live_page import PAGE, live_page
-    from synth.retarder.bench.live_run import LiveRun
+    from synth.retarder.bench.live_run import PAGE, LiveRun, live_page
     from synth.retarder.bench.run import Bench, Patience
+    from synth.retarder.bench.score import FoundBench
     from synth.retarder.bench.servers import listening
 
     cuts = coming_cuts(asked.seed, len(asked.tables), asked.passes)

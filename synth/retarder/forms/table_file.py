@@ -6,16 +6,18 @@ import json
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from synth.frame.input_error import InputError
 from synth.frame.machine_fault import MACHINE_FAULTS
 from synth.frame.summary import FORMAT
-from synth.retarder.forms.aim_file import read_aims
-from synth.retarder.forms.table_mark import is_table_of
 from tuning_tables import ControllerTable, read_book, read_json
 from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.document import FORMAT as TABLE
+from tuning_tables.json_text import LARGEST_FILE_BYTES
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.regular_file import first_bytes
+from tuning_tables.table_kinds import AnyTable, kind_of
 
 HDF5_SIGNATURE = b"\x89HDF"
 BOOK_SUFFIXES = (".h5", ".hdf5")
@@ -117,3 +119,40 @@ def is_infeasible(table: ControllerTable | PassageTable, summary: dict[str, obje
             same = sha256 == table.generator.config_sha256
             return same and any(case.get("verdict") == "infeasible" for case in found)
     return False
+
+
+OF_FORMAT: Final = re.compile(rb'"format"\s*:\s*"%s"' % TABLE.encode())
+OF_KIND: Final = re.compile(rb'"kind"\s*:\s*"(\w+)"')
+"""No text in a JSON document can hold these: its quotes would be escaped."""
+
+
+def is_table_of(table: type[AnyTable], file: Path) -> bool:
+    """Whether a JSON file says that it is a table of this class; what cannot be read does not."""
+    try:
+        content = b"" if file.suffix in BOOK_SUFFIXES else first_bytes(file, LARGEST_FILE_BYTES)
+    except OSError:  # whoever reads it for its tables tells why
+        return False
+    return bool(OF_FORMAT.search(content)) and OF_KIND.findall(content) == [kind_of(table).encode()]
+
+
+@dataclass(frozen=True)
+class AimFile:
+    """The aim table of one file; reading it has checked its sum."""
+
+    path: Path
+    table: AimTable
+
+
+def read_aims(path: Path) -> tuple[AimFile, ...]:
+    """The aim tables at `path`: a file, or those of a directory, in tables/ if it has that; empty where there is none.
+
+    `TableError` where one is damaged.
+    """
+    return tuple(AimFile(file, read_json(file, AimTable)) for file in files_of(AimTable, path))
+
+
+def files_of(table: type[AnyTable], path: Path) -> list[Path]:
+    """The JSON files with a table of this class at `path`: a file, or those of a directory or of its tables/."""
+    folder = path / "tables" if (path / "tables").is_dir() else path
+    files = sorted(folder.glob("*.json")) if path.is_dir() else [path]
+    return [file for file in files if is_table_of(table, file)]

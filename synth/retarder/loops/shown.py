@@ -190,6 +190,6 @@ def cycle(loop: AnyLoop, hunting: Hunting) -> Figure:
 
 def structure(loop: AnyLoop) -> Figure:
     """See `response`."""
-    from synth.retarder.pictures.loop_structure import loop_structure
+    from synth.retarder.pictures.block_diagram import loop_structure
 
     return loop_structure(loop)

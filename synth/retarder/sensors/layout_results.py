@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from synth.frame.interval import Interval
 from synth.retarder.case_result import PolicyMap
-from synth.retarder.configuration.config_source import ConfigSource
-from synth.retarder.sensors.anywhere import policy_anywhere
+from synth.retarder.configuration.config_file import ConfigSource
+from synth.retarder.sensors.candidate_places import policy_anywhere
 from synth.retarder.sensors.layout import rule_layout
 from synth.retarder.sensors.layout_plan import (
     JudgedLayout,

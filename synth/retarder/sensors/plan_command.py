@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.printed_numbers import counted
-from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.config_source import source_of_text
+from synth.retarder.configuration.config_file import parse_config, source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.sensors.plan_options import PlanOptions
@@ -37,7 +36,7 @@ class AskedPlan:
 
 def resolve(asked: Asked[ResolvedConfig, PlanOptions]) -> AskedPlan:
     """The problem of a configuration."""
-    from synth.retarder.sensors.layout_order import layout_problem
+    from synth.retarder.sensors.layout_plan import layout_problem
     from synth.retarder.sensors.layout_results import AskedLayouts
 
     config, options = asked.settings, asked.options

@@ -122,7 +122,7 @@ def rehearsed(asked: AskedPasses, work: Work) -> FoundPasses:
 def log_file(rehearsal: Rehearsal, log: AskedLog) -> File:
     """Passes of the tables, simulated once more, as cuts come, as a controller logs them."""
     from plant_models.pressure_gauge import PressureGauge
-    from synth.retarder.validation.rehearsed_log import rehearsed_log
+    from synth.retarder.validation.revalidation import rehearsed_log
     from tuning_tables.pass_log.log_files import write_log
 
     gauge = None if log.gauge_std_kpa is None else PressureGauge(log.gauge_std_kpa)

@@ -11,8 +11,7 @@ from synth.logs import unknowns as asked
 from synth.logs.fitting_passes import fitting_passes
 from synth.logs.identified_config import identified
 from synth.logs.identify import Identified, identify
-from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.config_source import ConfigSource, config_source
+from synth.retarder.configuration.config_file import ConfigSource, config_source, parse_config
 from tests.studies.identification.coarse_table import coarse_table
 from tests.studies.identification.conftest import MASSES_T, TARGET_M_S
 from tests.studies.identification.foreign.foreign_log import foreign_exits, foreign_log

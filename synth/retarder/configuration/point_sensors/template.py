@@ -8,8 +8,7 @@ from typing import Final
 from plant_models.library import PositionEntry
 from synth.frame.input_error import InputError
 from synth.frame.settings.template import template
-from synth.retarder.configuration.config_file import parse_config, valid_settings
-from synth.retarder.configuration.config_source import config_source
+from synth.retarder.configuration.config_file import config_source, parse_config, valid_settings
 from synth.retarder.configuration.config_template import known_of
 from synth.retarder.configuration.plant_settings import DEFAULT_CUTS, CutSettings, PositionSettings
 from synth.retarder.configuration.point_sensors.settings import PointSensorSettings
