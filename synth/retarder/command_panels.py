@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from synth.frame.picture.house_style import new_figure, place
-from synth.retarder.case_result import PolicyMap
+from synth.retarder.policy_map import PolicyMap
 
 DOWN, HOLD, UP, HATCH = "#cfe4f3", "#fafafa", "#fae0cf", "#b5b5b5"
 STRIPE_PERIOD, STRIPE_WIDTH = 9, 2

@@ -9,7 +9,7 @@ import numpy as np
 
 from plant_models import Plant
 from synth.problem.aim import Aim
-from synth.retarder.case_result import CaseResult, CaseStudy
+from synth.retarder.case_result import CaseResult
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup
 from synth.retarder.comparison.compared_laws import beside_table, best_law, compared_laws, permitted
 from synth.retarder.comparison.comparison import Comparison
@@ -20,7 +20,7 @@ from synth.retarder.epochs import Ground, Store
 from synth.retarder.estimation.estimated_table import controller_of
 from synth.retarder.off_nominal.trial import Trials, trials
 from synth.retarder.pareto.case_front import Front, pareto_front
-from synth.retarder.policy_map import policy_map
+from synth.retarder.policy_map import share_of_ties
 from synth.retarder.tuned_table import TunedTable, ValidatedLines, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses
@@ -28,12 +28,7 @@ from synth.simulation.passes import TRACE_FACTORS, ExitSample
 from synth.simulation.random_passes import random_passes
 from synth.simulation.unavoidable_error import unavoidable_error
 from synth.solver.backward_induction import Solution
-from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable
-
-LINE_NODES = 301
-INDIFFERENCE_SHOWN_M2_S2 = 1e-4
-"""Costs that differ by less than (1 cm/s)² are drawn as equal."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +88,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
         estimate=tuned.designed.estimate,
         comparison=comparison(order, tuned, validated, told),
         feasibility=feasibility_of(order.entries, target, order.limit_m_s),
-        study=case_study(order, validated),
+        ties=share_of_ties(solution),
         front=None if order.front is None else order.front(),
         off_nominal=order.trials.of(validated.table, validated.sample),
     )
@@ -113,15 +108,4 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedLines, t
         baselines=tuple(each.measured for each in laws),
         baseline_ratio_ci95=beside_table("", best_law(laws).sample, told, target).table_ratio_ci95,
         at_rest=None if tuned.at_any_time is None else at_rest(),
-    )
-
-
-def case_study(order: CaseOrder, validated: ValidatedLines) -> CaseStudy:
-    """Lines and policy map."""
-    return CaseStudy(
-        table_lines=lines_of(
-            validated.table, np.linspace(order.setup.plant.start_m, order.setup.plant.exit_m, LINE_NODES)
-        ),
-        solver_lines=order.solution.lines,
-        policy_map=policy_map(order.solution, INDIFFERENCE_SHOWN_M2_S2),
     )

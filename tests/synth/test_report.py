@@ -256,7 +256,7 @@ def test_limit_cycles_are_told_where_there_are_some() -> None:
     case = make_case()
     shown = list(checks((case,)))
     assert any(isinstance(each, Table) and each.name == "hunting" for each in shown) == bool(
-        hunting_report(case.plant, case.study.table_lines)
+        hunting_report(case.plant, case.table_lines)
     )
     assert any(isinstance(each, Sentence) and "does not hunt" in each.text for each in shown)
 

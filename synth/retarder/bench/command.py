@@ -13,7 +13,7 @@ from synth.retarder.bench.options import Address, BenchOptions
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import MODEL_ONLY
-from synth.retarder.tables_configuration import configuration_for, given_config, made_elsewhere
+from synth.retarder.tables_configuration import configuration_of, given_config, made_elsewhere
 
 if TYPE_CHECKING:
     from synth.retarder.bench.bench_pass import BenchPass
@@ -54,9 +54,7 @@ def resolve(asked: Asked[ResolvedConfig | None, BenchOptions]) -> AskedBench:
 
     options = asked.options
     tables = tables_at(options.source).only_lines("bench")
-    config, source = (
-        (asked.settings, asked.place) if asked.settings else configuration_for(None, options.source, tables)
-    )
+    config, source = configuration_of(asked, tables)
     book = TableBook(tables)
     unused = {table.id for table in book.shadowed()}
     chosen = tuple((table, served_class(table, config, source)) for table in tables if table.id not in unused)

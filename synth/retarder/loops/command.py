@@ -13,8 +13,7 @@ from synth.frame.input_error import InputError
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import MODEL_ONLY
-from synth.retarder.loops.options import LoopOptions
-from synth.retarder.tables_configuration import configuration_for, given_config
+from synth.retarder.tables_configuration import TablesOptions, configuration_of, given_config
 
 if TYPE_CHECKING:
     from synth.retarder.line_control_loop import LineControlLoop
@@ -46,7 +45,7 @@ class FoundLoops:
     loops: tuple[AnyLoop, ...]
 
 
-def resolve(asked: Asked[ResolvedConfig | None, LoopOptions]) -> AskedLoops:
+def resolve(asked: Asked[ResolvedConfig | None, TablesOptions]) -> AskedLoops:
     """The tables; refused where one fits no class of the configuration, or python-control cannot close its loop."""
     from synth.retarder.forms.tables_at import tables_at
 
@@ -54,7 +53,7 @@ def resolve(asked: Asked[ResolvedConfig | None, LoopOptions]) -> AskedLoops:
     tables = tables_at(path).of_stages
     if not tables:
         raise InputError(f"{path}: its tables are aim tables, which regulate nothing; give those of a tune")
-    config, place = (asked.settings, asked.place) if asked.settings else configuration_for(None, path, tables)
+    config, place = configuration_of(asked, tables)
     return AskedLoops(config, tuple(closing(table, config, place) for table in tables))
 
 
@@ -114,7 +113,7 @@ def show(found: FoundLoops) -> Iterator[Chapter]:
 COMMAND = Command(
     name="loop",
     read=given_config,
-    options=LoopOptions,
+    options=TablesOptions,
     resolve=resolve,
     head=head,
     steps=steps,

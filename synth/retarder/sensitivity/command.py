@@ -16,7 +16,6 @@ from synth.retarder.configured import head_of
 from synth.retarder.sensitivity.options import SensitivityOptions
 
 if TYPE_CHECKING:
-    from synth.frame.terminal.progress import Progress
     from synth.retarder.sensitivity.fixed_tables import FixedTables
     from synth.retarder.sensitivity.sensitivity import Sensitivity, Trial
 
@@ -66,14 +65,8 @@ def steps(asked: AskedSensitivity) -> Steps:
 
 def compute(asked: AskedSensitivity, work: Work) -> Sensitivity:
     """Tune the tables unless they are given, and let the plant vary under them."""
-    from synth.kernels.cache import guarded
-
-    return guarded(shared_out, asked, work.progress)
-
-
-def shared_out(asked: AskedSensitivity, progress: Progress) -> Sensitivity:
-    """The same with kernels that may have to be compiled anew."""
     from synth.frame.creation_time import creation_time
+    from synth.kernels.cache import guarded
     from synth.retarder.sensitivity.fixed_tables import tables_tuned
     from synth.retarder.sensitivity.sensitivity import sensitivity
     from synth.retarder.tables_refused import tables_refused
@@ -81,8 +74,8 @@ def shared_out(asked: AskedSensitivity, progress: Progress) -> Sensitivity:
     config = asked.config
     with tables_refused(asked.place, config):
         workers = min(len(config.cuts), available())
-        fixed = asked.given or tables_tuned(config, creation_time(), workers, progress.done)
-        return sensitivity(config, fixed, asked.trial, available(), progress.done)
+        fixed = asked.given or guarded(tables_tuned, config, creation_time(), workers, work.progress.done)
+        return guarded(sensitivity, config, fixed, asked.trial, available(), work.progress.done)
 
 
 def show(found: Sensitivity) -> Iterator[Chapter]:

@@ -16,8 +16,7 @@ from plant_models import Plant, PointSensors
 from synth.kernels.vector.packs import EIGHT
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
-from synth.retarder.case_result import PolicyMap
-from synth.retarder.policy_map import policy_map
+from synth.retarder.policy_map import PolicyMap, policy_map
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.chain.decisions import Decisions

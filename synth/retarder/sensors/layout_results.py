@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.frame.interval import Interval
-from synth.retarder.case_result import PolicyMap
 from synth.retarder.configuration.config_file import ConfigSource
+from synth.retarder.policy_map import PolicyMap
 from synth.retarder.sensors.candidate_places import policy_anywhere
 from synth.retarder.sensors.layout import rule_layout
 from synth.retarder.sensors.layout_plan import (

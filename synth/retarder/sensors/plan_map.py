@@ -10,8 +10,8 @@ from matplotlib.patches import Patch
 
 from plant_models.point_sensors import deciding_passages
 from synth.frame.picture.house_style import BLUE, GREY, INK, VERMILLION, dress, mark_zones
-from synth.retarder.case_result import PolicyMap
 from synth.retarder.command_panels import DOWN, HATCH, HOLD, UP, command_image, label_panels, stage_panels
+from synth.retarder.policy_map import PolicyMap
 from synth.retarder.sensors.layout_tables import LayoutTable
 
 BELOW_TARGET_M_S, ABOVE_FASTEST_M_S = 1.0, 0.4
