@@ -17,8 +17,7 @@ from synth.retarder.rounded_table import predict
 from synth.retarder.served_class import ServedClass
 from synth.simulation.closed_loop import TableController
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass
-from synth.simulation.nominal_response import NominalResponse, nominal_response
-from synth.simulation.response_difference import SAME_SAMPLE_S
+from synth.simulation.nominal_response import SAME_SAMPLE_S, NominalResponse, nominal_response
 from synth.solver.chain.chain import check_chain
 from synth.solver.chain.speed_measurement import quantised_measurement
 from synth.solver.tabulate import lines_of

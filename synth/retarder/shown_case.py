@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synth.problem.aim import OVERSPEED_M_S
-from synth.retarder.case_result import CaseResult
 from synth.retarder.exit_bins import bin_edges_m_s, predicted_density
 from synth.simulation.passes import TRACE_FACTORS, PassTrace
 from synth.solver.switching_lines import SwitchingLines
+
+if TYPE_CHECKING:
+    from synth.retarder.case_result import CaseResult
 
 NOMINAL: Final = TRACE_FACTORS.index(1.0)
 """Which of the traced passes is shown: that of mean friction."""

@@ -8,7 +8,6 @@ from functools import partial
 import numpy as np
 
 from plant_models import Plant
-from synth.problem.aim import Aim
 from synth.retarder.case_result import CaseResult
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup
 from synth.retarder.comparison.compared_laws import beside_table, best_law, compared_laws, permitted
@@ -19,7 +18,7 @@ from synth.retarder.comparison.served_entry import EntrySweep, entry_sweep, feas
 from synth.retarder.epochs import Ground, Store
 from synth.retarder.estimation.estimated_table import controller_of
 from synth.retarder.off_nominal.trial import Trials, trials
-from synth.retarder.pareto.case_front import Front, pareto_front
+from synth.retarder.pareto.pareto_front import Front, pareto_front
 from synth.retarder.policy_map import share_of_ties
 from synth.retarder.tuned_table import TunedTable, ValidatedLines, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
@@ -54,7 +53,7 @@ def case_orders(ground: Ground[ControllerTable], label: str, plant: Plant, paret
     """All targets of one cut class solved, and what is to be done with each; `pareto`: front of each case too."""
     config = ground.config
     setup = class_setup(config, label, plant, ground.passes, ground.origin)
-    aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
+    aims = config.aims_of(label)
     rehearsal = setup.passes.of_others(random_passes(config.validation.seed + 1, 0, TUNING_PASSES))
     entries, off_nominal = entry_sweep(setup.passes), trials(setup.passes)
     fronts = [partial(pareto_front, config, setup, aim) if pareto else None for aim in aims]

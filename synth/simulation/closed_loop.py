@@ -27,10 +27,10 @@ from synth.kernels.loop.trace import EVENT_FIELDS, Trace
 from synth.simulation.controllers import Controller, LineController, Regulator, TableController, fixed
 from synth.simulation.drive_pieces import drive_pieces, empty_periods
 from synth.simulation.lost_readings import readings_z
-from synth.simulation.many_passes import many_passes
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.path_cells import path_cells
 from synth.simulation.random_passes import RandomPasses
+from synth.simulation.stratified_passes import many_passes
 
 __all__ = [
     "ClosedLoop",

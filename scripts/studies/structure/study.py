@@ -25,12 +25,11 @@ from synth.retarder.configuration.config_file import load_config
 from synth.retarder.sensors.passage_table import plausible_motion
 from synth.simulation.controllers import TableController
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant, one_pass
-from synth.simulation.nominal_response import NominalResponse, nominal_response
+from synth.simulation.nominal_response import SAME_PASSAGE_S, NominalResponse, nominal_response, response_difference
 from synth.simulation.passage_controller import PassageController, of_speeds
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.passage_response import passage_response
 from synth.simulation.passes import PassTrace
-from synth.simulation.response_difference import SAME_PASSAGE_S, response_difference
 from synth.simulation.structure.diagram import Diagram, Sketch
 from synth.simulation.structure.passage_diagram import passage_diagram
 from synth.simulation.structure.radar_diagram import radar_diagram

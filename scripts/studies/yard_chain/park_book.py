@@ -12,7 +12,6 @@ from scripts.studies.aiming.trial import Cuts
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.tuned_table import CREATED
 from synth.aim.table_position import TablePosition, entry_speeds_m_s, table_position
-from synth.problem.aim import Aim
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
 from synth.retarder.comparison.baselines import FAMILIES, tune
 from synth.retarder.configuration.config_file import parse_config
@@ -98,7 +97,7 @@ def park_book(cuts: Cuts, targets_m_s: tuple[float, ...], classes: int, coarse: 
 
 def tables_of(config: ResolvedConfig, setup: ClassSetup) -> list[ControllerTable]:
     """The tables of one class, read back."""
-    aims = [Aim(target, config.criterion) for target in config.targets_of(setup.label)]
+    aims = config.aims_of(setup.label)
     return [from_json(to_json(tuned_table(setup, found).table)) for found in solutions(setup.design, aims)]
 
 

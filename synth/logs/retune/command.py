@@ -69,7 +69,7 @@ def compute(asked: AskedRetune, work: Work) -> Retuned:
     from synth.frame.processors import available
     from synth.kernels.cache import guarded
     from synth.logs.retune.retune import RetuneOrder, retune
-    from synth.retarder.tables_refused import tables_refused
+    from synth.retarder.attempted_case import tables_refused
 
     order = RetuneOrder(asked.old, creation_time(), threads=available())
     with tables_refused(asked.asked.place, asked.asked.config):

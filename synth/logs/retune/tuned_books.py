@@ -7,7 +7,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 from plant_models import Plant
-from synth.problem.aim import Aim
 from synth.retarder.attempted_case import attempted
 from synth.retarder.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -62,8 +61,7 @@ def tuned_tables(config: ResolvedConfig, setups: Sequence[ClassSetup], threads: 
         return made
 
     def of_class(setup: ClassSetup) -> list[tuple[Case, ControllerTable | FailedCase]]:
-        aims = [Aim(target, config.criterion) for target in config.targets_of(setup.label)]
-        found = solutions(setup.design, aims)
+        found = solutions(setup.design, config.aims_of(setup.label))
         return [((setup.label, each.aim.target_speed_m_s), of_case(setup, each)) for each in found]
 
     with ThreadPoolExecutor(threads) as pool:

@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps, Unfinished, Work
+from synth.frame.command import Asked, Command, Limit, Steps, Unfinished, Work
 from synth.frame.exhibits import Chapter
 from synth.retarder.bench.options import Address, BenchOptions
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -66,16 +66,6 @@ def resolve(asked: Asked[ResolvedConfig | None, BenchOptions]) -> AskedBench:
     require_possible(options.addresses)
     seed = config.validation.seed if options.seed is None else options.seed
     return AskedBench(config, warnings, book, chosen, options.passes, seed, options.in_step, options.addresses)
-
-
-def head(asked: AskedBench) -> Head:
-    """What is said of the configuration."""
-    return head_of(asked.config, asked.warnings)
-
-
-def steps(asked: AskedBench) -> Steps:
-    """A step for each cut."""
-    return Steps(asked.passes, "braking", "cuts")
 
 
 def compute(asked: AskedBench, work: Work) -> FoundBench:
@@ -166,8 +156,8 @@ COMMAND = Command(
     read=given_config,
     options=BenchOptions,
     resolve=resolve,
-    head=head,
-    steps=steps,
+    head=lambda asked: head_of(asked.config, asked.warnings),
+    steps=lambda asked: Steps(asked.passes, "braking", "cuts"),
     compute=compute,
     show=show,
     limits=limits,

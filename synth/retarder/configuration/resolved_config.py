@@ -100,6 +100,10 @@ class ResolvedConfig:
         (own,) = (c.targets_m_s for c in self.cuts if c.label == label)
         return self.targets_m_s if own is None else own
 
+    def aims_of(self, label: str) -> tuple[Aim, ...]:
+        """The same, with what a pass costs that misses one."""
+        return tuple(Aim(target, self.criterion) for target in self.targets_of(label))
+
     @property
     def lowest_target_m_s(self) -> float:
         """Of all classes."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.command import Asked, Command, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.input_error import InputError
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -75,16 +75,6 @@ def closing(table: StageTable, config: ResolvedConfig, source: str) -> Callable[
     return partial(line_control_loop, table, served_class(table, config, source))
 
 
-def head(asked: AskedLoops) -> Head:
-    """What is said of the configuration."""
-    return head_of(asked.config)
-
-
-def steps(asked: AskedLoops) -> Steps:
-    """A step for each table."""
-    return Steps(len(asked.closings), "closing", "loops")
-
-
 def compute(asked: AskedLoops, work: Work) -> FoundLoops:
     """All loops."""
     from synth.kernels.cache import guarded
@@ -115,8 +105,8 @@ COMMAND = Command(
     read=given_config,
     options=TablesOptions,
     resolve=resolve,
-    head=head,
-    steps=steps,
+    head=lambda asked: head_of(asked.config),
+    steps=lambda asked: Steps(len(asked.closings), "closing", "loops"),
     compute=compute,
     show=show,
     limits=limits,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Steps, Work
+from synth.frame.command import Asked, Command, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.processors import available
 from synth.retarder.configuration.config_file import parse_config
@@ -53,11 +53,6 @@ def resolve(asked: Asked[ResolvedConfig, SensitivityOptions]) -> AskedSensitivit
     return AskedSensitivity(config, asked.place, Trial(options.points, options.passes, seed), given, reads)
 
 
-def head(asked: AskedSensitivity) -> Head:
-    """What is said of the configuration."""
-    return head_of(asked.config, reads=asked.reads)
-
-
 def steps(asked: AskedSensitivity) -> Steps:
     """A step for each class that is simulated, and for each that is tuned before."""
     return Steps(len(asked.given) if asked.given else 2 * len(asked.config.cuts), "simulating", "steps")
@@ -67,9 +62,9 @@ def compute(asked: AskedSensitivity, work: Work) -> Sensitivity:
     """Tune the tables unless they are given, and let the plant vary under them."""
     from synth.frame.creation_time import creation_time
     from synth.kernels.cache import guarded
+    from synth.retarder.attempted_case import tables_refused
     from synth.retarder.sensitivity.fixed_tables import tables_tuned
     from synth.retarder.sensitivity.sensitivity import sensitivity
-    from synth.retarder.tables_refused import tables_refused
 
     config = asked.config
     with tables_refused(asked.place, config):
@@ -93,7 +88,7 @@ COMMAND = Command(
     read=parse_config,
     options=SensitivityOptions,
     resolve=resolve,
-    head=head,
+    head=lambda asked: head_of(asked.config, reads=asked.reads),
     steps=steps,
     compute=compute,
     show=show,

@@ -13,7 +13,6 @@ import numpy as np
 
 from plant_models import PointSensors, first_axle
 from plant_models.library import load_wheel_sensor
-from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
 from synth.retarder.configuration.point_sensors.settings import DEFAULT_WHEEL_SENSOR
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -191,10 +190,7 @@ def fewest_for(plans: Sequence[JudgedLayout], rms_m_s: float) -> JudgedLayout | 
 
 def layout_problem(config: ResolvedConfig) -> tuple[LayoutProblem, tuple[str, ...]]:
     """The problem of all cut classes and targets, and the labels of the classes; [sensors] path_m is not read."""
-    cases = tuple(
-        LayoutCase(plant, tuple(Aim(target, config.criterion) for target in config.targets_of(label)))
-        for label, plant in config.plants()
-    )
+    cases = tuple(LayoutCase(plant, config.aims_of(label)) for label, plant in config.plants())
     return LayoutProblem(cases, sensors_of(config), config.resolution), tuple(label for label, _ in config.plants())
 
 

@@ -15,7 +15,7 @@ from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.retarder.configuration.config_file import parse_config, source_of_text
-from synth.retarder.configuration.point_sensors.template import default_sensors_toml
+from synth.retarder.configuration.config_template import default_sensors_toml
 from synth.retarder.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places, policy_anywhere
 from synth.retarder.sensors.layout import equal_layout, fastest_m_s, first_sensor_m, longest_change_s, rule_layout
 from synth.retarder.sensors.layout_plan import (
