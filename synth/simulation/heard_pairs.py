@@ -37,29 +37,6 @@ class HeardPairs:
     def __len__(self) -> int:
         return len(self.after_s)
 
-    def of_sensor(self, sensor: int | None) -> NDArray[np.bool_]:
-        """Marks the rows that are heard from `sensor`, or all, (R,)."""
-        return np.ones(len(self.sensor), dtype=np.bool_) if sensor is None else self.sensor == sensor
-
-    def without(self, lost: NDArray[np.bool_]) -> HeardPairs:
-        """The pairs but those that `lost`, of a shape like (n, R), marks."""
-        return replace(self, after_s=np.where(lost, np.nan, self.after_s))
-
-    def taken(self, rows: NDArray[np.bool_]) -> HeardPairs:
-        """The rows alone that `rows` (R,) marks."""
-        return HeardPairs(self.source[rows], self.sensor[rows], self.after_s[:, rows], self.told_m_s[:, rows])
-
-    def also(self, more: HeardPairs) -> HeardPairs:
-        """These rows and those of `more`, of the same passes, in the order that the kernel wants."""
-        source = np.concatenate([self.source, more.source])
-        order = np.argsort(np.where(source == BY_THE_CLOCK, np.iinfo(np.int64).max, source), kind="stable")
-        return HeardPairs(
-            source[order],
-            np.concatenate([self.sensor, more.sensor])[order],
-            np.concatenate([self.after_s, more.after_s], axis=1)[:, order],
-            np.concatenate([self.told_m_s, more.told_m_s], axis=1)[:, order],
-        )
-
     def first_row(self, sources: int) -> Ints:
         """First row of each source, and of those by the clock, (`sources` + 1,)."""
         return np.searchsorted(self.source[self.source != BY_THE_CLOCK], np.arange(sources + 1)).astype(np.int64)

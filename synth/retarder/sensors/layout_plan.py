@@ -125,18 +125,6 @@ class LayoutProblem:
         return tuple(polished(*pair) for pair in made)
 
 
-def plan_layouts(
-    problem: LayoutProblem,
-    counts: Sequence[int],
-    passes: PlanPasses,
-    threads: int = 1,
-    tell: Tell = silent,
-) -> tuple[JudgedLayout, ...]:
-    """The best layout found for each number of deciding sensors; how many `threads` there are changes nothing of it."""
-    with ThreadPoolExecutor(max_workers=threads) as searching, ThreadPoolExecutor(max_workers=threads) as judging:
-        return ended(judging.submit(searched, problem, counts, passes, (searching, judging), tell))
-
-
 def ended(search: Future[dict[int, Future[JudgedLayout]]]) -> tuple[JudgedLayout, ...]:
     """What `searched` has handed out, when all of it is judged, by number."""
     return tuple(each.result() for _, each in sorted(search.result().items()))

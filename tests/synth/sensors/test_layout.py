@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, PointSensors
+from scripts.studies.point_sensors.layouts import plan_layouts
 from synth.frame.exhibits import File, Table
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
@@ -21,7 +22,6 @@ from synth.retarder.sensors.layout import equal_layout, fastest_m_s, first_senso
 from synth.retarder.sensors.layout_plan import (
     LayoutProblem,
     fewest_for,
-    plan_layouts,
     plan_passes,
 )
 from synth.retarder.sensors.layout_results import AskedLayouts, layout_results
