@@ -24,8 +24,8 @@ from synth.retarder.checked_design import GridCheck
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.measured import Measured
 from synth.retarder.comparison.served_entry import Feasibility
-from synth.retarder.off_nominal.condition import CONDITIONS
 from synth.retarder.off_nominal.outcome import OffNominal, Outcome
+from synth.retarder.off_nominal.trial import CONDITIONS
 from synth.retarder.policy_map import PolicyMap
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import TRACE_FACTORS, ExitSample, PassTrace

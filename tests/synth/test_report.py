@@ -30,7 +30,7 @@ from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.failed_case import FailedCase
 from synth.retarder.found_book import FoundBook
-from synth.retarder.off_nominal.condition import CONDITIONS
+from synth.retarder.off_nominal.trial import CONDITIONS
 from synth.retarder.shown.checks import checks
 from synth.retarder.tune import Book
 from synth.retarder.tune_command import COMMAND

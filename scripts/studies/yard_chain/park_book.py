@@ -17,9 +17,9 @@ from synth.retarder.comparison.baselines import FAMILIES, tune
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.table_class import TableClass
-from synth.retarder.tuned_table import solutions, tuned_table
+from synth.retarder.tuned_table import read_back, solutions, tuned_table
 from synth.simulation.random_passes import random_passes
-from tuning_tables import ControllerTable, from_json, to_json
+from tuning_tables import ControllerTable
 
 POSITION = "rnz-2m-park"
 
@@ -98,7 +98,7 @@ def park_book(cuts: Cuts, targets_m_s: tuple[float, ...], classes: int, coarse: 
 def tables_of(config: ResolvedConfig, setup: ClassSetup) -> list[ControllerTable]:
     """The tables of one class, read back."""
     aims = config.aims_of(setup.label)
-    return [from_json(to_json(tuned_table(setup, found).table)) for found in solutions(setup.design, aims)]
+    return [read_back(tuned_table(setup, found).table) for found in solutions(setup.design, aims)]
 
 
 def energy_class(config: ResolvedConfig, setup: ClassSetup) -> TableClass:

@@ -27,7 +27,7 @@ from synth.retarder.sensors.layout_plan import (
 from synth.retarder.sensors.layout_results import AskedLayouts, layout_results
 from synth.retarder.sensors.layout_search import LayoutSearch
 from synth.retarder.sensors.plan_command import COMMAND
-from synth.retarder.sensors.plan_map import plan_map
+from synth.retarder.sensors.plan_pictures import plan_map
 from synth.retarder.sensors.tuned_passages import passage_chains
 from synth.solver.backward_induction import solve
 from synth.solver.chain.sensor_passages import with_point_sensors

@@ -14,9 +14,13 @@ from synth.simulation.control_system import nominal_loop
 from synth.simulation.impulse_train import resting_train
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_plant, one_pass
 from synth.simulation.nominal_response import SAME_PASSAGE_S, commands_of, response_difference
-from synth.simulation.passage_control_system import passage_regulator_start, passage_regulator_system
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop, filled_trace
-from synth.simulation.passage_response import passage_response, rolled
+from synth.simulation.passage_response import (
+    passage_regulator_start,
+    passage_regulator_system,
+    passage_response,
+    rolled,
+)
 from synth.simulation.passage_sample import PassageTrace
 from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule, exact, holding_rule, with_approach
 
