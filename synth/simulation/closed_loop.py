@@ -232,6 +232,12 @@ def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> Closed
     )
 
 
+def picked(draws: Draws, which: NDArray[np.int64]) -> Draws:
+    """Some passes of `draws`, in this order; of the path they keep what follows from `path_z`, not the numbers."""
+    kept = draws._replace(path_z=draws.path_z[:, :0])
+    return Draws._make(fixed(each[which], each.dtype.type) for each in kept)
+
+
 def simulate(plant: Plant, controller: Controller, passes: RandomPasses, cut_factor: float | None = None) -> ExitSample:
     """`passes` of `plant` under `controller`; `cut_factor` fixes ξ_cut instead of drawing it."""
     loop = close_loop(plant, controller.stages)

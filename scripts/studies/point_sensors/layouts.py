@@ -13,8 +13,8 @@ from synth.retarder.sensors.layout_plan import (
     ended,
     plan_passes,
     searched,
-    silent,
 )
+from synth.retarder.watcher import silent
 
 Places = tuple[float, ...]
 """Of the deciding sensors, m from the entrance, rising."""

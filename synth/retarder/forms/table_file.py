@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from synth.frame.input_error import InputError
 from synth.frame.machine_fault import MACHINE_FAULTS
+from synth.frame.results_directory import SUMMARY
 from synth.frame.summary import FORMAT
 from tuning_tables import ControllerTable, read_book, read_json
 from tuning_tables.aim.aim_table import AimTable
@@ -62,7 +64,7 @@ def table_files(directory: Path) -> list[Path]:
     Aim tables are not meant. Beside tables for point sensors a book is theirs.
     """
     folder = directory / "tables" if (directory / "tables").is_dir() else directory
-    tables = sorted(file for file in folder.glob("*.json") if file.name != "summary.json")
+    tables = sorted(file for file in folder.glob("*.json") if file.name != SUMMARY)
     others = [file for file in tables if not is_table_of(AimTable, file)]
     with_lines = [file for file in others if not is_table_of(PassageTable, file)]
     return with_lines or ([] if others else sorted(directory.glob("*.h5")))
@@ -98,17 +100,21 @@ def file_stem(table: ControllerTable | AimTable | PassageTable) -> str:
     return re.sub(r"[^\w.-]+", "-", table.id).lstrip(".-") or "table"
 
 
-def summary_beside(path: Path) -> dict[str, object] | None:
-    """summary.json of the tune that left the table, book or directory `path`; None where none can be read."""
+def summaries_beside(path: Path) -> Iterator[tuple[Path, dict[str, Any]]]:
+    """Every summary of a command with its folder: that of `path`, of a table, book or directory, or the one above."""
     here = path if path.is_dir() else path.parent
     for folder in (here, here.parent):
         try:
-            document = json.loads((folder / "summary.json").read_bytes())
+            document = json.loads((folder / SUMMARY).read_bytes())
         except (OSError, ValueError):
             continue
-        if isinstance(document, dict) and document.get("format") == FORMAT and "cases" in document.get("tables", {}):
-            return document
-    return None
+        if isinstance(document, dict) and document.get("format") == FORMAT:
+            yield folder, document
+
+
+def summary_beside(path: Path) -> dict[str, object] | None:
+    """summary.json of the tune that left the table, book or directory `path`; None where none can be read."""
+    return next((found for _, found in summaries_beside(path) if "cases" in found.get("tables", {})), None)
 
 
 def is_infeasible(table: ControllerTable | PassageTable, summary: dict[str, object] | None) -> bool:

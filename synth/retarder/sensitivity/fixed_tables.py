@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,10 +13,9 @@ from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.forms.tables_at import tables_at
 from synth.retarder.served_class import plant_for
 from synth.retarder.tuned_table import solutions, tuned_table
+from synth.retarder.watcher import Tell
 from synth.solver.one_blas_thread import one_blas_thread
 from tuning_tables import ControllerTable
-
-Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,10 +14,10 @@ from synth.retarder.sensitivity.fixed_tables import FixedTables
 from synth.retarder.sensitivity.responses import OUTPUTS, Output, responses
 from synth.retarder.sensitivity.shares import Estimates, Share, first_order, mean_estimates, noise_share
 from synth.retarder.sensitivity.varied import Varied, moving, varied_parameters
+from synth.retarder.watcher import Tell
 from synth.simulation.stratified_passes import stratified_passes
 
 Floats = NDArray[np.float64]
-Tell = Callable[[str], None]
 
 REPEATED = 100
 """Points that are simulated once more, with other passes."""

@@ -5,7 +5,7 @@ What is chosen, is chosen on passes of its own; what is told of it, is of others
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -20,6 +20,7 @@ from synth.retarder.sensors.candidate_places import LayoutCase, candidate_places
 from synth.retarder.sensors.layout import LAST_SECTION_M, equal_layout, first_sensor_m, with_layout
 from synth.retarder.sensors.layout_search import ForEach, LayoutSearch
 from synth.retarder.sensors.layout_tables import ExitErrors, LayoutTable, errors_of, polished, solutions
+from synth.retarder.watcher import Tell
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 
@@ -35,13 +36,6 @@ NEAR_BEST = 1.5
 CHOOSING_PASSES = 2_000
 FIRST_CHOOSING = 1_000_000
 """Number of the first pass to choose on: no figure is told from so many passes."""
-
-Tell = Callable[[str], None]
-"""Is told a sentence when a step has ended."""
-
-
-def silent(_sentence: str) -> None:
-    """Nobody wants to know."""
 
 
 @dataclass(frozen=True)

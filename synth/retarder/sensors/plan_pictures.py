@@ -33,7 +33,7 @@ from synth.retarder.sensors.layout_tables import LayoutTable
 def shown_plan(results: LayoutResults) -> Figure:
     """The chosen plan, else that of most sensors, over the best command of its first case."""
     table = results.shown.tables[0]
-    subject = f"{results.labels[0]} to {table.aim.target_speed_m_s:g} m/s, {results.shown.deciding + 1} sensors"
+    subject = f"{results.asked.labels[0]} to {table.aim.target_speed_m_s:g} m/s, {results.shown.deciding + 1} sensors"
     return plan_map(subject, results.anywhere, table)
 
 
@@ -77,7 +77,7 @@ def places_by_number(results: LayoutResults) -> Figure:
     place(figure, left=1.25, right=0.3, bottom=0.95, top=0.85)
     axes = figure.subplots()
     dress(axes, "", "path from the entrance of the first retarder, m", "sensors")
-    position = results.problem.cases[0].plant.position
+    position = results.asked.problem.cases[0].plant.position
     for start, end in position.zones_m:
         axes.axvspan(start, end, color=GREY, alpha=0.18, linewidth=0)
     axes.axvline(0.0, color=INK, linewidth=0.8, linestyle=ENTRANCE_STYLE)
@@ -97,9 +97,9 @@ def places_by_number(results: LayoutResults) -> Figure:
 
 def subject_of(results: LayoutResults) -> str:
     """The position, and for how many classes and targets."""
-    position = results.problem.cases[0].plant.position.name
-    aims = sum(len(case.aims) for case in results.problem.cases)
-    classes = len(results.problem.cases)
+    position = results.asked.problem.cases[0].plant.position.name
+    aims = sum(len(case.aims) for case in results.asked.problem.cases)
+    classes = len(results.asked.problem.cases)
     return f"{position}; {classes} cut class{'es' * (classes > 1)}, {aims} table{'s' * (aims > 1)}"
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -12,6 +12,7 @@ from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.judgement import Judgement, judgement
 from synth.retarder.sensors.sensor_class import full_brake as full_brake_at_passages
 from synth.retarder.served_class import PassageClass, ServedClass, plant_for, served_class
+from synth.retarder.watcher import Tell, silent
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.controllers import Controller, full_brake
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics, overspeed_of
@@ -24,12 +25,6 @@ from tuning_tables import ControllerTable
 from tuning_tables.pass_log.pass_log import PassLog
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.table_kinds import StageTable
-
-Tell = Callable[[str], None]
-
-
-def no_notice(sentence: str) -> None:
-    """Nobody wants to know."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +75,7 @@ class Rehearsal:
 
 
 def revalidated(
-    tables: Sequence[StageTable], rehearsal: Rehearsal, infeasible: Sequence[bool], tell: Tell = no_notice
+    tables: Sequence[StageTable], rehearsal: Rehearsal, infeasible: Sequence[bool], tell: Tell = silent
 ) -> list[Revalidation]:
     """Simulate each table on the cut class that it is for; `InputError` if there is none for one of them.
 
