@@ -56,8 +56,9 @@ NAMES: Final = {
 class Parameter:
     """One number of a plant: `key` of the configuration, `nominal` value (1 for the factors of `plant_values`).
 
-    `low`, `high`: limits that physics or use put to it; `assumed`: nothing citable stands behind it; `sensible`: the
-    library's range, None where it has none for this very value.
+    `low`, `high`: limits that physics or use put to it; of one that is varied, the ends of its range, and equal ends
+    hold it. `assumed`: nothing citable stands behind it; `sensible`: the library's range, None where it has none for
+    this very value.
     """
 
     key: str

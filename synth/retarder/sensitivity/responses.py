@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from plant_models import Plant, PlantError
 from synth.problem.aim import OVERSPEED_M_S
+from synth.retarder.configuration.plant_parameter import Parameter
 from synth.retarder.configuration.plant_values import with_values
-from synth.retarder.sensitivity.varied import Varied, values_at
+from synth.retarder.sensitivity.varied import values_at
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import common_passes
 from synth.simulation.passes import ExitSample
@@ -54,7 +55,7 @@ AT_ONCE = 25
 def responses(
     plant: Plant,
     tables: Sequence[ControllerTable],
-    varied: Mapping[str, Varied],
+    varied: Mapping[str, Parameter],
     keys: Sequence[str],
     unit: Floats,
     passes: RandomPasses,

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.frame.input_error import InputError
+from synth.retarder.configuration.plant_parameter import Parameter
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.sensitivity.fixed_tables import FixedTables
 from synth.retarder.sensitivity.responses import OUTPUTS, Output, responses
 from synth.retarder.sensitivity.shares import Estimates, Share, first_order, mean_estimates, noise_share
-from synth.retarder.sensitivity.varied import Varied, moving, varied_parameters
+from synth.retarder.sensitivity.varied import moving, varied_parameters
 from synth.retarder.watcher import Tell
 from synth.simulation.stratified_passes import stratified_passes
 
@@ -77,7 +78,7 @@ class Sensitivity:
     trial: Trial
     keys: tuple[str, ...]
     names: tuple[str, ...]
-    varied: tuple[tuple[str, tuple[Varied, ...]], ...]
+    varied: tuple[tuple[str, tuple[Parameter, ...]], ...]
     cases: tuple[CaseShares, ...]
     overall: tuple[OutputShares, ...]
 
@@ -119,7 +120,7 @@ def sensitivity(
 
 
 def class_shares(
-    fixed: FixedTables, varied: Sequence[Varied], keys: Sequence[str], unit: Floats, trial: Trial, threads: int
+    fixed: FixedTables, varied: Sequence[Parameter], keys: Sequence[str], unit: Floats, trial: Trial, threads: int
 ) -> list[CaseShares]:
     """The cases of one class."""
     by_key = {each.key: each for each in varied}
