@@ -9,7 +9,7 @@ from synth.cli.inspect_table import table_words
 from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
-from synth.retarder.served_class import highest_stage
+from synth.retarder.highest_stage import highest_stage
 from tuning_tables.document import to_document
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable

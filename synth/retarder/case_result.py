@@ -10,13 +10,11 @@ import numpy as np
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.requirement_found import Finding
-from synth.retarder.checked_design import GridCheck
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.measured import Measured
-from synth.retarder.comparison.served_entry import Feasibility
 from synth.retarder.off_nominal.outcome import OffNominal
 from synth.retarder.pareto.pareto_front import ParetoFront
-from synth.retarder.tuned_case import TunedCase
+from synth.retarder.tuned_case import Feasibility, GridCheck, TunedCase
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable

@@ -1,4 +1,4 @@
-"""What commands on exported tables are asked: which, and by which configuration, unless by that of the tables."""
+"""The configuration by which a command understands tables: the user's, else the one that they were made of."""
 
 from __future__ import annotations
 
@@ -6,24 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from synth.frame.command import Asked
-from synth.frame.settings.options import BY_PLACE, NEEDED, Options, word_option
-
 if TYPE_CHECKING:
+    from synth.frame.command import Asked
     from synth.retarder.configuration.resolved_config import ResolvedConfig
+    from synth.retarder.tables_options import TablesOptions
     from tuning_tables.table_kinds import StageTable
 
 
-class TablesOptions(Options):
-    """Options of the command line of a command on tables; `loop` and `explore` have no other."""
-
-    source: Path = word_option(BY_PLACE, "TABLE|BOOK|DIR", NEEDED, "A table, a book, or a folder of tables.")
-    config: Path | None = word_option(
-        "--config", "C", None, "Configuration with the plant; that of the tables, or built-in, unless given."
-    )
-
-
-OnTables = TypeVar("OnTables", bound=TablesOptions)
+OnTables = TypeVar("OnTables", bound="TablesOptions")
 
 
 def configuration_of(

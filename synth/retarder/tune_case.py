@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from plant_models import Plant
+from synth.problem.aim import Aim
+from synth.retarder.attempted_case import attempted
 from synth.retarder.case_result import CaseResult
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup
 from synth.retarder.comparison.compared_laws import beside_table, best_law, compared_laws, permitted
@@ -15,19 +18,50 @@ from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.friction_bound import friction_bound
 from synth.retarder.comparison.measured import Measured
 from synth.retarder.comparison.served_entry import EntrySweep, entry_sweep, feasibility_of
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.epochs import Ground, Store
 from synth.retarder.estimation.estimated_table import controller_of
+from synth.retarder.failed_case import FailedCase
 from synth.retarder.off_nominal.trial import Trials, trials
-from synth.retarder.pareto.pareto_front import Front, pareto_front
+from synth.retarder.pareto.pareto_front import PRICES_M2_S3, ParetoFront, ParetoPoint
 from synth.retarder.policy_map import share_of_ties
 from synth.retarder.tuned_table import TunedTable, ValidatedLines, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import TRACE_FACTORS, ExitSample
 from synth.simulation.random_passes import random_passes
 from synth.simulation.unavoidable_error import unavoidable_error
 from synth.solver.backward_induction import Solution
 from tuning_tables import ControllerTable
+
+Front = Callable[[], ParetoFront]
+"""Makes the front of a case."""
+
+
+def pareto_front(config: ResolvedConfig, setup: ClassSetup, aim: Aim) -> ParetoFront:
+    """The front of one case; each table is tuned, predicted and simulated as any."""
+    aims = [replace(aim, criterion=replace(aim.criterion, time_price_m2_s3=price)) for price in PRICES_M2_S3]
+    points: list[ParetoPoint] = []
+    base = None
+    for solution in solutions(setup.design, aims):
+        made = attempted(partial(tuned_table, setup, solution), setup.label, aim.target_speed_m_s, config)
+        if isinstance(made, FailedCase):
+            continue
+        sample = setup.passes.run(TableController(made.table))
+        base = sample if base is None else base
+        points.append(
+            ParetoPoint(
+                price_of(solution), exit_statistics(sample, aim.target_speed_m_s), made.table.predicted.rms_m_s,
+                *rms_ratio(sample, base, aim.target_speed_m_s),
+            )
+        )  # fmt: skip
+    return ParetoFront(setup.label, aim.target_speed_m_s, tuple(points))
+
+
+def price_of(solution: Solution) -> float:
+    """What a second costs in it."""
+    return solution.aim.criterion.time_price_m2_s3
 
 
 @dataclass(frozen=True)

@@ -20,13 +20,12 @@ from plant_models import (
     TrackProfile,
 )
 from synth.retarder.case_result import CaseResult
-from synth.retarder.checked_design import GridCheck
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.measured import Measured
-from synth.retarder.comparison.served_entry import Feasibility
 from synth.retarder.off_nominal.outcome import OffNominal, Outcome
 from synth.retarder.off_nominal.trial import CONDITIONS
 from synth.retarder.policy_map import PolicyMap
+from synth.retarder.tuned_case import Feasibility, GridCheck
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import TRACE_FACTORS, ExitSample, PassTrace
 from synth.simulation.unavoidable_error import UnavoidableError

@@ -9,17 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.problem.aim import Aim
-from synth.problem.criterion import Criterion
 from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.estimation.estimate_chain import estimate_chain
 from synth.retarder.policy_map import policy_map, share_of_ties
 from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import Book, tune
 from synth.retarder.watcher import Teller
 from synth.simulation.passes import TRACE_FACTORS
 from synth.solver.backward_induction import solve
-from synth.solver.chain.chain import persistent_chain
 from tuning_tables import ControllerTable, read_json, write_json
 
 SMALL = """
@@ -88,8 +86,9 @@ def test_the_prediction_is_honest_and_who_is_told_the_friction_is_no_worse(book:
 
 def test_the_map_agrees_with_the_lines_and_marks_indifference(case: CaseResult) -> None:
     """Far above its line a stage goes up, far below down, wherever that counts."""
-    chain = persistent_chain(case.plant, parse_config(SMALL, "small.toml").resolution_of(case.plant))
-    solution = solve(chain, Aim(case.target_speed_m_s, Criterion()))
+    config = parse_config(SMALL, "small.toml")
+    chain = estimate_chain(case.plant, config.resolution_of(case.plant), config.lowest_target_m_s)
+    solution = solve(chain, config.aims_of(case.label)[0])
     chart, lines = policy_map(solution, 1e-4), solution.lines
     assert chart.command.shape == chart.indifferent.shape == (5, len(chart.path_m), len(chart.speed_m_s))
     assert not (chart.command[0] == -1).any()

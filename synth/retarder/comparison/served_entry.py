@@ -8,27 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.retarder.tuned_case import Feasibility
 from synth.simulation.closed_loop import picked
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.controllers import fixed
 from synth.simulation.exit_range import ExitRange, exit_range
 from synth.simulation.unavoidable_error import excess_and_lack_m_s
-
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class Feasibility:
-    """From which entry speeds the position can keep `limit_m_s`, the rms that is accepted.
-
-    `entry_m_s` (n,) up to the position's highest entry speed, and `entry_rms_m_s` (n,): rms of the unavoidable error of
-    cuts that enter with that speed; `served_m_s`: (low, high) where it meets the limit, None if nowhere.
-    """
-
-    limit_m_s: float
-    entry_m_s: NDArray[np.float64]
-    entry_rms_m_s: NDArray[np.float64]
-    served_m_s: tuple[float, float] | None
-
 
 ENTRY_POINTS, ENTRY_PASSES = 24, 500
 """Entry speeds that are looked at, and passes at each of them: the same, but for the speed."""

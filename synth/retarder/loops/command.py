@@ -13,7 +13,8 @@ from synth.frame.input_error import InputError
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import MODEL_ONLY
-from synth.retarder.tables_configuration import TablesOptions, configuration_of, given_config
+from synth.retarder.tables_configuration import configuration_of, given_config
+from synth.retarder.tables_options import TablesOptions
 
 if TYPE_CHECKING:
     from synth.retarder.line_control_loop import LineControlLoop

@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from synth.frame.picture.figure_file import draw
+from synth.retarder.highest_stage import highest_stage
 from synth.retarder.sensors.pictures.passes_with_readings import passes_figure
 from synth.retarder.sensors.pictures.switching_speeds import colour_of, columns_m, switching_speeds, wanted_edges_m_s
-from synth.retarder.served_class import highest_stage
 from synth.simulation.passage_sample import DECIDED, UNFINISHED, PassageTrace, PassReadings
 from tests.controller_code.passage_tables import passage_table
 from tuning_tables.passages.held_passages import held_by

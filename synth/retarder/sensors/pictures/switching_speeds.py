@@ -25,7 +25,7 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.retarder.served_class import highest_stage
+from synth.retarder.highest_stage import highest_stage
 from synth.simulation.passes import PassTrace
 from tuning_tables.passages.passage_table import PassageTable
 
