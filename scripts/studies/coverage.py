@@ -24,10 +24,12 @@ from synth.checker.plant import plant_of
 from synth.checker.statistics import figures_of
 from synth.checker.table_reading import read_table
 from synth.frame.input_error import InputError
+from synth.problem.aim import Aim
 from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.estimation.estimate_chain import estimate_chain
 from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import tune
-from synth.retarder.tuned_table import read_back
+from synth.retarder.tuned_table import read_back, solutions
 from synth.retarder.watcher import Teller
 from synth.simulation.closed_loop import LineController, TableController, simulate_many
 from synth.simulation.controllers import full_brake
@@ -134,10 +136,11 @@ def rows_of(case: str, options: Options) -> Iterator[Row]:
     (found,) = tune(config, RadarEpochs(), read_back, Teller(silent)).whole
     read = read_table(to_json(found.table))
     plant, target = found.plant, found.target_speed_m_s
+    design = estimate_chain(plant, config.resolution_of(plant), target)
+    (solution,) = solutions(design, [Aim(target, config.criterion)])
     most = max(options.passes)
-    samples = simulated(
-        plant, (TableController(found.table), LineController(found.study.solver_lines)), most * options.blocks
-    )
+    laws = TableController(found.table), LineController(solution.lines)
+    samples = simulated(plant, laws, most * options.blocks)
     for passes in options.passes:
         blocks = min(options.blocks * most // passes, MOST_BLOCKS)
         yield Row(case, passes, blocks, shares_held(samples, target, passes, blocks))

@@ -14,6 +14,7 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import Final
 
 from plant_models.library.near_miss import near_miss
 from scripts.studies.data_page import data_page
@@ -25,7 +26,7 @@ from scripts.studies.registry import STUDIES
 from scripts.studies.result import Result, read_result
 from scripts.studies.study import Study
 from synth.frame.input_error import InputError
-from synth.retarder.bench.wires import HEADING, table_rows
+from synth.retarder.bench.wires import COMMAND_WIRES, TOLD_WIRES
 
 PAGES = Path("docs")
 KEPT = PAGES / "studies"
@@ -54,6 +55,17 @@ def kept(root: Path, name: str) -> Path:
     return root / KEPT / f"{name}.json"
 
 
+WIRES: Final = ("register", "node", "type", "unit", "is")
+
+
+def wire_rows() -> Iterator[tuple[str, ...]]:
+    """A row for each wire, for people: what the position tells, then what the controller writes."""
+    for wire in (*TOLD_WIRES, *COMMAND_WIRES):
+        last = wire.address + wire.words.registers - 1
+        place = str(wire.address) if last == wire.address else f"{wire.address}–{last}"
+        yield place, f"`{wire.name}`", wire.words.shown, wire.variable.unit or "", wire.variable.meaning
+
+
 def filled(path: Path, root: Path) -> str:
     """The text of the document `path` with every marked table as the kept results have it. Raises `InputError`."""
     text = path.read_text(encoding="utf-8")
@@ -65,7 +77,7 @@ def filled(path: Path, root: Path) -> str:
         if found["list"]:
             return f"<!-- studies -->\n{listed(path.parent, root)}"
         if found["wires"]:
-            return f"<!-- wires -->\n{table('wires', HEADING, table_rows()).markdown()}"
+            return f"<!-- wires -->\n{table('wires', WIRES, wire_rows()).markdown()}"
         if found["keys"]:
             return f"<!-- keys {found['keys']} -->\n{keys_of(found['keys'], sources)}"
         return (

@@ -81,7 +81,7 @@ def configuration_text(name: str) -> str:
 def point_sensors_text(name: str) -> str:
     """A configuration with point sensors, of the position `name` or as the file `name` has it."""
     from plant_models.library import BUILT_IN, POSITIONS
-    from synth.retarder.configuration.point_sensors.template import default_sensors_toml, filled_sensors_toml
+    from synth.retarder.configuration.config_template import default_sensors_toml, filled_sensors_toml
     from synth.retarder.configuration.position_choice import require_held
 
     if name.endswith(".toml"):
@@ -160,7 +160,7 @@ FILE_KINDS: Final = (
         "sweep",
         "Configuration with a sweep",
         "synth.retarder.sweep.sweep_settings:SweepFileSettings",
-        "synth.retarder.sweep.template:default_sweep_toml",
+        "synth.retarder.sweep.sweep_settings:default_sweep_toml",
     ),
     declared(
         "aim",

@@ -12,7 +12,7 @@ from synth.frame.printed_numbers import counted, decimals
 from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.printed_table import IN_JSON, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
-from synth.retarder.forms.aim_file import AimFile
+from synth.retarder.forms.table_file import AimFile
 from tuning_tables.aim.aim_table import AimTable
 
 SHOWN_DISTANCES = 6

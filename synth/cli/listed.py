@@ -60,7 +60,7 @@ COMMANDS: Final = (
     Listed(
         "loop",
         "synth.retarder.loops.command:COMMAND",
-        "synth.retarder.loops.options:LoopOptions",
+        "synth.retarder.tables_options:TablesOptions",
         "init",
         "Show exported tables as control loops.\n\n"
         "Nominal response by python-control beside the simulator's, phase portrait with the lines, predicted limit "
@@ -78,7 +78,7 @@ COMMANDS: Final = (
     Listed(
         "explore",
         "synth.retarder.explore.command:COMMAND",
-        "synth.retarder.explore.options:ExploreOptions",
+        "synth.retarder.tables_options:TablesOptions",
         "init",
         "Make one page on which tables brake cuts in the browser.\n\n"
         "Sliders set the cut and the plant; the page tells the exit error at once, why each command is given, and what "

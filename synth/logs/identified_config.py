@@ -13,7 +13,7 @@ from synth.logs import unknowns as asked
 from synth.logs.configured_numbers import configured_numbers
 from synth.logs.estimate import Estimate
 from synth.logs.identifiability import Finding, findings_of
-from synth.retarder.configuration.config_source import ConfigSource
+from synth.retarder.configuration.config_file import ConfigSource
 from synth.retarder.configuration.plant_settings import DEFAULT_CUTS
 
 DIGITS: Final = 6

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.logs.log_options import LogOptions
-from synth.retarder.configuration.config_source import ConfigSource, source_of_text
+from synth.retarder.configuration.config_file import ConfigSource, source_of_text
 
 if TYPE_CHECKING:
     from synth.logs.asked_passes import AskedPasses

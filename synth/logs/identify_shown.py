@@ -16,7 +16,7 @@ from synth.logs.fitting_passes import FittingPasses
 from synth.logs.identifiability import Finding
 from synth.logs.identify import Identified
 from synth.logs.residual_tests import MOTION, ResidualTest
-from synth.retarder.configuration.config_source import ConfigSource
+from synth.retarder.configuration.config_file import ConfigSource
 from tuning_tables.pass_log.path_resets import path_resets_m
 
 CONFIG: Final = "config.toml"

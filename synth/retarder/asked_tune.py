@@ -14,10 +14,11 @@ from synth.retarder.epochs import Epochs, Table
 from synth.retarder.tuned_case import Case
 
 if TYPE_CHECKING:
+    from synth.frame.exhibits import File
     from synth.frame.results_directory import ResultsDirectory
     from synth.retarder.found_book import FoundBook
-    from synth.retarder.solving_options import SolvingOptions
     from synth.retarder.tune import Book, CaseDone
+    from synth.retarder.tune_options import TuneOptions
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class AskedTune(Generic[Case, Table]):
 
 
 def asked_tune(
-    config: ResolvedConfig, place: str, epochs: Epochs[Case, Table], options: SolvingOptions
+    config: ResolvedConfig, place: str, epochs: Epochs[Case, Table], options: TuneOptions
 ) -> AskedTune[Case, Table]:
     """A tune of `config`, the file `place`, refused where it does not fit into memory."""
     workers = options.workers_for(len(config.cuts))
@@ -50,22 +51,28 @@ def drawing(asked: AskedTune[Case, Table]) -> int:
 
 
 def tuned(
-    asked: AskedTune[Case, Table], work: Work, case_done: CaseDone[Case], found: Callable[[Book[Case]], FoundBook[Case]]
+    asked: AskedTune[Case, Table],
+    work: Work,
+    case_done: CaseDone[Case],
+    files: Callable[[Book[Case]], tuple[tuple[File, ...], str]],
 ) -> FoundBook[Case]:
-    """What is `found` of the book, whose tables are written as they are made; `case_done` is given each case.
+    """The book with its verdicts and files, its tables written as they are made; `case_done` is given each case.
 
-    `InputError` where no case has a table, or where `found` raises `InvalidTable`: the tables make no book.
+    `files`: the tables together, and why they are no Structured Text. `InputError` where no case has a table, or where
+    `files` raises `InvalidTable`: the tables make no book.
     """
     from synth.kernels.cache import guarded
+    from synth.retarder.acceptance import judged
+    from synth.retarder.attempted_case import require_a_table, tables_refused
     from synth.retarder.first_run import compiled_beside
-    from synth.retarder.tables_refused import require_a_table, tables_refused
+    from synth.retarder.found_book import FoundBook
     from synth.retarder.tune import tune
 
     with compiled_beside(work.progress.note), tables_refused(asked.place, asked.config):
         store = partial(stored, directory=work.directory)
         book = guarded(tune, asked.config, asked.epochs, store, work.progress, asked.workers, case_done)
         require_a_table(book.cases, book.failed)
-        return found(book)
+        return FoundBook(book, judged(book.cases, book.config.acceptance), *files(book))
 
 
 def stored(table: Table, directory: ResultsDirectory) -> Table:

@@ -1,12 +1,14 @@
-"""An attempt at one case of a book: what is made, or the case as failed, with what to change in its configuration."""
+"""What a case makes whose input is at fault: the case as failed, or a refusal, with what to change."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
 from typing import Final, TypeVar
 
 from plant_models import PlantError
 from plant_models.library.data_file import keyed
+from synth.frame.input_error import InputError
 from synth.retarder.configuration.plant_fault import KEY_OF_PLANT_MESSAGE, LONGEST_SENTENCE
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.failed_case import FailedCase
@@ -52,3 +54,21 @@ def no_table(fault: InvalidTable) -> str:
         f"what was found makes no table ({str(fault).rstrip('.')}): make grid.path_step_m or grid.speed_step_m_s "
         "smaller, or lower fit.degree"
     )
+
+
+@contextlib.contextmanager
+def tables_refused(source: str, config: ResolvedConfig) -> Iterator[None]:
+    """Within, a `PlantError` and an `InvalidTable` become an `InputError` of `source`, which says `config`."""
+    try:
+        yield
+    except (PlantError, InvalidTable) as fault:
+        raise InputError(f"{source}: {reason_of(fault, config)}") from None
+
+
+def require_a_table(cases: Sequence[object], failed: Sequence[FailedCase]) -> None:
+    """`PlantError` where all cases have failed; it tells the first."""
+    if cases or not failed:
+        return
+    first, others = failed[0], len(failed) - 1
+    more = f" (nor for the {others} other case{'s' * (others > 1)})" if others else ""
+    raise PlantError(f"no table for {first.name}{more}: {first.reason}")

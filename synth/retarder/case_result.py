@@ -7,52 +7,22 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.requirement_found import Finding
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.measured import Measured
-from synth.retarder.feasibility import Feasibility
-from synth.retarder.grid_check import GridCheck
 from synth.retarder.off_nominal.outcome import OffNominal
 from synth.retarder.pareto.pareto_front import ParetoFront
-from synth.retarder.tuned_case import TunedCase
+from synth.retarder.tuned_case import Feasibility, GridCheck, TunedCase
 from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable
 
-if TYPE_CHECKING:  # who draws or reports a case needs no kernels
+if TYPE_CHECKING:
     from synth.retarder.tuned_table import AnyEstimate
 
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class PolicyMap:
-    """Best command and indifferent region on the solver's grid, by stage.
-
-    `path_m` (N,), `speed_m_s` (E,); `command` (K + 1, N, E) int8: −1 down, 0 hold, +1 up; `indifferent`
-    (K + 1, N, E): several commands cost the same within the tolerance. `ties`: share of the states with a change at
-    hand where hold wins because the best change gains nothing.
-    """
-
-    path_m: NDArray[np.float64]
-    speed_m_s: NDArray[np.float64]
-    command: NDArray[np.int8]
-    indifferent: NDArray[np.bool_]
-    ties: float
-
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class CaseStudy:
-    """What a case shows besides its figures.
-
-    `table_lines` the exported polynomial lines (sampled densely), `solver_lines` the raw matrices.
-    """
-
-    table_lines: SwitchingLines
-    solver_lines: SwitchingLines
-    policy_map: PolicyMap
+LINE_NODES = 301
 
 
 @frozen_arrays
@@ -62,8 +32,8 @@ class CaseResult(TunedCase):
 
     `grid`: whether the grid of the design for the measured speed and commands at rest is to be believed; `finding`:
     what the criterion's requirement took; `estimate`: where an estimator is asked for, how its lines were designed;
-    `front`: where it is asked for, what less time in the position costs; `off_nominal`: what the table does on other
-    plants than its own.
+    `ties`: see `share_of_ties`; `front`: where it is asked for, what less time in the position costs; `off_nominal`:
+    what the table does on other plants than its own.
     """
 
     table: ControllerTable
@@ -72,9 +42,14 @@ class CaseResult(TunedCase):
     estimate: AnyEstimate | None
     comparison: Comparison
     feasibility: Feasibility
-    study: CaseStudy
+    ties: float
     front: ParetoFront | None
     off_nominal: tuple[OffNominal, ...]
+
+    @property
+    def table_lines(self) -> SwitchingLines:
+        """The lines of the table, sampled densely."""
+        return lines_of(self.table, np.linspace(self.plant.start_m, self.plant.exit_m, LINE_NODES))
 
     @property
     def controllers(self) -> tuple[Measured, ...]:

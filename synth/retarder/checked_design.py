@@ -12,17 +12,45 @@ from dataclasses import dataclass, replace
 from typing import Final, Generic, Protocol, TypeVar
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.retarder.grid_check import GridCheck
+from synth.problem.requirement import FrictionRange, OverspeedLimit
+from synth.problem.requirement_found import Finding
+from synth.retarder.tuned_case import GridCheck
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.scenarios import persistent_scenarios
+from synth.solver.chance_constraint import keep_overspeed_limit
 from synth.solver.coarse_grid import CoarseGridError
+from synth.solver.descent import Descent
 from synth.solver.finer_speed import finer_in_speed
 from synth.solver.policy_density import exit_density
 from synth.solver.polynomial_fit import Fit
 from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.required_lines import RequiredLines, required_lines
-from synth.solver.tuned_lines import fitted
+from synth.solver.tuned_lines import fitted, polished
+from synth.solver.worst_case import guard_worst_case
+
+
+@dataclass(frozen=True)
+class RequiredLines:
+    """`lines` to export; `polish`: how the lines of least cost were found; `finding`: what a requirement took."""
+
+    lines: PolynomialLines
+    polish: Descent[PolynomialLines]
+    finding: Finding | None
+
+
+def required_lines(solution: Solution, check: Chain, fit: Fit) -> RequiredLines:
+    """Polish the fitted lines, then make them keep what the criterion requires, as predicted on `check`."""
+    found = polished(solution, fit)
+    finding: Finding | None
+    match solution.aim.criterion.requirement:
+        case OverspeedLimit() as limit:
+            lines, finding = keep_overspeed_limit(solution, check, fit, found.best, limit)
+        case FrictionRange() as friction:
+            lines, finding = guard_worst_case(solution, check, fit, found.best, friction)
+        case None:
+            lines, finding = found.best, None
+    return RequiredLines(lines, found, finding)
+
 
 FINER_SPEED: Final = 2.0
 FINER_FRICTIONS, FINER_RESISTANCES = 9, 5

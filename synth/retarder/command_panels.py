@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.colors import to_rgba_array
@@ -11,7 +11,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from synth.frame.picture.house_style import new_figure, place
-from synth.retarder.case_result import PolicyMap
+
+if TYPE_CHECKING:
+    from synth.retarder.policy_map import PolicyMap
 
 DOWN, HOLD, UP, HATCH = "#cfe4f3", "#fafafa", "#fae0cf", "#b5b5b5"
 STRIPE_PERIOD, STRIPE_WIDTH = 9, 2

@@ -6,9 +6,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from plant_models import Plant
-from synth.simulation.nominal_response import NominalResponse
+from synth.simulation.nominal_response import NominalResponse, ResponseDifference, commands_of, response_difference
 from synth.simulation.passes import PassTrace
-from synth.simulation.response_difference import ResponseDifference, commands_of, response_difference
 from tuning_tables.table_kinds import StageTable
 
 MEDIAN_ENTRY = 0.5
@@ -57,7 +56,7 @@ class ControlLoop:
             "python_control": {
                 "exit_speed_m_s": response.exit_speed_m_s,
                 "time_s": float(response.time_s[-1]),
-                "commands": response.commands,
+                "commands": commands_of(response),
             },
             "simulator": {
                 "exit_speed_m_s": trace.exit_speed_m_s,

@@ -1,21 +1,25 @@
-"""The loop of a table with lines: its nominal response, phase portrait and limit cycles."""
+"""The loop of a table with lines: its nominal response, phase portrait, limit cycles, and its commands forecast."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from synth.retarder.command_forecast import CommandForecast, command_forecast
+from plant_models import Plant
+from synth.problem.resolution import finer_for_check
 from synth.retarder.comparison.limit_cycle import Hunting, hunting_report
 from synth.retarder.comparison.pressure_cycle import PressureCycle, pressure_hunting
+from synth.retarder.configuration.settings import GridSettings
 from synth.retarder.control_loop import MEDIAN_ENTRY, ControlLoop
+from synth.retarder.rounded_table import predict
 from synth.retarder.served_class import ServedClass
 from synth.simulation.closed_loop import TableController
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass
-from synth.simulation.nominal_response import NominalResponse, nominal_response
-from synth.simulation.response_difference import SAME_SAMPLE_S
+from synth.simulation.nominal_response import SAME_SAMPLE_S, NominalResponse, nominal_response
+from synth.solver.chain.chain import check_chain
+from synth.solver.chain.speed_measurement import quantised_measurement
 from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable
 
@@ -76,3 +80,30 @@ def line_control_loop(table: ControllerTable, served: ServedClass) -> LineContro
         pressure=pressure_hunting(plant),
         forecast=command_forecast(table, plant),
     )
+
+
+QUIET_M_S = 1e-3
+"""Noise of a radar that has none: far less than a step of the grid."""
+
+
+@dataclass(frozen=True)
+class CommandForecast:
+    """Mean commands of a pass, `without_noise` if the radar had none; both with all that is random of the cuts."""
+
+    commands: float
+    without_noise: float
+
+    @property
+    def by_noise(self) -> float:
+        """How many the noise makes."""
+        return self.commands - self.without_noise
+
+
+def command_forecast(table: ControllerTable, plant: Plant) -> CommandForecast | None:
+    """That of a table for the measured speed; None where it has an estimator, of which the recursion knows nothing."""
+    if table.estimator is not None:
+        return None
+    check = check_chain(plant, finer_for_check(GridSettings().resolution_for(plant)))
+    radar = replace(plant.sensor, noise_m_s=min(QUIET_M_S, plant.sensor.noise_m_s))
+    quiet = replace(check, measurement=quantised_measurement(radar))
+    return CommandForecast(predict(check, table).switchings, predict(quiet, table).switchings)

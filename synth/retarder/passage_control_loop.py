@@ -7,13 +7,12 @@ from typing import Any
 
 from synth.retarder.control_loop import MEDIAN_ENTRY, ControlLoop
 from synth.retarder.served_class import PassageClass
-from synth.simulation.filled_trace import filled_trace
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_plant, one_pass
+from synth.simulation.nominal_response import SAME_PASSAGE_S
 from synth.simulation.passage_controller import PassageController, of_table
-from synth.simulation.passage_loop import PassageLoop, close_passage_loop
+from synth.simulation.passage_loop import PassageLoop, close_passage_loop, filled_trace
 from synth.simulation.passage_response import passage_response
 from synth.simulation.passage_sample import PassageTrace
-from synth.simulation.response_difference import SAME_PASSAGE_S
 from tuning_tables.passages.passage_table import PassageTable
 
 

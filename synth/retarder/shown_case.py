@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synth.problem.aim import OVERSPEED_M_S
-from synth.retarder.case_result import CaseResult
 from synth.retarder.exit_bins import bin_edges_m_s, predicted_density
 from synth.simulation.passes import TRACE_FACTORS, PassTrace
 from synth.solver.switching_lines import SwitchingLines
+
+if TYPE_CHECKING:
+    from synth.retarder.case_result import CaseResult
 
 NOMINAL: Final = TRACE_FACTORS.index(1.0)
 """Which of the traced passes is shown: that of mean friction."""
@@ -75,14 +77,14 @@ class ShownCase:
 def shown_case(case: CaseResult) -> ShownCase:
     """The picture's values of `case`."""
     runs = case.traces[NOMINAL : NOMINAL + 1]
-    pressures = case.plant.position.stage_pressures_kpa
+    lines, pressures = case.table_lines, case.plant.position.stage_pressures_kpa
     return ShownCase(
         label=case.label,
         target_m_s=case.target_speed_m_s,
         zones_m=case.plant.position.zones_m,
         ends_m=(case.plant.start_m, case.plant.exit_m),
         fastest_entry_m_s=case.plant.entry.high_m_s,
-        run=tuple(part for run in runs for part in stage_parts(run, case.study.table_lines, pressures)),
+        run=tuple(part for run in runs for part in stage_parts(run, lines, pressures)),
         stalled=any(run.stalled for run in runs),
         rms_m_s=case.statistics.rms_m_s,
         exits=exit_densities(case),

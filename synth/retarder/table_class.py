@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,12 +92,6 @@ def draws(loop: ClosedLoop, passes: RandomPasses, brakes: Brakes, entry_m_s: Flo
         fixed(brakes.rows_m_s2_per_kpa, np.float64),
         fixed(passes.weight, np.float64),
     )
-
-
-def chosen_draws(drawn: Draws, rows: Ints) -> Draws:
-    """Some of `drawn`."""
-    arrays: Iterator[Any] = (fixed(values[rows], values.dtype.type) for values in drawn)
-    return Draws(*arrays)
 
 
 def table_classes(tables: Sequence[ControllerTable], config: ResolvedConfig, source: str) -> tuple[TableClass, ...]:

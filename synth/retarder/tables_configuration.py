@@ -4,11 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
+    from synth.frame.command import Asked
     from synth.retarder.configuration.resolved_config import ResolvedConfig
+    from synth.retarder.tables_options import TablesOptions
     from tuning_tables.table_kinds import StageTable
+
+
+OnTables = TypeVar("OnTables", bound="TablesOptions")
+
+
+def configuration_of(
+    asked: Asked[ResolvedConfig | None, OnTables], tables: Sequence[StageTable]
+) -> tuple[ResolvedConfig, str]:
+    """(the configuration that is asked for, else that of `tables`, what messages call it); `InputError`."""
+    return (asked.settings, asked.place) if asked.settings else configuration_for(None, asked.options.source, tables)
 
 
 def configuration_for(path: Path | None, source: Path, tables: Sequence[StageTable]) -> tuple[ResolvedConfig, str]:
@@ -19,7 +31,7 @@ def configuration_for(path: Path | None, source: Path, tables: Sequence[StageTab
     """
     from synth.frame.settings.settings_file import BUILT_IN
     from synth.retarder.configuration.config_file import load_config
-    from synth.retarder.configuration.point_sensors.template import BUILT_IN_SENSORS, DUMPER_POSITION, built_in_sensors
+    from synth.retarder.configuration.config_template import BUILT_IN_SENSORS, DUMPER_POSITION, built_in_sensors
     from synth.retarder.forms.configuration_beside import configuration_beside
     from tuning_tables.passages.passage_table import PassageTable
 

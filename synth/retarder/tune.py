@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Generic
+from typing import Generic, TypeVar
 
 from plant_models import Plant
 from synth.frame.creation_time import creation_time
@@ -19,6 +19,8 @@ from synth.retarder.watcher import Watcher
 from synth.retarder.work_queue import run_nested
 from synth.solver.chain.grid import require_memory
 from synth.solver.one_blas_thread import one_blas_thread
+
+Made = TypeVar("Made")
 
 CaseDone = Callable[[Case], None]
 
@@ -46,19 +48,6 @@ class Book(Generic[Case]):
         return self.cases
 
 
-@dataclass(frozen=True)
-class TuneRun(Generic[Case]):
-    """What all classes of a tune share, and who is told.
-
-    `watcher` is told a sentence whenever a case has ended, `case_done` given its result if it has a table.
-    """
-
-    epochs: Epochs[Case, Any]
-    ground: Ground[Any]
-    watcher: Watcher
-    case_done: CaseDone[Case]
-
-
 @one_blas_thread()
 def tune(
     config: ResolvedConfig,
@@ -74,44 +63,61 @@ def tune(
     many. `watcher` is told a sentence whenever a case has ended, `case_done` given its result. A case that no table can
     be made for is told of in the book, and the others are made.
     """
-    plants = config.plants()
-    for label, plant in plants:
+    for label, plant in config.plants():
         require_memory(label, *epochs.grids(config, plant), workers)
     ground = Ground(config, origin_of(config.sha256, creation_time()), validation_passes(config), store)
-    run = TuneRun(epochs, ground, watcher, case_done)
-    heaviest_first = sorted(range(len(plants)), key=lambda i: -plants[i][1].top_stage * plants[i][1].cut.mass_t)
-    starts = [partial(class_tasks, run, *plants[i]) for i in heaviest_first]
-    by_class = dict(zip(heaviest_first, run_nested(starts, workers), strict=True))
-    cases, failed = parted(result for index in range(len(plants)) for result in by_class[index])
+
+    def done(case: Case) -> None:
+        case_done(case)
+        tell(case, watcher)
+
+    cases, failed = every_case(config, partial(epochs.cases, ground), done, watcher, workers)
     return Book(config, ground.origin.created, cases, failed)
 
 
-def class_tasks(run: TuneRun[Case], label: str, plant: Plant) -> list[Callable[[], Case | FailedCase]]:
-    """Prepare a cut class for all its targets; returns what is left to do for each, as tasks."""
-    config, targets = run.ground.config, run.ground.config.targets_of(label)
-    makers = attempted(partial(run.epochs.cases, run.ground, label, plant), label, targets[0], config)
-    if isinstance(makers, FailedCase):
-        return [partial(case_failed, run, replace(makers, target_m_s=target)) for target in targets]
-    return [partial(case_task, run, label, target, make) for target, make in zip(targets, makers, strict=True)]
-
-
-def case_task(run: TuneRun[Case], label: str, target_m_s: float, make: Callable[[], Case]) -> Case | FailedCase:
-    """One case made, and told of."""
-    case = attempted(make, label, target_m_s, run.ground.config)
-    if isinstance(case, FailedCase):
-        return case_failed(run, case)
-    run.case_done(case)
-    name, found = f"{label} to {target_m_s:g} m/s", case.statistics
+def tell(case: TunedCase, watcher: Watcher) -> None:
+    """What there is to say of a case with a table."""
+    name, found = f"{case.label} to {case.target_speed_m_s:g} m/s", case.statistics
     low, high = found.rms_ci95_m_s
-    run.watcher.done(f"{name}: rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {found.passes} passes")
+    watcher.done(f"{name}: rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {found.passes} passes")
     for warning in case.warnings:
-        run.watcher.note(f"warning: {name}: {warning}")
+        watcher.note(f"warning: {name}: {warning}")
     for remark in case.remarks:
-        run.watcher.note(f"{name}: {remark}")
-    return case
+        watcher.note(f"{name}: {remark}")
 
 
-def case_failed(run: TuneRun[Case], case: FailedCase) -> FailedCase:
-    """A case without a table, told of."""
-    run.watcher.done(case.sentence)
-    return case
+def every_case(
+    config: ResolvedConfig,
+    prepare: Callable[[str, Plant], Sequence[Callable[[], Made]]],
+    done: Callable[[Made], None],
+    watcher: Watcher,
+    workers: int,
+) -> tuple[tuple[Made, ...], tuple[FailedCase, ...]]:
+    """Every case of `config` that can be made, and the others, each in the order of the configuration.
+
+    `prepare` is given a cut class, the heaviest first, and returns what makes the case of each of its targets. A case
+    that is made is given to `done`; of one that fails `watcher` is told. Work runs on `workers` threads.
+    """
+
+    def ended(case: Made | FailedCase) -> Made | FailedCase:
+        if isinstance(case, FailedCase):
+            watcher.done(case.sentence)
+        else:
+            done(case)
+        return case
+
+    def case_of(label: str, target_m_s: float, make: Callable[[], Made]) -> Made | FailedCase:
+        return ended(attempted(make, label, target_m_s, config))
+
+    def start(label: str, plant: Plant) -> list[Callable[[], Made | FailedCase]]:
+        targets = config.targets_of(label)
+        makers = attempted(partial(prepare, label, plant), label, targets[0], config)
+        if isinstance(makers, FailedCase):
+            return [partial(ended, replace(makers, target_m_s=target)) for target in targets]
+        return [partial(case_of, label, target, make) for target, make in zip(targets, makers, strict=True)]
+
+    plants = config.plants()
+    heaviest_first = sorted(range(len(plants)), key=lambda i: -plants[i][1].top_stage * plants[i][1].cut.mass_t)
+    found = run_nested([partial(start, *plants[i]) for i in heaviest_first], workers)
+    by_class = dict(zip(heaviest_first, found, strict=True))
+    return parted(result for index in range(len(plants)) for result in by_class[index])

@@ -2,38 +2,66 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from plant_models import Plant
 from synth.problem.aim import Aim
-from synth.retarder.case_result import CaseResult, CaseStudy
+from synth.retarder.attempted_case import attempted
+from synth.retarder.case_result import CaseResult
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup
 from synth.retarder.comparison.compared_laws import beside_table, best_law, compared_laws, permitted
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.friction_bound import friction_bound
 from synth.retarder.comparison.measured import Measured
 from synth.retarder.comparison.served_entry import EntrySweep, entry_sweep, feasibility_of
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.epochs import Ground, Store
 from synth.retarder.estimation.estimated_table import controller_of
+from synth.retarder.failed_case import FailedCase
 from synth.retarder.off_nominal.trial import Trials, trials
-from synth.retarder.pareto.case_front import Front, pareto_front
-from synth.retarder.policy_map import policy_map
+from synth.retarder.pareto.pareto_front import PRICES_M2_S3, ParetoFront, ParetoPoint
+from synth.retarder.policy_map import share_of_ties
 from synth.retarder.tuned_table import TunedTable, ValidatedLines, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import TRACE_FACTORS, ExitSample
 from synth.simulation.random_passes import random_passes
 from synth.simulation.unavoidable_error import unavoidable_error
 from synth.solver.backward_induction import Solution
-from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable
 
-LINE_NODES = 301
-INDIFFERENCE_SHOWN_M2_S2 = 1e-4
-"""Costs that differ by less than (1 cm/s)² are drawn as equal."""
+Front = Callable[[], ParetoFront]
+"""Makes the front of a case."""
+
+
+def pareto_front(config: ResolvedConfig, setup: ClassSetup, aim: Aim) -> ParetoFront:
+    """The front of one case; each table is tuned, predicted and simulated as any."""
+    aims = [replace(aim, criterion=replace(aim.criterion, time_price_m2_s3=price)) for price in PRICES_M2_S3]
+    points: list[ParetoPoint] = []
+    base = None
+    for solution in solutions(setup.design, aims):
+        made = attempted(partial(tuned_table, setup, solution), setup.label, aim.target_speed_m_s, config)
+        if isinstance(made, FailedCase):
+            continue
+        sample = setup.passes.run(TableController(made.table))
+        base = sample if base is None else base
+        points.append(
+            ParetoPoint(
+                price_of(solution), exit_statistics(sample, aim.target_speed_m_s), made.table.predicted.rms_m_s,
+                *rms_ratio(sample, base, aim.target_speed_m_s),
+            )
+        )  # fmt: skip
+    return ParetoFront(setup.label, aim.target_speed_m_s, tuple(points))
+
+
+def price_of(solution: Solution) -> float:
+    """What a second costs in it."""
+    return solution.aim.criterion.time_price_m2_s3
 
 
 @dataclass(frozen=True)
@@ -59,7 +87,7 @@ def case_orders(ground: Ground[ControllerTable], label: str, plant: Plant, paret
     """All targets of one cut class solved, and what is to be done with each; `pareto`: front of each case too."""
     config = ground.config
     setup = class_setup(config, label, plant, ground.passes, ground.origin)
-    aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
+    aims = config.aims_of(label)
     rehearsal = setup.passes.of_others(random_passes(config.validation.seed + 1, 0, TUNING_PASSES))
     entries, off_nominal = entry_sweep(setup.passes), trials(setup.passes)
     fronts = [partial(pareto_front, config, setup, aim) if pareto else None for aim in aims]
@@ -93,7 +121,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
         estimate=tuned.designed.estimate,
         comparison=comparison(order, tuned, validated, told),
         feasibility=feasibility_of(order.entries, target, order.limit_m_s),
-        study=case_study(order, validated),
+        ties=share_of_ties(solution),
         front=None if order.front is None else order.front(),
         off_nominal=order.trials.of(validated.table, validated.sample),
     )
@@ -113,15 +141,4 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedLines, t
         baselines=tuple(each.measured for each in laws),
         baseline_ratio_ci95=beside_table("", best_law(laws).sample, told, target).table_ratio_ci95,
         at_rest=None if tuned.at_any_time is None else at_rest(),
-    )
-
-
-def case_study(order: CaseOrder, validated: ValidatedLines) -> CaseStudy:
-    """Lines and policy map."""
-    return CaseStudy(
-        table_lines=lines_of(
-            validated.table, np.linspace(order.setup.plant.start_m, order.setup.plant.exit_m, LINE_NODES)
-        ),
-        solver_lines=order.solution.lines,
-        policy_map=policy_map(order.solution, INDIFFERENCE_SHOWN_M2_S2),
     )

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from synth.frame.command import Asked, Command, Head, Work
+from synth.frame.command import Asked, Command, Work
 from synth.frame.exhibits import Chapter, Sentence
 from synth.retarder.asked_tune import AskedTune, asked_tune, drawing, limits, steps, tuned
 from synth.retarder.configuration.config_file import parse_config
@@ -44,28 +44,15 @@ def resolve(asked: Asked[ResolvedConfig, TuneOptions]) -> AskedTune[CaseResult, 
     return asked_tune(asked.settings, asked.place, RadarEpochs(asked.options.pareto), asked.options)
 
 
-def head(asked: AskedTune[CaseResult, ControllerTable]) -> Head:
-    """What is said of the configuration."""
-    return head_of(asked.config)
-
-
 def compute(asked: AskedTune[CaseResult, ControllerTable], work: Work) -> FoundBook[CaseResult]:
     """The book; the picture of a case is begun when that is computed."""
     from synth.retarder.shown.pictures import case_chart
 
-    return tuned(asked, work, lambda case: work.begin(case_chart(case)), found_book)
+    return tuned(asked, work, lambda case: work.begin(case_chart(case)), book_files)
 
 
-def found_book(book: Book[CaseResult]) -> FoundBook[CaseResult]:
-    """The book with its verdicts and files."""
-    from synth.retarder.acceptance import judged
-    from synth.retarder.found_book import FoundBook
-
-    return FoundBook(book, judged(book.cases, book.config.acceptance), book_files(book))
-
-
-def book_files(book: Book[CaseResult]) -> tuple[File, ...]:
-    """The tables together: as a book, in C, and a CSV each if the configuration asks for it."""
+def book_files(book: Book[CaseResult]) -> tuple[tuple[File, ...], str]:
+    """The tables together: as a book, in C, and a CSV each if the configuration asks for it; no Structured Text."""
     from synth.frame.exhibits import File
     from synth.retarder.forms.table_forms import c_form, csv_form
     from tuning_tables.hdf5_file import book_bytes
@@ -75,7 +62,7 @@ def book_files(book: Book[CaseResult]) -> tuple[File, ...]:
     if book.config.output.csv:
         files |= {f"tables/{name}": content for name, content in csv_form(tables).items()}
     files |= {f"c/{name}": content for name, content in c_form(tables).items()}
-    return tuple(File(name, content) for name, content in files.items())
+    return tuple(File(name, content) for name, content in files.items()), ""
 
 
 def show(found: FoundBook[CaseResult]) -> Iterator[Chapter]:
@@ -115,7 +102,7 @@ COMMAND = Command(
     read=parse_config,
     options=TuneOptions,
     resolve=resolve,
-    head=head,
+    head=lambda asked: head_of(asked.config),
     steps=steps,
     compute=compute,
     show=show,

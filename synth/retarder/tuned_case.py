@@ -18,6 +18,46 @@ from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
 from tuning_tables.table_kinds import StageTable
 
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Feasibility:
+    """From which entry speeds the position can keep `limit_m_s`, the rms that is accepted.
+
+    `entry_m_s` (n,) up to the position's highest entry speed, and `entry_rms_m_s` (n,): rms of the unavoidable error of
+    cuts that enter with that speed; `served_m_s`: (low, high) where it meets the limit, None if nowhere.
+    """
+
+    limit_m_s: float
+    entry_m_s: NDArray[np.float64]
+    entry_rms_m_s: NDArray[np.float64]
+    served_m_s: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class GridCheck:
+    """The rms of polished lines on the grid of their design, and what an independent computation says of it.
+
+    `again`: whether the design is a second one, on finer speeds, as the first was not believed. `most_off`: factor
+    between the two, either way, beyond which the grid is not believed.
+    """
+
+    design_rms_m_s: float
+    independent_rms_m_s: float
+    again: bool
+    most_off: float
+
+    @property
+    def share(self) -> float:
+        """The first over the second; 1 where the second is 0."""
+        return self.design_rms_m_s / self.independent_rms_m_s if self.independent_rms_m_s > 0.0 else 1.0
+
+    @property
+    def is_believed(self) -> bool:
+        """Whether the two agree."""
+        return 1.0 / self.most_off <= self.share <= self.most_off
+
+
 MOST_ESCAPED = 1e-4
 """Probability that may leave the top of the speed grid before a prediction is called doubtful."""
 

@@ -6,6 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+Tell = Callable[[str], None]
+"""Is told a sentence when a step has ended."""
+
+
+def silent(_sentence: str) -> None:
+    """Nobody wants to know."""
+
 
 class Watcher(Protocol):
     """Is told sentences, by any thread."""
@@ -23,7 +30,7 @@ class Watcher(Protocol):
 class Teller:
     """A watcher that counts nothing and passes every sentence on."""
 
-    tell: Callable[[str], None]
+    tell: Tell
 
     def done(self, sentence: str) -> None:
         """See `Watcher`."""

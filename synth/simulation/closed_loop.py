@@ -27,10 +27,10 @@ from synth.kernels.loop.trace import EVENT_FIELDS, Trace
 from synth.simulation.controllers import Controller, LineController, Regulator, TableController, all_fixed, fixed
 from synth.simulation.drive_pieces import drive_pieces, empty_periods
 from synth.simulation.lost_readings import readings_z
-from synth.simulation.many_passes import many_passes
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.path_cells import path_cells
 from synth.simulation.random_passes import RandomPasses
+from synth.simulation.stratified_passes import many_passes
 
 __all__ = [
     "ClosedLoop",
@@ -230,6 +230,12 @@ def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> Closed
         drive=drive,
         sensor=Sensor(sensor.sample_period_s, sensor.noise_m_s, sensor.resolution_m_s),
     )
+
+
+def picked(draws: Draws, which: NDArray[np.int64]) -> Draws:
+    """Some passes of `draws`, in this order; of the path they keep what follows from `path_z`, not the numbers."""
+    kept = draws._replace(path_z=draws.path_z[:, :0])
+    return Draws._make(fixed(each[which], each.dtype.type) for each in kept)
 
 
 def simulate(plant: Plant, controller: Controller, passes: RandomPasses, cut_factor: float | None = None) -> ExitSample:

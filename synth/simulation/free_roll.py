@@ -65,10 +65,6 @@ class RollingCuts:
         low, high = self.way.fall_m.reshape(-1)[rows + node], self.way.fall_m.reshape(-1)[rows + node + 1]
         return np.asarray((shares * (low + (place - node) * (high - low))).sum(axis=0))
 
-    def longest_step_m(self, of_a_car_m: float) -> float:
-        """The longest step of these cuts, where that of a single car is `of_a_car_m`."""
-        return of_a_car_m * float(self.arrays.long_steps.max())
-
     def roll_on(self, start_m: Floats, speed_m_s: Floats, stations_m: Floats, step_m: float = STEP_M) -> Rolled:
         """Roll each cut from the head position `start_m` (n,) with `speed_m_s` (n,) over `stations_m` (n, k), which
         increase from there on."""

@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models import Plant, PointSensors, every_axle
 from plant_models.frozen_arrays import frozen_arrays
-from synth.kernels.loop.passage_pulses import Heard
+from plant_models.point_sensors import deciding_passages
+from synth.kernels.loop.passage_pulses import BASE_COLUMN, MOST_BASES, Heard, Pulses
 from synth.simulation.controllers import fixed
 
 Floats = NDArray[np.float64]
@@ -35,29 +37,6 @@ class HeardPairs:
     def __len__(self) -> int:
         return len(self.after_s)
 
-    def of_sensor(self, sensor: int | None) -> NDArray[np.bool_]:
-        """Marks the rows that are heard from `sensor`, or all, (R,)."""
-        return np.ones(len(self.sensor), dtype=np.bool_) if sensor is None else self.sensor == sensor
-
-    def without(self, lost: NDArray[np.bool_]) -> HeardPairs:
-        """The pairs but those that `lost`, of a shape like (n, R), marks."""
-        return replace(self, after_s=np.where(lost, np.nan, self.after_s))
-
-    def taken(self, rows: NDArray[np.bool_]) -> HeardPairs:
-        """The rows alone that `rows` (R,) marks."""
-        return HeardPairs(self.source[rows], self.sensor[rows], self.after_s[:, rows], self.told_m_s[:, rows])
-
-    def also(self, more: HeardPairs) -> HeardPairs:
-        """These rows and those of `more`, of the same passes, in the order that the kernel wants."""
-        source = np.concatenate([self.source, more.source])
-        order = np.argsort(np.where(source == BY_THE_CLOCK, np.iinfo(np.int64).max, source), kind="stable")
-        return HeardPairs(
-            source[order],
-            np.concatenate([self.sensor, more.sensor])[order],
-            np.concatenate([self.after_s, more.after_s], axis=1)[:, order],
-            np.concatenate([self.told_m_s, more.told_m_s], axis=1)[:, order],
-        )
-
     def first_row(self, sources: int) -> Ints:
         """First row of each source, and of those by the clock, (`sources` + 1,)."""
         return np.searchsorted(self.source[self.source != BY_THE_CLOCK], np.arange(sources + 1)).astype(np.int64)
@@ -71,3 +50,62 @@ def as_given(sensor: Ints, passes: int) -> HeardPairs:
     """Every axle over a sensor is heard once, at once, as it was measured; `sensor` (E,) of each."""
     shape = (passes, len(sensor))
     return HeardPairs(np.arange(len(sensor)), np.array(sensor), np.zeros(shape), np.full(shape, np.nan))
+
+
+TIMER_COLUMNS = BASE_COLUMN + 1 - MOST_BASES
+"""Numbers of a pass that are the noise of the timer, one pulse pair each; beyond so many pairs they come again."""
+
+
+def every_pulse(plant: Plant, sensors: PointSensors) -> Pulses:
+    """The pulses of every axle over every sensor until the first axle is at the exit.
+
+    Passages at which is decided take the first numbers of a pass for the noise of their timer, all others those behind:
+    so a cut measures the same there, whether the others are heard or not.
+    """
+    deciding = {
+        (each.sensor, each.axle): i for i, each in enumerate(deciding_passages(sensors, plant.cut, plant.exit_m))
+    }
+    met = deciding_passages(replace(sensors, axles=every_axle), plant.cut, plant.exit_m)
+    decides = np.array([deciding.get((each.sensor, each.axle), -1) for each in met], dtype=np.int64)
+    column = decides.copy()
+    column[decides < 0] = len(deciding) + np.arange(np.count_nonzero(decides < 0))
+    path = np.maximum(np.array([each.path_m for each in met]), plant.start_m)
+    nothing = np.empty(0, dtype=np.int64)
+    sensor, number = np.array([each.sensor for each in met]), np.arange(len(met))
+    return in_order(
+        Pulses(
+            path, sensor, number, decides, column % TIMER_COLUMNS, nothing, nothing, nothing,
+            sensors.base_m, sensors.base_tolerance, sensors.timer_noise_s, sensors.timer_resolution_s,
+        )
+    )  # fmt: skip
+
+
+def deciding_pulses(pulses: Pulses) -> Pulses:
+    """Those of `pulses` at whose passages is decided."""
+    here = np.flatnonzero(pulses.decides >= 0)
+    return in_order(
+        pulses._replace(
+            path_m=pulses.path_m[here],
+            sensor=pulses.sensor[here],
+            number=pulses.number[here],
+            decides=pulses.decides[here],
+            column=pulses.column[here],
+        )
+    )
+
+
+def in_order(pulses: Pulses) -> Pulses:
+    """`pulses` with the order of their coils and a row for each source."""
+    half_m, sources = 0.5 * pulses.base_m, len(pulses.path_m)
+    coils = np.argsort(np.concatenate([pulses.path_m - half_m, pulses.path_m + half_m]), kind="stable")
+    sensor = fixed(pulses.sensor, np.int64)
+    return pulses._replace(
+        path_m=fixed(pulses.path_m, np.float64),
+        sensor=sensor,
+        number=fixed(pulses.number, np.int64),
+        decides=fixed(pulses.decides, np.int64),
+        column=fixed(pulses.column, np.int64),
+        coils=fixed(coils, np.int64),
+        first_row=fixed(np.arange(sources + 1), np.int64),
+        told_sensor=sensor,
+    )

@@ -46,9 +46,8 @@ def logged_passes(
     first: int,
     count: int,
     gauge: PressureGauge | None,
-    prefix: str = "cut-",
 ) -> PassLog:
-    """Passes `first` … `first + count − 1` of the row of `seed`, as cuts come; cut_id is `prefix` and their number.
+    """Passes `first` … `first + count − 1` of the row of `seed`, as cuts come; cut_id is 'cut-' and their number.
 
     A row at every sample of the regulator, also while the pressure changes, until the cut has left or stands: the path
     is the true one, the speed that of the sensor, the stage what is commanded from this sample on, the pressure what
@@ -71,7 +70,7 @@ def logged_passes(
         pressure = gauge.reading_kpa(true, np.concatenate(z))
     log = PassLog(
         time, path, speed, pressure, stage, ends,
-        cut_id=tuple(f"{prefix}{number:06d}" for number in range(first, first + count)),
+        cut_id=tuple(f"cut-{number:06d}" for number in range(first, first + count)),
         mass_t=np.full(count, plant.cut.mass_t),
         axles=np.full(count, plant.cut.axles),
         category=(plant.cut.category,) * count,
@@ -141,9 +140,7 @@ def gauge_noise(seed: int, number: int, rows: int) -> Floats:
     return np.random.Generator(np.random.SFC64(sequence)).standard_normal(rows)
 
 
-def mixed_log(
-    classes: Sequence[LoggedClass], counts: Sequence[int], seed: int, gauge: PressureGauge | None, prefix: str = "cut-"
-) -> PassLog:
+def mixed_log(classes: Sequence[LoggedClass], counts: Sequence[int], seed: int, gauge: PressureGauge | None) -> PassLog:
     """`counts` passes of each of `classes`, one log, in an order that `seed` shuffles; cuts are numbered in that order.
 
     The passes of one class are independent of those of the others. `ValueError` for other counts than classes.
@@ -156,4 +153,4 @@ def mixed_log(
     log = join_logs(logs)
     order = np.random.Generator(np.random.SFC64(np.random.SeedSequence(seed, spawn_key=(1, CLASSES))))
     mixed = one_after_the_other(log.taken(order.permutation(len(log))), GAP_S)
-    return replace(mixed, cut_id=tuple(f"{prefix}{number:06d}" for number in range(len(log))))
+    return replace(mixed, cut_id=tuple(f"cut-{number:06d}" for number in range(len(log))))

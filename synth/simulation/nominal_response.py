@@ -1,4 +1,4 @@
-"""The nominal pass by python-control: a second computation of what the simulator does, by a general ODE solver.
+"""The nominal pass by python-control: a second computation of what the simulator does, and how far they are apart.
 
 - At every sample the regulator is asked; between samples `input_output_response` integrates the loop.
 - python-control has no exact dead time, and its input is linear between time points. Valve and computing delays are
@@ -29,15 +29,23 @@ from synth.kernels.loop.passes import LONGEST_PASS_S
 from synth.simulation.closed_loop import Controller
 from synth.simulation.control_system import nominal_loop, regulated_actuator, regulator_start, regulator_system
 from synth.simulation.impulse_train import ImpulseTrain, held, resting_train
+from synth.simulation.passes import PassTrace
 
 if TYPE_CHECKING:
     from control import InterconnectedSystem
+
 
 CLOSED = 0.0
 """Valve position, the input of the drive, that holds the pressure; +1 supplies, −1 exhausts."""
 
 OUTPUT_STEP_S = 0.01
 """Longest time between points of a response."""
+
+SAME_SAMPLE_S = 1e-6
+"""Commands nearer to each other than this belong to one sample."""
+
+SAME_PASSAGE_S = 1e-3
+"""And to one passage: the time of a passage depends on the motion before it, that of a sample does not."""
 
 SOLVER = {"method": "RK45", "rtol": 1e-9, "atol": 1e-10, "max_step": 0.02}
 """For `solve_ivp`; `max_step` keeps the solver from stepping over a change of N(s)."""
@@ -62,12 +70,6 @@ class NominalResponse:
     def exit_speed_m_s(self) -> float:
         """Speed at the exit; 0 after a stall."""
         return 0.0 if self.stalled else float(self.speed_m_s[-1])
-
-    @property
-    def commands(self) -> tuple[tuple[float, int], ...]:
-        """(time of the sample in s, stage commanded) of every change of stage."""
-        changed = np.flatnonzero(np.diff(self.stage)) + 1
-        return tuple((float(self.time_s[i]), int(self.stage[i])) for i in changed)
 
 
 def nominal_response(plant: Plant, controller: Controller, entry_speed_m_s: float, phase_s: float) -> NominalResponse:
@@ -158,3 +160,48 @@ def to_the_end(points: NDArray[np.float64], stages: NDArray[np.float64], exit_m:
         path[last], speed[last] = exit_m, exit_speed
     time, path, speed, pressure = points[:, : last + 1].copy()
     return NominalResponse(time, path, speed, pressure, stages[: last + 1].astype(np.int64), stalled)
+
+
+@dataclass(frozen=True)
+class ResponseDifference:
+    """Response less trace, m/s: the largest in size of the whole pass, or of its part before `parted_s`.
+
+    `parted_s`: the first sample at which the two command different stages, None where there is none. A regulator is a
+    relay: where the speed of a sample lies on a line, rounding decides, and from then on these are two passes.
+    """
+
+    largest_m_s: float
+    exit_m_s: float
+    parted_s: float | None
+
+
+def response_difference(
+    response: NominalResponse, trace: PassTrace, same_s: float = SAME_SAMPLE_S
+) -> ResponseDifference:
+    """`response` less `trace`, at the events of the trace; commands nearer to each other than `same_s` are one."""
+    parted = parting(commands_of(response), commands_of(trace), same_s)
+    time = trace.time_s
+    counted = time <= min(float(response.time_s[-1]), math.inf if parted is None else parted)
+    if response.stalled and trace.stalled:
+        counted &= time < time[-1]  # at rest both are 0, but a response ends at one of its points shortly after
+    speed = np.interp(time[counted], response.time_s, response.speed_m_s)
+    apart = speed - trace.speed_m_s[counted]
+    largest = float(apart[np.argmax(np.abs(apart))])
+    return ResponseDifference(largest, response.exit_speed_m_s - trace.exit_speed_m_s, parted)
+
+
+def commands_of(trace: NominalResponse | PassTrace) -> tuple[tuple[float, int], ...]:
+    """(time of the sample in s, stage commanded) of every change of stage."""
+    changed = np.flatnonzero(np.diff(trace.stage)) + 1
+    return tuple((float(trace.time_s[i]), int(trace.stage[i])) for i in changed)
+
+
+def parting(
+    one: tuple[tuple[float, int], ...], other: tuple[tuple[float, int], ...], same_s: float = SAME_SAMPLE_S
+) -> float | None:
+    """Time of the first command that is not in both; None if all are."""
+    for (time, stage), (later, wanted) in zip(one, other, strict=False):
+        if stage != wanted or abs(time - later) > same_s:
+            return min(time, later)
+    rest = one[len(other) :] or other[len(one) :]
+    return rest[0][0] if rest else None

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,17 +15,17 @@ from plant_models import Plant, PointSensors
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.kernels.loop import passage_loop as kernel
 from synth.kernels.loop import passage_pulses
+from synth.kernels.loop.passage_loop import roll
 from synth.kernels.loop.passage_regulator import STATE_FIELDS
 from synth.kernels.loop.passes import Draws
 from synth.kernels.loop.trace import EVENT_FIELDS
-from synth.simulation.axle_pulses import deciding_pulses, every_pulse
 from synth.simulation.closed_loop import SUBSTEP_S, ClosedLoop, close_loop, empty_exits, trace_of
 from synth.simulation.controllers import all_fixed, fixed
-from synth.simulation.heard_pairs import HeardPairs, as_given
-from synth.simulation.many_passes import many_passes
+from synth.simulation.heard_pairs import HeardPairs, as_given, deciding_pulses, every_pulse
 from synth.simulation.passage_controller import PassageController
 from synth.simulation.passage_sample import PassageSample, PassageTrace, PassReadings
 from synth.simulation.random_passes import RandomPasses
+from synth.simulation.stratified_passes import many_passes
 
 PATH_ERROR_M = 1e-3
 """How far the passages that a controller knows may lie from those of the loop, where it is told each of them."""
@@ -213,3 +215,42 @@ def simulate_passages(
         return loop.run(controller, loop.draws(passes), faults)
 
     return many_passes(run, loop.radar.cells, seed, count, first_pass, threads)
+
+
+TRACE_STEP_S = 0.05
+"""Between points of a traced pass, which has events of its own only at coils and changes of pressure."""
+
+
+def filled_trace(loop: PassageLoop, trace: PassageTrace, draws: Draws, step_s: float = TRACE_STEP_S) -> PassageTrace:
+    """`trace` of the only pass of `draws` with points at most `step_s` apart.
+
+    Between two events the overpressure is constant, so each point is as exact as the events are.
+    """
+    path = loop.radar.path
+    free = path.gravity_m_s2 - path.drag_m_s2_per_n_kn * draws.resistance_n_kn[0]
+    added: list[tuple[float, float, float, int]] = []
+    for event, (start, end) in enumerate(pairwise(trace.time_s.tolist())):
+        s, v = float(trace.path_m[event]), float(trace.speed_m_s[event])
+        cell = min(int(np.searchsorted(path.edges_m, s, side="right")) - 1, free.size - 1)
+        for time in np.arange(start + step_s, end - 1e-9, step_s).tolist():
+            cell, s, v, _, _ = roll(
+                path.edges_m, free, draws.brake_m_s2_per_kpa[0], trace.overpressure_kpa[event], step_s, np.inf,
+                cell, s, v,
+            )  # fmt: skip
+            added.append((time, s, v, event))
+    times = np.array([time for time, *_ in added])
+    events = np.array([event for *_, event in added], dtype=np.int64)
+    order = np.argsort(np.concatenate([trace.time_s, times]), kind="stable")
+
+    def with_points(events_of: NDArray[Any], points: NDArray[Any]) -> NDArray[Any]:
+        return np.concatenate([events_of, points])[order]
+
+    return replace(
+        trace,
+        time_s=with_points(trace.time_s, times),
+        path_m=with_points(trace.path_m, np.array([s for _, s, _, _ in added])),
+        speed_m_s=with_points(trace.speed_m_s, np.array([v for _, _, v, _ in added])),
+        overpressure_kpa=with_points(trace.overpressure_kpa, trace.overpressure_kpa[events]),
+        stage=with_points(trace.stage, trace.stage[events]),
+        measured_m_s=with_points(trace.measured_m_s, np.full(times.size, np.nan)),
+    )

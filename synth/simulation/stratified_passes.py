@@ -13,11 +13,15 @@ rms of the default book is as certain as by 15 to 100 times as many plain passes
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import fields, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import BLOCK_PASSES, PATH_CELLS, RandomPasses, block_of_passes, row_of_passes
 from synth.simulation.replicates import REPLICATE_PASSES
 
@@ -78,3 +82,34 @@ def permutations(rng: np.random.Generator) -> NDArray[np.int64]:
     """The numbers of the strata of a replicate in random order, for each replicate of a block, (1000,)."""
     rows = rng.permuted(np.tile(np.arange(REPLICATE_PASSES), (BLOCK_PASSES // REPLICATE_PASSES, 1)), axis=1)
     return rows.ravel()
+
+
+Sample = TypeVar("Sample", bound=ExitSample)
+
+CHUNK_PASSES = 2000
+"""Passes whose random numbers are in memory at a time, for each thread (4 MB)."""
+
+
+def many_passes(
+    run: Callable[[RandomPasses], Sample], cells: int, seed: int, count: int, first_pass: int = 0, threads: int = 1
+) -> Sample:
+    """What `run` makes of passes `first_pass` … `first_pass + count − 1` of the stratified row of `seed`.
+
+    `cells`: of the path, behind the entrance. The result does not depend on `threads` nor on how the passes are split.
+    """
+
+    def chunk(start: int, stop: int) -> Sample:
+        return run(stratified_passes(seed, start, stop - start, cells))
+
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+        samples = list(pool.map(chunk, *chunk_bounds(first_pass, count)))
+    kind = type(samples[0])
+    names = [field.name for field in fields(kind)]
+    return kind(**{name: np.concatenate([getattr(sample, name) for sample in samples]) for name in names})
+
+
+def chunk_bounds(first_pass: int, count: int) -> tuple[list[int], list[int]]:
+    """Where the chunks of so many passes begin and end: at multiples of their size, so that no block is drawn twice."""
+    end = first_pass + count
+    inner = range((first_pass // CHUNK_PASSES + 1) * CHUNK_PASSES, end, CHUNK_PASSES)
+    return [first_pass, *inner], [*inner, end]

@@ -54,7 +54,7 @@ INTRUDERS = (
     ("synth/solver/tabulate.py", "from synth.retarder import tune", "synth.solver.tabulate -> synth.retarder.tune (l."),
     ("synth/intruder.py", "import math", "not listed as layers: - synth.intruder"),
     ("synth/retarder/tune.py", "from synth.retarder.sweep import plan", "tune -> synth.retarder.sweep.plan (l."),
-    ("synth/retarder/configuration/targets.py", "from synth.retarder import tune", "targets -> synth.retarder.tune"),
+    ("synth/retarder/configuration/cut_class.py", "from synth.retarder import tune", "cut_class -> synth.retarder."),
     ("synth/cli/study.py", "from scripts.studies import cases", "synth.cli.study -> scripts.studies.cases (l."),
     ("plant_models/intruder.py", "import scripts.studies.cases", "plant_models.intruder -> scripts.studies.cases"),
     ("tuning_tables/intruder.py", "def f():\n    import scripts", "tuning_tables.intruder -> scripts (l."),

@@ -30,7 +30,7 @@ from synth.hump.railml.write import to_railml
 from synth.hump.trains.simulate_command import COMMAND as SIMULATE
 from synth.logs.loaded_passes import loaded_passes
 from synth.retarder.configuration.config_file import load_config
-from synth.retarder.configuration.point_sensors.template import default_sensors_toml
+from synth.retarder.configuration.config_template import default_sensors_toml
 from synth.retarder.sensors.tune_command import COMMAND as SENSORS_TUNE
 from synth.retarder.sweep.command import COMMAND as SWEEP_RUN
 from synth.retarder.tune_options import TuneOptions

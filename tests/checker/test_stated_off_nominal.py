@@ -13,7 +13,7 @@ import pytest
 from synth.checker.stated_off_nominal import KEYS, off_nominal_faults
 from synth.checker.summary import by_case
 from synth.checker.verdict import verify
-from synth.retarder.off_nominal.condition import CONDITIONS
+from synth.retarder.off_nominal.trial import CONDITIONS
 
 Row = dict[str, Any]
 Rows = list[Any]

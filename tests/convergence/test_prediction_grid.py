@@ -15,8 +15,8 @@ from synth.retarder.rounded_table import predict
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.replicates import share_of
 from synth.solver.chain.chain import Chain, check_chain
-from synth.solver.chain.finer_end import times_as_fine
 from synth.solver.policy_density import exit_density
+from synth.solver.resolved_density import times_as_fine
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
 from tests.effort import every

@@ -218,7 +218,7 @@ class BruteForce:
     def decide(self, n: int) -> None:
         """Lines and values of node n."""
         t, stage_of = self.t, self.t.actuator.mode_stage
-        sides = (t.landings.lower_chain, t.landings.upper_chain)
+        sides = t.landings.change_chain[:2]
         hidden = list(itertools.product(self.scenarios, self.modes, self.levels))
         hold = {(i, h, u): [self.holding(i, n, h, u, j) for j in range(self.points)] for i, h, u in hidden}
         change: dict[tuple[int, int, int, int], Row] = {}

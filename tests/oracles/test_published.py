@@ -94,7 +94,7 @@ class Published:
         near, far = (np.take_along_axis(stacked, q[None], 0)[0] for q in (r, r + 1))
         hold = np.where(f < 1.0, ahead[1], (1 - x) * near + x * far)
         changes = []
-        for chains in (self.t.landings.lower_chain, self.t.landings.upper_chain):
+        for chains in self.t.landings.change_chain[:2]:
             value = hold.copy()
             for h, c in enumerate(chains):
                 if c >= 0:

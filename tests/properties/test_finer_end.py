@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 from synth.kernels.sweep.finer_end import refine, refine_landings, refinement
 from synth.problem.terminal_cost import share_above
 from synth.solver.chain.chain import Chain, chain_of
-from synth.solver.chain.finer_end import finer_end
 from synth.solver.exit_density import ExitDensity, without_negative
 from synth.solver.policy_density import exit_density
-from synth.solver.resolved_density import density_by_end
+from synth.solver.resolved_density import density_by_end, finer_end
 from tests.properties.test_density_and_value import FEW, SEEDS, random_lines
 
 

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor, Friction, Plant, RollingResistance
+from scripts.studies.point_sensors.told import with_known_friction
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import Solution, solve
-from synth.solver.chain.chain import Chain, persistent_chain, with_known_friction
+from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import exit_density
 

@@ -26,8 +26,8 @@ from synth.frame.input_error import InputError
 from synth.retarder.configuration.config_file import load_config
 from synth.simulation.controllers import TableController
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant
+from synth.simulation.nominal_response import response_difference
 from synth.simulation.passage_loop import close_passage_loop
-from synth.simulation.response_difference import response_difference
 from synth.simulation.structure.diagram import Diagram
 from synth.simulation.structure.part import Part
 from synth.simulation.structure.passage_diagram import passage_diagram

@@ -7,14 +7,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Cut, Plant, RollingResistance
-from synth.retarder.case_result import CaseResult, CaseStudy, PolicyMap
+from plant_models import (
+    Cut,
+    Plant,
+    RollingResistance,
+)
+from synth.retarder.case_result import CaseResult
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.measured import Measured
-from synth.retarder.feasibility import Feasibility
-from synth.retarder.grid_check import GridCheck
-from synth.retarder.off_nominal.condition import CONDITIONS
 from synth.retarder.off_nominal.outcome import OffNominal, Outcome
+from synth.retarder.off_nominal.trial import CONDITIONS
+from synth.retarder.policy_map import PolicyMap
+from synth.retarder.tuned_case import Feasibility, GridCheck
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import TRACE_FACTORS, ExitSample, PassTrace
 from synth.simulation.unavoidable_error import UnavoidableError
@@ -78,11 +82,7 @@ def make_case(
             entry_rms_m_s=np.full(5, make_unavoidable(feasible).rms_m_s),
             served_m_s=(5.0, 6.5) if feasible else None,
         ),
-        study=CaseStudy(
-            table_lines=make_lines(plant, target, 129),
-            solver_lines=make_lines(plant, target, 76, wiggle=0.05),
-            policy_map=make_policy_map(plant, target),
-        ),
+        ties=0.125,
         front=None,
         off_nominal=make_off_nominal(spread),
     )
@@ -127,11 +127,11 @@ def measured(name: str, sample: ExitSample, table: ExitSample, target: float) ->
     return Measured(name, exit_statistics(sample, target), table_ratio=ratio, table_ratio_ci95=interval)
 
 
-def make_lines(plant: Plant, target: float, nodes: int, wiggle: float = 0.0) -> SwitchingLines:
+def make_lines(plant: Plant, target: float, nodes: int) -> SwitchingLines:
     """Lines that fall to the target, 0.1 m/s apart, higher for higher stages."""
     s = np.linspace(0.0, plant.exit_m, nodes)
     stage = np.arange(plant.top_stage + 1)[:, None]
-    middle = target + (6.0 - target) * (1.0 - s / plant.exit_m) ** 2 + 0.1 * stage + wiggle * np.sin(3.0 * s)
+    middle = target + (6.0 - target) * (1.0 - s / plant.exit_m) ** 2 + 0.1 * stage
     lower, upper = middle - 0.05, middle + 0.05
     lower[0], upper[-1] = -np.inf, np.inf
     return SwitchingLines(s, lower, upper)
@@ -144,7 +144,7 @@ def make_policy_map(plant: Plant, target: float) -> PolicyMap:
     below = speed < lines.lower_m_s[:, :-1, None]
     above = speed > lines.upper_m_s[:, :-1, None]
     indifferent = np.broadcast_to(lines.nodes_m[:-1, None] < plant.exit_m / 3.0, below.shape).copy()
-    return PolicyMap(lines.nodes_m[:-1], speed, (above.astype(np.int8) - below.astype(np.int8)), indifferent, 0.125)
+    return PolicyMap(lines.nodes_m[:-1], speed, (above.astype(np.int8) - below.astype(np.int8)), indifferent)
 
 
 def make_density(mean: float, spread: float) -> ExitDensity:

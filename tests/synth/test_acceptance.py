@@ -14,7 +14,7 @@ from synth.retarder.case_result import CaseResult
 from synth.retarder.comparison.measured import prediction_ratio_of
 from synth.retarder.configuration.settings import AcceptanceSettings
 from synth.retarder.judgement import judgement
-from synth.retarder.off_nominal.worst import worst_of
+from synth.retarder.shown.off_nominal import worst_of
 from synth.simulation.exit_statistics import ExitStatistics, overspeed_of
 from synth.simulation.passes import ExitSample
 from synth.simulation.unavoidable_error import UnavoidableError

@@ -12,8 +12,8 @@ from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.retarder import checked_design
 from synth.retarder.checked_design import CheckedDesign, design_of
-from synth.retarder.grid_check import GridCheck
 from synth.retarder.rounded_table import PredictedTable, with_prediction
+from synth.retarder.tuned_case import GridCheck
 from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from synth.solver.coarse_grid import CoarseGridError

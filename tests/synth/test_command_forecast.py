@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from plant_models import Plant
-from synth.retarder.command_forecast import command_forecast
+from synth.retarder.line_control_loop import command_forecast
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import random_passes
 from tests.synth.test_control_system import table_for

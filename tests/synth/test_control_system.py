@@ -12,8 +12,7 @@ from plant_models import DopplerSensor, Friction, Plant, RollingResistance
 from synth.retarder.comparison.baselines import energy_rule, relay
 from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.simulation.control_system import drive_system, motion_system, nominal_loop, regulator_system
-from synth.simulation.nominal_response import SOLVER, nominal_response
-from synth.simulation.passes import PassTrace
+from synth.simulation.nominal_response import SOLVER, commands_of, nominal_response
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
@@ -62,11 +61,6 @@ def controller_for(plant: Plant, law: str) -> Controller:
     return replace(relay(loop, 3.0, 2, 0.1, 0.0), lead_s=0.3)
 
 
-def commands_of(events: PassTrace) -> list[tuple[float, int]]:
-    changed = np.flatnonzero(np.diff(events.stage)) + 1
-    return [(float(events.time_s[i]), int(events.stage[i])) for i in changed]
-
-
 @pytest.mark.parametrize("law", every(3, ["table", "lines, one stage a command", "energy rule", "relay with lead"]))
 def test_passes_are_the_simulators(quiet: Plant, law: str) -> None:
     controller = controller_for(quiet, law)
@@ -76,14 +70,14 @@ def test_passes_are_the_simulators(quiet: Plant, law: str) -> None:
         events = trace(quiet, controller, passes, i)
         entry = float(quiet.entry.speed_m_s(passes.entry_u)[i])
         found = nominal_response(quiet, controller, entry, float(passes.phase_u[i]) * quiet.sensor.sample_period_s)
-        assert [k for _, k in found.commands] == [k for _, k in commands_of(events)]
-        assert [t for t, _ in found.commands] == pytest.approx([t for t, _ in commands_of(events)], abs=1e-9)
+        assert [k for _, k in commands_of(found)] == [k for _, k in commands_of(events)]
+        assert [t for t, _ in commands_of(found)] == pytest.approx([t for t, _ in commands_of(events)], abs=1e-9)
         assert found.exit_speed_m_s == pytest.approx(events.exit_speed_m_s, abs=0.001)
         assert found.time_s[-1] == pytest.approx(events.time_s[-1], abs=0.002)
         at_samples = ~np.isnan(events.measured_m_s)
         speed = np.interp(events.time_s[at_samples], found.time_s, found.speed_m_s)
         assert speed == pytest.approx(events.speed_m_s[at_samples], abs=0.001)
-        switchings += len(found.commands)
+        switchings += len(commands_of(found))
     assert switchings >= 6  # the comparison is about something
 
 
@@ -93,10 +87,10 @@ def test_valves_act_as_the_pressure_relay_asks(quiet: Plant) -> None:
     band, stages = quiet.position.pneumatics.dead_band_kpa, quiet.position.stage_pressures_kpa
     locked = regulator_system(quiet, controller_for(quiet, "table"))
     assert locked.dt == quiet.sensor.sample_period_s
-    times = [t for t, _ in found.commands]
+    times = [t for t, _ in commands_of(found)]
     assert len(times) >= 2
     before = 0
-    for t, k in found.commands:
+    for t, k in commands_of(found):
         at_command = np.interp(t, found.time_s, found.pressure_kpa)
         # The valve moves after the computing delay and its own delay, and not before.
         delay = 0.02 + 0.1 + (0.2 if k > before and at_command <= 50.0 else 0.0)
@@ -105,7 +99,7 @@ def test_valves_act_as_the_pressure_relay_asks(quiet: Plant) -> None:
         later = (found.time_s > t + delay + 1e-9) & (found.time_s < t + delay + 0.05)
         assert np.all((found.pressure_kpa[later] - at_command) * (k - before) > 0.0)
         before = k
-    for (_, k), rest_s in zip(found.commands[:-1], times[1:], strict=True):
+    for (_, k), rest_s in zip(commands_of(found)[:-1], times[1:], strict=True):
         rest = float(np.interp(rest_s, found.time_s, found.pressure_kpa))
         assert abs(rest - stages[k]) == pytest.approx(band, abs=0.01)
 

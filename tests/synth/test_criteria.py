@@ -18,6 +18,7 @@ from synth.problem.requirement import FrictionRange, OverspeedLimit
 from synth.problem.requirement_found import OverspeedLimitFound
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.problem.terminal_cost import AsymmetricSquare, PenalisedOverspeed, SquaredError, TerminalCost, share_above
+from synth.retarder.checked_design import required_lines
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.config_template import default_config_toml
 from synth.simulation.closed_loop import LineController, simulate
@@ -32,7 +33,6 @@ from synth.solver.policy_density import exit_density, scenario_densities
 from synth.solver.polish import whitening
 from synth.solver.polynomial_fit import Fit
 from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.required_lines import required_lines
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tuned_lines import fitted, polished
 from synth.solver.worst_case import FACTORS, guard_worst_case

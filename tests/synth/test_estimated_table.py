@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, Plant
+from scripts.studies.estimator.pair import speed_error_m_s
 from synth.problem.aim import Aim
 from synth.problem.estimator_resolution import LEAST_ERROR_M_S, design_error_m_s
 from synth.problem.resolution import Resolution
 from synth.retarder.estimation.estimate_chain import SLOW_DAY_SHARE, SLOW_DAY_Z, estimate_chain, rms_with_white_error
 from synth.retarder.estimation.estimated_lines import estimated_lines
 from synth.retarder.estimation.estimated_table import SHIFTS, EstimatedTable, Trim, controller_of, moved, trimmed
-from synth.retarder.estimation.estimator_design import estimator_of, speed_error_m_s
+from synth.retarder.estimation.estimator_design import estimator_of
 from synth.retarder.estimation.tuning_days import tuning_days
 from synth.simulation.closed_loop import LineController, close_loop, simulate, trace
 from synth.simulation.exit_statistics import rms_ratio

@@ -18,14 +18,14 @@ from plant_models import (
     RollingResistance,
     TrackProfile,
 )
-from synth.retarder.comparison.cycle_wave import cycle_wave
-from synth.retarder.comparison.describing_function import describing_function_analysis
 from synth.retarder.comparison.limit_cycle import (
     StagePair,
+    cycle_wave,
     first_harmonic,
     hunting_report,
     relay_cycle,
 )
+from synth.retarder.pictures.loop_cycle import describing_function_analysis
 from synth.simulation.closed_loop import LineController, trace
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines

@@ -34,7 +34,7 @@ from synth.retarder.shown.pictures import case_chart
 from synth.retarder.shown_case import NEAR_M_S, shown_case
 from synth.simulation.passes import ExitSample
 from tests.synth.all_pictures import all_pictures
-from tests.synth.case_factory import make_case
+from tests.synth.case_factory import make_case, make_policy_map
 
 ROOT = Path(__file__).parents[2]
 
@@ -145,7 +145,7 @@ def test_a_figure_is_one_file(cases: list[CaseResult]) -> None:
 
 def test_outer_panels_say_what_is_drawn(cases: list[CaseResult]) -> None:
     panels = table_lines(cases[1].table, None).axes
-    stages = cases[1].study.solver_lines.stages
+    stages = cases[1].plant.top_stage + 1
     assert sum(axes.get_ylabel() == "speed, m/s" for axes in panels) == 2
     assert sum(axes.get_xlabel().startswith("path") for axes in panels[:stages]) == (stages + 2) // 2
 
@@ -160,7 +160,8 @@ def test_the_picture_book_names_every_picture_once_and_every_case(cases: list[Ca
 
 def test_the_map_shows_command_and_indifference_where_they_are(cases: list[CaseResult]) -> None:
     case = cases[1]
-    image = command_image(case.study.policy_map, 1, (case.plant.start_m, case.plant.exit_m), (2.0, 6.9), (240, 200))
+    policy = make_policy_map(case.plant, case.target_speed_m_s)
+    image = command_image(policy, 1, (case.plant.start_m, case.plant.exit_m), (2.0, 6.9), (240, 200))
     up, down = image[-1, -1], image[0, -1]
     assert up[0] > up[2], "up is reddish"
     assert down[2] > down[0], "down is bluish"
@@ -185,7 +186,7 @@ def test_the_picture_of_a_case_shows_the_run_in_the_stages_in_force(cases: list[
     assert [part.stage for part in parts] == [k for i, k in enumerate(events) if i == 0 or k != events[i - 1]]
     assert all(one.path_m[-1] == next_one.path_m[0] for one, next_one in pairwise(parts))
     assert [speed for part in parts for speed in part.speed_m_s[:-1]] == trace.speed_m_s[:-1].tolist()
-    lines = case.study.table_lines
+    lines = case.table_lines
     for part in parts:
         lower = np.interp(part.lower.path_m, lines.nodes_m, lines.lower_m_s[part.stage])
         assert part.lower.speed_m_s == pytest.approx(lower)

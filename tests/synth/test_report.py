@@ -27,7 +27,7 @@ from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.failed_case import FailedCase
 from synth.retarder.found_book import FoundBook
-from synth.retarder.off_nominal.condition import CONDITIONS
+from synth.retarder.off_nominal.trial import CONDITIONS
 from synth.retarder.shown.checks import checks
 from synth.retarder.tune import Book
 from synth.retarder.tune_command import COMMAND
@@ -248,7 +248,7 @@ def test_limit_cycles_are_told_where_there_are_some() -> None:
     case = make_case()
     shown = list(checks((case,)))
     assert any(isinstance(each, Table) and each.name == "hunting" for each in shown) == bool(
-        hunting_report(case.plant, case.study.table_lines)
+        hunting_report(case.plant, case.table_lines)
     )
     assert any(isinstance(each, Sentence) and "does not hunt" in each.text for each in shown)
 

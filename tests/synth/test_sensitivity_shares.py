@@ -7,10 +7,15 @@ import pytest
 from numpy.typing import NDArray
 from SALib.analyze import rbd_fast
 
-from synth.retarder.sensitivity.hypercube import unit_hypercube
-from synth.retarder.sensitivity.outputs import OUTPUTS
-from synth.retarder.sensitivity.ranking import UNDECIDABLE, measure_first
-from synth.retarder.sensitivity.sensitivity import OutputShares, mean_of_cases, output_shares
+from synth.retarder.sensitivity.responses import OUTPUTS
+from synth.retarder.sensitivity.sensitivity import (
+    UNDECIDABLE,
+    OutputShares,
+    mean_of_cases,
+    measure_first,
+    output_shares,
+    unit_hypercube,
+)
 from synth.retarder.sensitivity.shares import FEWEST_POINTS, GROUPS, HARMONICS, first_order, noise_share
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import ExitSample

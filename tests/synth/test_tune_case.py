@@ -11,11 +11,13 @@ import pytest
 
 from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.config_file import parse_config
+from synth.retarder.estimation.estimate_chain import estimate_chain
+from synth.retarder.policy_map import policy_map, share_of_ties
 from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import Book, tune
 from synth.retarder.watcher import Teller
 from synth.simulation.passes import TRACE_FACTORS
-from synth.solver.tabulate import lines_of
+from synth.solver.backward_induction import solve
 from tuning_tables import ControllerTable, read_json, write_json
 
 SMALL = """
@@ -84,7 +86,10 @@ def test_the_prediction_is_honest_and_who_is_told_the_friction_is_no_worse(book:
 
 def test_the_map_agrees_with_the_lines_and_marks_indifference(case: CaseResult) -> None:
     """Far above its line a stage goes up, far below down, wherever that counts."""
-    chart, lines = case.study.policy_map, case.study.solver_lines
+    config = parse_config(SMALL, "small.toml")
+    chain = estimate_chain(case.plant, config.resolution_of(case.plant), config.lowest_target_m_s)
+    solution = solve(chain, config.aims_of(case.label)[0])
+    chart, lines = policy_map(solution, 1e-4), solution.lines
     assert chart.command.shape == chart.indifferent.shape == (5, len(chart.path_m), len(chart.speed_m_s))
     assert not (chart.command[0] == -1).any()
     assert not (chart.command[-1] == 1).any()
@@ -97,6 +102,7 @@ def test_the_map_agrees_with_the_lines_and_marks_indifference(case: CaseResult) 
         assert (chart.command[counts] == command).all()
         assert (chart.command[near] == command).mean() > 0.8
     assert 0.0 < chart.indifferent.mean() < 1.0
+    assert 0.0 < share_of_ties(solution) < chart.indifferent.mean()
 
 
 def test_feasibility_falls_with_entry_speed(case: CaseResult) -> None:
@@ -117,8 +123,3 @@ def test_traces_are_passes_of_the_exported_table(case: CaseResult) -> None:
     for trace, factor in zip(case.traces, TRACE_FACTORS, strict=True):
         assert trace.exit_speed_m_s == pytest.approx(case.target_speed_m_s, abs=0.3), factor
         assert np.all(np.diff(trace.path_m) >= 0.0)
-
-
-def test_table_lines_are_the_tables(case: CaseResult) -> None:
-    again = lines_of(case.table, case.study.table_lines.nodes_m)
-    assert np.array_equal(again.upper_m_s, case.study.table_lines.upper_m_s)

@@ -157,7 +157,7 @@ def lines(chain: Chain, holding: Floats, changing: Floats, costs: Costs) -> tupl
     seen = start[:, None] + np.arange(smear.shape[1])
     shape = (stages, costs.exit_m2_s2.shape[1])
     found = np.full(shape, -np.inf), np.full(shape, np.inf)
-    for side, chains in enumerate((chain.landings.lower_chain, chain.landings.upper_chain)):
+    for side, chains in enumerate(chain.landings.change_chain[:2]):
         for k in range(stages):
             gain = np.zeros_like(costs.exit_m2_s2)
             for h in np.flatnonzero((chain.actuator.mode_stage == k) & (chains >= 0)):
@@ -213,7 +213,7 @@ def sampled(
     for h, k in enumerate(chain.actuator.mode_stage):
         down, up = chances((lower[k] - speed) / noise), chances((speed - upper[k]) / noise)
         gone: NDArray[np.float64] = np.zeros_like(holding[:, h])
-        for chance, c in ((down, chain.landings.lower_chain[h]), (up, chain.landings.upper_chain[h])):
+        for chance, c in ((down, chain.landings.change_chain[0, h]), (up, chain.landings.change_chain[1, h])):
             if c >= 0:
                 gone = gone + chance * changing[c]
         stay, f = 1.0 - (down + up), quanta[:, h, :, :, None]

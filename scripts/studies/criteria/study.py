@@ -23,6 +23,7 @@ from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange, OverspeedLimit
 from synth.problem.resolution import finer_for_check
 from synth.problem.terminal_cost import AsymmetricSquare
+from synth.retarder.checked_design import required_lines
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.rounded_table import predict
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
@@ -32,7 +33,6 @@ from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
-from synth.solver.required_lines import required_lines
 from synth.solver.tuned_lines import fitted
 from tuning_tables import ControllerTable
 

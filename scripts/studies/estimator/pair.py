@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,9 +16,9 @@ from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.estimation.estimate_chain import estimate_chain
 from synth.retarder.estimation.estimated_lines import estimated_lines
 from synth.retarder.estimation.estimated_table import controller_of
-from synth.retarder.estimation.estimator_design import speed_error_m_s
+from synth.retarder.estimation.estimator_design import decisions
 from synth.retarder.estimation.tuning_days import tuning_days, tuning_row
-from synth.simulation.closed_loop import Controller, TableController, close_loop, simulate
+from synth.simulation.closed_loop import ClosedLoop, Controller, TableController, close_loop, simulate
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses
@@ -108,6 +109,16 @@ def designed(
     loop = close_loop(problem.plant, estimated.stages)
     error_m_s = speed_error_m_s(loop, estimated, tuning.part(0, min(ERROR_PASSES, len(tuning))))
     return Pair(plain, estimated, made.estimator, error_m_s), lines, made.lines
+
+
+def speed_error_m_s(loop: ClosedLoop, controller: Controller, passes: RandomPasses) -> float:
+    """Root mean square error of the speed that `controller` compares with its lines, where it decides."""
+    squares, count = 0.0, 0.0
+    for index, trace, decided in decisions(loop, controller, loop.draws(passes)):
+        weight = float(passes.weight[index])
+        squares += weight * float(((trace.measured_m_s - trace.speed_m_s)[decided] ** 2).sum())
+        count += weight * int(decided.sum())
+    return math.sqrt(squares / max(count, 1.0))
 
 
 def compared(target_m_s: float, plain: ExitSample, estimated: ExitSample) -> Compared:

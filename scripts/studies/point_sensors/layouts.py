@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 from synth.retarder.sensors.layout import equal_layout, rule_layout
-from synth.retarder.sensors.layout_plan import LayoutProblem, plan_layouts, plan_passes
+from synth.retarder.sensors.layout_plan import (
+    JudgedLayout,
+    LayoutProblem,
+    PlanPasses,
+    ended,
+    plan_passes,
+    searched,
+)
+from synth.retarder.watcher import silent
 
 Places = tuple[float, ...]
 """Of the deciding sensors, m from the entrance, rising."""
@@ -25,6 +34,17 @@ def planned(problem: LayoutProblem, deciding: Sequence[int]) -> tuple[Places, ..
         return ()
     passes = plan_passes(seed=1, count=1000)
     return tuple(each.deciding_m for each in plan_layouts(problem, deciding, passes))
+
+
+def plan_layouts(
+    problem: LayoutProblem,
+    counts: Sequence[int],
+    passes: PlanPasses,
+    threads: int = 1,
+) -> tuple[JudgedLayout, ...]:
+    """The best layout found for each number of deciding sensors; how many `threads` there are changes nothing of it."""
+    with ThreadPoolExecutor(max_workers=threads) as searching, ThreadPoolExecutor(max_workers=threads) as judging:
+        return ended(judging.submit(searched, problem, counts, passes, (searching, judging), silent))
 
 
 def by_rule(problem: LayoutProblem) -> Places:

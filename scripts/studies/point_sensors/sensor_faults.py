@@ -73,7 +73,7 @@ class DeadSensor:
     def heard(self, pairs: HeardPairs, scene: Scene) -> HeardPairs:
         """Without its pairs."""
         scene.require_sensor(self.sensor)
-        return pairs.without(pairs.of_sensor(self.sensor))
+        return without(pairs, of_sensor(pairs, self.sensor))
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class StuckReading:
     def heard(self, pairs: HeardPairs, scene: Scene) -> HeardPairs:
         """With that speed."""
         scene.require_sensor(self.sensor)
-        return replace(pairs, told_m_s=np.where(pairs.of_sensor(self.sensor), self.speed_m_s, pairs.told_m_s))
+        return replace(pairs, told_m_s=np.where(of_sensor(pairs, self.sensor), self.speed_m_s, pairs.told_m_s))
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ class LateSensor:
     def heard(self, pairs: HeardPairs, scene: Scene) -> HeardPairs:
         """Later."""
         scene.require_sensor(self.sensor)
-        return replace(pairs, after_s=pairs.after_s + np.where(pairs.of_sensor(self.sensor), self.delay_s, 0.0))
+        return replace(pairs, after_s=pairs.after_s + np.where(of_sensor(pairs, self.sensor), self.delay_s, 0.0))
 
 
 @dataclass(frozen=True)
@@ -148,10 +148,10 @@ class RepeatedPulses:
         """With the repeated pairs."""
         if self.sensor is not None:
             scene.require_sensor(self.sensor)
-        again = pairs.of_sensor(self.sensor)
-        kept = pairs.taken(again)
+        again = of_sensor(pairs, self.sensor)
+        kept = taken(pairs, again)
         for time in range(1, self.times + 1):
-            pairs = pairs.also(replace(kept, after_s=kept.after_s + time * self.spacing_s))
+            pairs = also(pairs, replace(kept, after_s=kept.after_s + time * self.spacing_s))
         return pairs
 
 
@@ -172,7 +172,7 @@ class MissedPulses:
         if self.sensor is not None:
             scene.require_sensor(self.sensor)
         lost = scene.uniform(self.stream, len(pairs.sensor)) < self.probability
-        return pairs.without(lost & pairs.of_sensor(self.sensor))
+        return without(pairs, lost & of_sensor(pairs, self.sensor))
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ class SpuriousPulses:
             chosen = np.floor(which * sensors)[:, None] == np.arange(sensors)
             after = np.where(chosen, (time * self.within_s)[:, None], np.nan)
             told = np.broadcast_to((low + speed * (high - low))[:, None], after.shape)
-            pairs = pairs.also(HeardPairs(np.full(sensors, BY_THE_CLOCK), np.arange(sensors), after, told.copy()))
+            pairs = also(pairs, HeardPairs(np.full(sensors, BY_THE_CLOCK), np.arange(sensors), after, told.copy()))
         return pairs
 
 
@@ -222,4 +222,31 @@ class LoneAxle:
         after = (path - path[0]) / self.speed_m_s - self.ahead_s
         every = np.repeat(after[None], len(pairs), axis=0)
         by_the_clock = np.full(len(path), BY_THE_CLOCK)
-        return pairs.also(HeardPairs(by_the_clock, np.arange(len(path)), every, np.full_like(every, self.speed_m_s)))
+        return also(pairs, HeardPairs(by_the_clock, np.arange(len(path)), every, np.full_like(every, self.speed_m_s)))
+
+
+def of_sensor(pairs: HeardPairs, sensor: int | None) -> NDArray[np.bool_]:
+    """Marks the rows that are heard from `sensor`, or all, (R,)."""
+    return np.ones(len(pairs.sensor), dtype=np.bool_) if sensor is None else pairs.sensor == sensor
+
+
+def without(pairs: HeardPairs, lost: NDArray[np.bool_]) -> HeardPairs:
+    """The pairs but those that `lost`, of a shape like (n, R), marks."""
+    return replace(pairs, after_s=np.where(lost, np.nan, pairs.after_s))
+
+
+def taken(pairs: HeardPairs, rows: NDArray[np.bool_]) -> HeardPairs:
+    """The rows alone that `rows` (R,) marks."""
+    return HeardPairs(pairs.source[rows], pairs.sensor[rows], pairs.after_s[:, rows], pairs.told_m_s[:, rows])
+
+
+def also(pairs: HeardPairs, more: HeardPairs) -> HeardPairs:
+    """These rows and those of `more`, of the same passes, in the order that the kernel wants."""
+    source = np.concatenate([pairs.source, more.source])
+    order = np.argsort(np.where(source == BY_THE_CLOCK, np.iinfo(np.int64).max, source), kind="stable")
+    return HeardPairs(
+        source[order],
+        np.concatenate([pairs.sensor, more.sensor])[order],
+        np.concatenate([pairs.after_s, more.after_s], axis=1)[:, order],
+        np.concatenate([pairs.told_m_s, more.told_m_s], axis=1)[:, order],
+    )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from synth.problem.aim import Aim
 from synth.retarder.sensors.tuned_passages import PassageChains, rounded
 from synth.solver.backward_induction import solve
-from synth.solver.chain.chain import Chain, with_known_friction
+from synth.solver.chain.chain import Chain
 from synth.solver.chain.scenarios import Scenarios, resistance_scenarios
 from synth.solver.passage_polish import polish_passages
 from synth.solver.passage_speeds import PassageSpeeds
@@ -67,6 +67,11 @@ def speeds_for(design: Chain, target_m_s: float, factor: float) -> PassageSpeeds
     """Switching speeds of least mean square error for cuts of one friction, solved and polished."""
     known = with_known_friction(design, factor)
     return rounded(polish_passages(solve(known, Aim(target_m_s, SQUARED_ERROR_ALONE))).best)
+
+
+def with_known_friction(chain: Chain, factor: float) -> Chain:
+    """The same plant whose ξ_cut is known to be `factor` (friction-known bound)."""
+    return replace(chain, scenarios=Scenarios(np.array([float(factor)]), np.zeros(1), np.ones(1)))
 
 
 def squares_at(

@@ -20,7 +20,7 @@ from synth.logs.fitting_passes import fitting_passes
 from synth.logs.identified_config import with_numbers
 from synth.logs.retune.retune import RetuneOrder, retune
 from synth.logs.retune.tuned_books import Case, class_setups, tuned_tables
-from synth.retarder.configuration.config_source import ConfigSource, source_of_text
+from synth.retarder.configuration.config_file import ConfigSource, source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.watcher import Teller
 from synth.simulation.closed_loop import simulate

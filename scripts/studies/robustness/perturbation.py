@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from plant_models import Plant
 from synth.retarder.configuration.plant_parameter import Parameter
-from synth.retarder.configuration.plant_values import stages_out_of_reach, with_values
+from synth.retarder.configuration.plant_values import STAGE_PRESSURES, changed_position, with_values
 
 
 def same_plant(plant: Plant) -> Plant:
@@ -42,6 +42,13 @@ def reach_note(plant: Plant, values: Mapping[str, float]) -> str:
     """How many stages the supply no longer reaches; '' if it reaches all."""
     lowered = stages_out_of_reach(plant, values)
     return f"out of reach of the supply: the top {'stage' if lowered == 1 else f'{lowered} stages'}" if lowered else ""
+
+
+def stages_out_of_reach(plant: Plant, values: Mapping[str, float]) -> int:
+    """How many stages `with_values` lowers because the supply does not reach them."""
+    factor = values.get(STAGE_PRESSURES, 1.0)
+    reached = changed_position(plant, values).stage_pressures_kpa
+    return sum(p < factor * q for p, q in zip(reached, plant.position.stage_pressures_kpa, strict=True))
 
 
 def sensible_ends(plant: Plant, parameter: Parameter) -> Ends:

@@ -157,7 +157,7 @@ def step_errors(case: RollCase, cars: int, options: Options) -> list[StepError]:
     fine, made = finely(case, cars, options.seed, n), case.rolling(cars, options.seed, n)
     start, speed = case.starts_m(made), case.speeds_m_s(n)
     stations = stations_of(case, start)
-    finest = REFERENCE_STEP_M / made.longest_step_m(1.0)
+    finest = REFERENCE_STEP_M / longest_step_m(made, 1.0)
     true, back = (
         fine.roll_on(start, speed, stations, finest),
         fine.roll_back(stations[:, -1], COUPLING_M_S, start, finest),
@@ -173,7 +173,7 @@ def step_errors(case: RollCase, cars: int, options: Options) -> list[StepError]:
         other = made.roll_back(stations[:, -1], COUPLING_M_S, start, step) - back
         rows.append(
             StepError(
-                case.name, cars, step, made.longest_step_m(step), float(np.sqrt(np.mean(error**2))),
+                case.name, cars, step, longest_step_m(made, step), float(np.sqrt(np.mean(error**2))),
                 float(np.abs(error).max()), float(np.sqrt(np.mean(stops**2))) if len(stops) else None,
                 float(np.abs(stops).max()) if len(stops) else None,
                 float(np.abs(rolled.time_s[both] / true.time_s[both] - 1.0).max()),
@@ -197,3 +197,8 @@ def kernel_ways(case: RollCase, cars: int, count: int, options: Options, name: s
 
 SMALLEST = Options(cuts=64, rounds=1, scipy_cuts=1, steps_m=(STEP_M, 20.0), error_cuts=64, cars=(1, 2), counts=(32, 64))
 METHOD = Method(Options, SMALLEST, RollingFindings, run)
+
+
+def longest_step_m(cuts: RollingCuts, of_a_car_m: float) -> float:
+    """The longest step of these cuts, where that of a single car is `of_a_car_m`."""
+    return of_a_car_m * float(cuts.arrays.long_steps.max())

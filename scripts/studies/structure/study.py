@@ -25,12 +25,17 @@ from synth.retarder.configuration.config_file import load_config
 from synth.retarder.sensors.passage_table import plausible_motion
 from synth.simulation.controllers import TableController
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant, one_pass
-from synth.simulation.nominal_response import NominalResponse, nominal_response
+from synth.simulation.nominal_response import (
+    SAME_PASSAGE_S,
+    NominalResponse,
+    commands_of,
+    nominal_response,
+    response_difference,
+)
 from synth.simulation.passage_controller import PassageController, of_speeds
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.passage_response import passage_response
 from synth.simulation.passes import PassTrace
-from synth.simulation.response_difference import SAME_PASSAGE_S, response_difference
 from synth.simulation.structure.diagram import Diagram, Sketch
 from synth.simulation.structure.passage_diagram import passage_diagram
 from synth.simulation.structure.radar_diagram import radar_diagram
@@ -241,7 +246,7 @@ def compared(measuring: str, trace: PassTrace, wired: NominalResponse, control: 
     return Run(
         measuring=measuring,
         entry_m_s=float(wired.speed_m_s[0]),
-        commands=len(wired.commands),
+        commands=len(commands_of(wired)),
         simulated_m_s=trace.exit_speed_m_s,
         wired_m_s=wired.exit_speed_m_s,
         wired_apart_m_s=abs(by_parts.largest_m_s),

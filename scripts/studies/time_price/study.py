@@ -17,8 +17,8 @@ from synth.problem.aim import Aim
 from synth.retarder.class_setup import ClassSetup, Origin, class_setup
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.pareto.case_front import pareto_front
 from synth.retarder.pareto.pareto_front import ParetoFront, told
+from synth.retarder.tune_case import pareto_front
 from synth.simulation.stratified_passes import stratified_passes
 from tuning_tables import Generator
 

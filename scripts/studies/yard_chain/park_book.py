@@ -12,15 +12,14 @@ from scripts.studies.aiming.trial import Cuts
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.tuned_table import CREATED
 from synth.aim.table_position import TablePosition, entry_speeds_m_s, table_position
-from synth.problem.aim import Aim
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
 from synth.retarder.comparison.baselines import FAMILIES, tune
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.table_class import TableClass
-from synth.retarder.tuned_table import solutions, tuned_table
+from synth.retarder.tuned_table import read_back, solutions, tuned_table
 from synth.simulation.random_passes import random_passes
-from tuning_tables import ControllerTable, from_json, to_json
+from tuning_tables import ControllerTable
 
 POSITION = "rnz-2m-park"
 
@@ -98,8 +97,8 @@ def park_book(cuts: Cuts, targets_m_s: tuple[float, ...], classes: int, coarse: 
 
 def tables_of(config: ResolvedConfig, setup: ClassSetup) -> list[ControllerTable]:
     """The tables of one class, read back."""
-    aims = [Aim(target, config.criterion) for target in config.targets_of(setup.label)]
-    return [from_json(to_json(tuned_table(setup, found).table)) for found in solutions(setup.design, aims)]
+    aims = config.aims_of(setup.label)
+    return [read_back(tuned_table(setup, found).table) for found in solutions(setup.design, aims)]
 
 
 def energy_class(config: ResolvedConfig, setup: ClassSetup) -> TableClass:

@@ -7,7 +7,7 @@ from plant_models.library.car_mix_entry import CarMixEntry, load_car_mix
 from synth.frame.settings.numbers import library_values
 from synth.frame.settings.section import Section, of_library
 from synth.frame.settings.told import Usual, told_numbers
-from synth.retarder.configuration.named_type import named_type
+from synth.retarder.configuration.top_keys import named_type
 
 DEFAULT_MIX = "usual"
 

@@ -18,8 +18,7 @@ from synth.aim.configuration.simulation_settings import SimulationSettings
 from synth.aim.configuration.track_settings import AimTrackSettings
 from synth.frame.settings.output import OutputSettings
 from synth.frame.settings.section import TOOL_DEFAULT, Section, choice, many, of_library, setting
-from synth.retarder.configuration.named_type import named_type
-from synth.retarder.configuration.top_keys import TopKeys
+from synth.retarder.configuration.top_keys import TopKeys, named_type
 
 Count = Annotated[int, Field(ge=1, le=60)]
 """A number of cars."""

@@ -9,7 +9,7 @@ from pydantic import model_validator
 from plant_models.errors import require
 from plant_models.library import TRACKS
 from synth.frame.settings.section import Section, many, needed, setting
-from synth.retarder.configuration.named_type import named_type
+from synth.retarder.configuration.top_keys import named_type
 
 DEFAULT_TRACK = "large-hump"
 MOST_PIECES = 200

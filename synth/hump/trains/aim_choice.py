@@ -14,7 +14,7 @@ from synth.hump.configuration.settings import TrialAimSettings
 from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.position_roles import Roles
-from synth.retarder.forms.aim_file import read_aims
+from synth.retarder.forms.table_file import read_aims
 from tuning_tables.aim import AimTable, AimTables
 from tuning_tables.errors import InvalidTable
 

@@ -10,8 +10,8 @@ from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.hump.trains.class_choice import ClassChoice
 from synth.hump.trains.hump_position import Arrivals, Passed
 from synth.kernels.loop.passes import Draws
-from synth.retarder.table_class import TableClass, chosen_draws, draws, taken
-from synth.simulation.closed_loop import ClosedLoop
+from synth.retarder.table_class import TableClass, draws, taken
+from synth.simulation.closed_loop import ClosedLoop, picked
 from synth.simulation.keyed_passes import keyed_passes
 from synth.simulation.random_passes import RandomPasses
 
@@ -93,7 +93,7 @@ def looped_under(its: TableClass, cuts: Arrivals, passes: RandomPasses, low: Int
     stalled, switchings = np.empty(shape, dtype=np.bool_), np.empty(shape, dtype=np.int64)
     for k in np.unique(np.concatenate((low, high))):
         rows = np.flatnonzero((low == k) | (high == k))
-        sample = its.loops[k].run(its.controllers[k], chosen_draws(drawn, rows))
+        sample = its.loops[k].run(its.controllers[k], picked(drawn, rows))
         behind_s = sample.transit_time_s - ahead_s[rows]
         for side, wanted in enumerate((low, high)):
             here = wanted[rows] == k

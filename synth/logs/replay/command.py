@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.logs.replay.options import ReplayOptions
+from synth.retarder.attempted_case import require_a_table, tables_refused
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.tables_refused import require_a_table, tables_refused
 
 if TYPE_CHECKING:
     from synth.frame.terminal.progress import Progress

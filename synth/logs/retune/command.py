@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.logs.retune.options import RetuneOptions
-from synth.retarder.configuration.config_source import ConfigSource, source_of_text
+from synth.retarder.configuration.config_file import ConfigSource, source_of_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -69,7 +69,7 @@ def compute(asked: AskedRetune, work: Work) -> Retuned:
     from synth.frame.processors import available
     from synth.kernels.cache import guarded
     from synth.logs.retune.retune import RetuneOrder, retune
-    from synth.retarder.tables_refused import tables_refused
+    from synth.retarder.attempted_case import tables_refused
 
     order = RetuneOrder(asked.old, creation_time(), threads=available())
     with tables_refused(asked.asked.place, asked.asked.config):

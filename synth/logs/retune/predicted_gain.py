@@ -16,7 +16,7 @@ from synth.logs.holm import rejected
 from synth.logs.identified_config import with_numbers
 from synth.logs.retune.tuned_books import Case, plants_of
 from synth.logs.unknowns import values_at
-from synth.retarder.configuration.config_source import ConfigSource
+from synth.retarder.configuration.config_file import ConfigSource
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.controllers import TableController
 from synth.simulation.replicates import student_quantile

@@ -11,7 +11,7 @@ from synth.logs.identified_config import identified
 from synth.logs.retune.predicted_gain import CaseGain, GainOrder, better, likely_plants, predicted_gains
 from synth.logs.retune.tuned_books import Case, cases_of, class_setups, finished, tuned_tables
 from synth.logs.unknowns import unknowns_of
-from synth.retarder.configuration.config_source import ConfigSource
+from synth.retarder.configuration.config_file import ConfigSource
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.failed_case import FailedCase
 from synth.retarder.watcher import Teller, Watcher

@@ -7,7 +7,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 from plant_models import Plant
-from synth.problem.aim import Aim
 from synth.retarder.attempted_case import attempted
 from synth.retarder.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -15,12 +14,12 @@ from synth.retarder.estimation.simulated_prediction import simulated_prediction
 from synth.retarder.failed_case import FailedCase, require_none
 from synth.retarder.rounded_table import with_prediction
 from synth.retarder.served_class import plant_for
-from synth.retarder.tuned_table import solutions, tuned_table, validated_table
+from synth.retarder.tuned_table import read_back, solutions, tuned_table, validated_table
 from synth.retarder.watcher import Watcher
 from synth.simulation.controllers import TableController
 from synth.solver.backward_induction import Solution
 from synth.solver.one_blas_thread import one_blas_thread
-from tuning_tables import ControllerTable, from_json, to_json
+from tuning_tables import ControllerTable
 
 Case = tuple[str, float]
 """Label of a cut class, and target in m/s."""
@@ -57,13 +56,12 @@ def tuned_tables(config: ResolvedConfig, setups: Sequence[ClassSetup], threads: 
 
     def of_case(setup: ClassSetup, solution: Solution) -> ControllerTable | FailedCase:
         label, target = setup.label, solution.aim.target_speed_m_s
-        made = attempted(lambda: from_json(to_json(tuned_table(setup, solution).table)), label, target, config)
+        made = attempted(lambda: read_back(tuned_table(setup, solution).table), label, target, config)
         watcher.done(made.sentence if isinstance(made, FailedCase) else f"{label} to {target:g} m/s tuned")
         return made
 
     def of_class(setup: ClassSetup) -> list[tuple[Case, ControllerTable | FailedCase]]:
-        aims = [Aim(target, config.criterion) for target in config.targets_of(setup.label)]
-        found = solutions(setup.design, aims)
+        found = solutions(setup.design, config.aims_of(setup.label))
         return [((setup.label, each.aim.target_speed_m_s), of_case(setup, each)) for each in found]
 
     with ThreadPoolExecutor(threads) as pool:
@@ -109,7 +107,7 @@ def finished(
     for case, table in tables.items():
         setup = by_label[case[0]]
         kept = restated(setup, table) if case in unchanged else table
-        found.append(validated_table(setup, kept, lambda each: from_json(to_json(each))).table)
+        found.append(validated_table(setup, kept, read_back).table)
     return tuple(found)
 
 

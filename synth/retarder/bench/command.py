@@ -7,20 +7,19 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps, Unfinished, Work
+from synth.frame.command import Asked, Command, Limit, Steps, Unfinished, Work
 from synth.frame.exhibits import Chapter
 from synth.retarder.bench.options import Address, BenchOptions
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import MODEL_ONLY
-from synth.retarder.tables_configuration import configuration_for, given_config, made_elsewhere
+from synth.retarder.tables_configuration import configuration_of, given_config, made_elsewhere
 
 if TYPE_CHECKING:
     from synth.retarder.bench.bench_pass import BenchPass
     from synth.retarder.bench.cases import BenchCase
     from synth.retarder.bench.clock import Clock
-    from synth.retarder.bench.found_bench import FoundBench
-    from synth.retarder.bench.score import Errors
+    from synth.retarder.bench.score import Errors, FoundBench
     from synth.retarder.served_class import ServedClass
     from tuning_tables import ControllerTable
     from tuning_tables.table_book import TableBook
@@ -55,9 +54,7 @@ def resolve(asked: Asked[ResolvedConfig | None, BenchOptions]) -> AskedBench:
 
     options = asked.options
     tables = tables_at(options.source).only_lines("bench")
-    config, source = (
-        (asked.settings, asked.place) if asked.settings else configuration_for(None, options.source, tables)
-    )
+    config, source = configuration_of(asked, tables)
     book = TableBook(tables)
     unused = {table.id for table in book.shadowed()}
     chosen = tuple((table, served_class(table, config, source)) for table in tables if table.id not in unused)
@@ -69,16 +66,6 @@ def resolve(asked: Asked[ResolvedConfig | None, BenchOptions]) -> AskedBench:
     require_possible(options.addresses)
     seed = config.validation.seed if options.seed is None else options.seed
     return AskedBench(config, warnings, book, chosen, options.passes, seed, options.in_step, options.addresses)
-
-
-def head(asked: AskedBench) -> Head:
-    """What is said of the configuration."""
-    return head_of(asked.config, asked.warnings)
-
-
-def steps(asked: AskedBench) -> Steps:
-    """A step for each cut."""
-    return Steps(asked.passes, "braking", "cuts")
 
 
 def compute(asked: AskedBench, work: Work) -> FoundBench:
@@ -93,10 +80,9 @@ def benched(asked: AskedBench, work: Work) -> FoundBench:
     from synth.retarder.bench.cases import class_seeds, coming_cuts
     from synth.retarder.bench.clock import Cycles, InStep, RealTime, before_all_others
     from synth.retarder.bench.exchange import Exchange
-    from synth.retarder.bench.found_bench import FoundBench
-    from synth.retarder.bench.live_page import PAGE, live_page
-    from synth.retarder.bench.live_run import LiveRun
+    from synth.retarder.bench.live_run import PAGE, LiveRun, live_page
     from synth.retarder.bench.run import Bench, Patience
+    from synth.retarder.bench.score import FoundBench
     from synth.retarder.bench.servers import listening
 
     cuts = coming_cuts(asked.seed, len(asked.tables), asked.passes)
@@ -170,8 +156,8 @@ COMMAND = Command(
     read=given_config,
     options=BenchOptions,
     resolve=resolve,
-    head=head,
-    steps=steps,
+    head=lambda asked: head_of(asked.config, asked.warnings),
+    steps=lambda asked: Steps(asked.passes, "braking", "cuts"),
     compute=compute,
     show=show,
     limits=limits,

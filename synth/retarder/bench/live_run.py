@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any
+from importlib.resources import files
+from typing import Any, Final
 
 import numpy as np
 
+from synth.frame.page.markup import Markup, element
+from synth.frame.page.scripted_document import POLICY, scripted_document
 from synth.retarder.bench.bench_pass import BenchPass
 from synth.retarder.bench.cases import BenchCase
 from synth.retarder.bench.exchange import Exchange
@@ -89,3 +92,20 @@ def rms(values: tuple[float, ...]) -> float | None:
 def finite(lines: np.ndarray) -> list[list[float | None]]:
     """Lines, (stages, nodes), None where there is none."""
     return [[float(f"{v:.4g}") if math.isfinite(v) else None for v in row] for row in lines.tolist()]
+
+
+PAGE: Final = "/now"
+"""Where the page asks."""
+
+
+def live_page(title: str) -> bytes:
+    """The whole document."""
+    content = (element("h1", f"{title}: on the bench"), Markup(part("live.html")))
+    policy = f"{POLICY}; connect-src 'self'"
+    text = scripted_document(f"{title}: on the bench", part("live.css"), content, PAGE, [part("live.js")], policy)
+    return text.encode()
+
+
+def part(name: str) -> str:
+    """A part of the page that is kept as a file beside this one."""
+    return files("synth.retarder.bench").joinpath(name).read_text(encoding="utf-8")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
 from pydantic import field_validator
 
-from synth.frame.settings.options import BY_PLACE, NEEDED, Options, flag_option, number_option, word_option
+from synth.frame.settings.options import flag_option, number_option, word_option
+from synth.retarder.tables_options import TablesOptions
 
 NONE: Final = "none"
 MOST_PORT: Final = 65_535
@@ -38,13 +38,9 @@ class Address:
         return self.host not in LOCAL
 
 
-class BenchOptions(Options):
+class BenchOptions(TablesOptions):
     """Options of the command line. An address is None where nothing is offered there."""
 
-    source: Path = word_option(BY_PLACE, "TABLE|BOOK|DIR", NEEDED, "A table, a book, or a folder of tables.")
-    config: Path | None = word_option(
-        "--config", "C", None, "Configuration with the plant; that of the tables, or built-in, unless given."
-    )
     modbus: Address | None = word_option(
         "--modbus", "HOST:PORT", Address("127.0.0.1", 5020), "Where Modbus TCP is spoken; none: nowhere."
     )

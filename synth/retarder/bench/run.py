@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from synth.retarder.bench.bench_pass import AskedSample, BenchPass
@@ -11,10 +11,10 @@ from synth.retarder.bench.cases import BenchCase
 from synth.retarder.bench.clock import Clock
 from synth.retarder.bench.exchange import Answer, Exchange, next_count
 from synth.retarder.bench.live_run import LiveRun
-from synth.retarder.bench.table_shadow import TableShadow
+from synth.retarder.watcher import Tell
 from synth.simulation.sampled_pass import Reading, sampled_pass
-
-Tell = Callable[[str], None]
+from tuning_tables import ControllerTable, begin, decide_for, speed_for
+from tuning_tables.decisions import Decisions
 
 
 @dataclass(frozen=True)
@@ -133,3 +133,17 @@ def told_of(case: BenchCase, found: BenchPass) -> str:
     end = "stands" if found.end.stalled else f"leaves with {found.end.exit_speed_m_s:.3f} m/s"
     missing = f", {found.unanswered} of {found.samples} samples unanswered" if found.unanswered else ""
     return f"{case.label} to {target:g} m/s {end}, the table {case.by_table.exit_speed_m_s[found.number]:.3f}{missing}"
+
+
+class TableShadow:
+    """One cut under a table; an estimator learns of each sample."""
+
+    def __init__(self, table: ControllerTable) -> None:
+        self._table, self._state = table, begin()
+
+    def stage_at(self, reading: Reading) -> int:
+        """The stage of the table at this sample; to be asked once at each."""
+        speed = speed_for(self._table, self._state, reading.path_m, reading.measured_m_s, reading.mean_overpressure_kpa)
+        if not reading.at_rest and self._table.decisions is Decisions.AT_REST:
+            return reading.stage
+        return decide_for(self._table, reading.stage, reading.path_m, speed, reading.pressure_kpa)

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from synth.retarder.bench.bench_pass import BenchPass
 from synth.retarder.bench.cases import BenchCase
+from synth.retarder.bench.clock import Cycles
+from synth.retarder.bench.exchange import Traffic
 from synth.retarder.class_setup import TUNING_PASSES
 from synth.retarder.comparison.baselines import tune_baselines
 from synth.retarder.comparison.compared_laws import permitted
@@ -123,3 +125,19 @@ def score_of(label: str, target_m_s: float | None, errors: Sequence[Errors]) -> 
         float(np.mean([found.switchings for each in errors for found in each.passes])),
         float(together(lambda each: each.table_switchings).mean()),
     )
+
+
+@dataclass(frozen=True)
+class FoundBench:
+    """What became of the cuts that came, out of `asked`; `cycles` None where there was no clock."""
+
+    title: str
+    period_s: float
+    computing_delay_s: float
+    seed: int
+    asked: int
+    passes: tuple[BenchPass, ...]
+    errors: tuple[Errors, ...]
+    traffic: Traffic
+    cycles: Cycles | None
+    prediction_ratio_low: float

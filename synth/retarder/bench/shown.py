@@ -10,8 +10,7 @@ from synth.frame.command import Limit
 from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import counted, decimals
 from synth.retarder.bench.clock import TOLERANCE
-from synth.retarder.bench.found_bench import FoundBench
-from synth.retarder.bench.score import GROUPS, Score, score_of
+from synth.retarder.bench.score import GROUPS, FoundBench, Score, score_of
 from synth.retarder.bench.wires import c_header
 from synth.retarder.exit_figures import CASE, PREDICTED, SWITCHINGS
 from synth.retarder.judgement import interval_text

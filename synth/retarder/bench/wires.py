@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from typing import Final
@@ -99,17 +99,6 @@ COMMAND_WIRES: Final = wires_of(COMMANDS, COMMANDS_AT)
 def registers_of(values: Mapping[str, float]) -> list[int]:
     """All registers of what the position tells, from 0 on."""
     return [word for wire in TOLD_WIRES for word in wire.registers_of(values[wire.name])]
-
-
-HEADING: Final = ("register", "node", "type", "unit", "is")
-
-
-def table_rows() -> Iterator[tuple[str, ...]]:
-    """A row for each wire, for people: what the position tells, then what the controller writes."""
-    for wire in (*TOLD_WIRES, *COMMAND_WIRES):
-        last = wire.address + wire.words.registers - 1
-        place = str(wire.address) if last == wire.address else f"{wire.address}–{last}"
-        yield place, f"`{wire.name}`", wire.words.shown, wire.variable.unit or "", wire.variable.meaning
 
 
 def c_header() -> str:

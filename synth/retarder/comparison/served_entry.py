@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.retarder.comparison.told_regulator import picked
-from synth.retarder.feasibility import Feasibility
+from synth.retarder.tuned_case import Feasibility
+from synth.simulation.closed_loop import picked
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.controllers import fixed
 from synth.simulation.exit_range import ExitRange, exit_range

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.kernels.loop.passes import Draws
-from synth.simulation.closed_loop import ClosedLoop, Controller, LineController
-from synth.simulation.controllers import fixed
+from synth.simulation.closed_loop import ClosedLoop, Controller, LineController, picked
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import REPLICATE_PASSES
 from synth.solver.told_lines import ToldLines
@@ -43,12 +42,6 @@ def run_told(loop_of: Callable[[int], ClosedLoop], draws: Draws, told: Told, gro
             values = getattr(part, field.name)
             found.setdefault(field.name, np.empty(len(order), values.dtype))[group] = values
     return ExitSample(**found)  # type: ignore[arg-type]  # by name, each of its own type
-
-
-def picked(draws: Draws, which: NDArray[np.int64]) -> Draws:
-    """Some passes of `draws`, in this order; of the path they keep what follows from `path_z`, not the numbers."""
-    kept = draws._replace(path_z=draws.path_z[:, :0])
-    return Draws._make(fixed(each[which], each.dtype.type) for each in kept)
 
 
 def best_by_others(samples: Sequence[ExitSample], target_m_s: float) -> ExitSample:

@@ -1,4 +1,4 @@
-"""One cut class of a configuration: the cut, its running resistance, and the origin of its numbers."""
+"""A cut class of a configuration: the cut, its running resistance, its target speeds, and the origin of its numbers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from synth.frame.input_error import InputError
 from synth.retarder.configuration.consist import Consist, consist_values, resolve_consist
 from synth.retarder.configuration.plant_fault import in_file
 from synth.retarder.configuration.plant_settings import DEFAULT_CUTS, CutSettings
-from synth.retarder.configuration.targets import resolve_targets
 
 DEFAULT_BOOK = "default book: one gondola for each weight category"
 
@@ -180,3 +179,23 @@ def category_warnings(cuts: tuple[CutClass, ...], categories: WeightCategories) 
         by_mass = categories.of(c.cut.mass_t, c.cut.axles).name
         if by_mass != c.cut.category:
             yield f"cut[{i}].category is {c.cut.category}; by its axle load the cut is {by_mass}"
+
+
+def resolve_targets(key: str, speeds_m_s: tuple[float, ...], entry: EntryLaw, file: str) -> tuple[float, ...]:
+    """The targets under `key`, which must be different and below the highest entry speed."""
+    for speed in speeds_m_s:
+        if not 0.3 <= speed < entry.high_m_s:
+            raise InputError(
+                f"{file}: {key} holds {speed!r}; a target must be at least 0.3 m/s and below the highest entry speed, "
+                f"entry.high_m_s = {entry.high_m_s:g}"
+            )
+    named: dict[str, float] = {}
+    for speed in speeds_m_s:
+        name = f"{speed:g}"
+        if name in named:
+            raise InputError(
+                f"{file}: {key} holds {named[name]!r} and {speed!r}, but tables are named by six digits of their "
+                "target; give each only once"
+            )
+        named[name] = speed
+    return speeds_m_s

@@ -20,28 +20,6 @@ from synth.retarder.configuration.plant_values import (
 )
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 
-FULL_RANGE: Final = 0.5
-"""Relative change at which a parameter that is nominally zero takes the end of its sensible range."""
-
-LEFT_OUT: Final = {
-    "retarder.zones_m": "surveyed with a tape; a table is refused for other zones",
-    "retarder.max_entry_speed_m_s": "a limit of use, not part of the motion",
-    "targets.exit_speeds_m_s": "commanded, not a property of the plant",
-    "cut.car.length_m": "drawing of the car",
-    "cut.car.pivot_base_m": "drawing of the car; a table is refused for other axles",
-    "cut.car.bogie_axle_offsets_m": "drawing of the car; a table is refused for other axles",
-    "cut.car.pivots_m": "drawing of the car; a table is refused for other axles",
-    "cut.car.axle_offsets_m": "drawing of the car; a table is refused for other axles",
-    "cut.allowed_stage": "a rule of the yard; a table is refused for another",
-    "cut.entrance_stage": "a rule of the yard; a table is refused for another",
-    "sensor.missed_share": "none is lost; what a third would do stands in the report of a tune",
-    "sensor.missed_burst_s": "without effect while no reading is lost",
-    "friction.mean_cv": "no property of a pass: what lines with an estimator are designed for",
-    "retarder.pneumatics.day_spread": "no property of a pass: what lines with an estimator are designed for",
-    "regulator.approach_m": "where the regulator acts; a table is refused for another (study approach)",
-}
-"""Assumed values that are not changed, and why."""
-
 NAMES: Final = {
     STAGE_PRESSURES: "stage pressures, all",
     SLOPES[0]: "K: force by pressure (= mean friction)",
@@ -78,9 +56,9 @@ NAMES: Final = {
 class Parameter:
     """One number of a plant: `key` of the configuration, `nominal` value (1 for the factors of `plant_values`).
 
-    `low`, `high`: limits that physics or use put to it, in words `limited_by`; `assumed`: nothing citable stands
-    behind it; `largest` stands for +50 % where `nominal` is 0 (−50 % is then 0); `sensible`: the library's range, None
-    where it has none for this very value.
+    `low`, `high`: limits that physics or use put to it; of one that is varied, the ends of its range, and equal ends
+    hold it. `assumed`: nothing citable stands behind it; `sensible`: the library's range, None where it has none for
+    this very value.
     """
 
     key: str
@@ -89,27 +67,7 @@ class Parameter:
     assumed: bool
     low: float = 0.0
     high: float = math.inf
-    limited_by: str = ""
-    largest: float = 0.0
     sensible: tuple[float, float] | None = None
-
-    def at(self, relative: float) -> float:
-        """The value `relative` off (−0.5 … +0.5), clipped to the limits."""
-        return min(max(self.wanted(relative), self.low), self.high)
-
-    def wanted(self, relative: float) -> float:
-        """The value `relative` off, not clipped."""
-        if self.nominal == 0.0:
-            return self.largest * max(0.0, relative) / FULL_RANGE
-        return self.nominal * (1.0 + relative)
-
-    def note(self, relative: float) -> str:
-        """A remark where the value is not simply nominal·(1 + `relative`)."""
-        if self.nominal == 0.0:
-            return f"nominal 0; {self.at(relative):g}"
-        if self.at(relative) != self.wanted(relative):
-            return f"clipped to {self.at(relative):.4g} ({self.limited_by})"
-        return ""
 
 
 def parameters(config: ResolvedConfig, cut_class: CutClass, plant: Plant, target_m_s: float) -> tuple[Parameter, ...]:
@@ -122,10 +80,8 @@ def parameters(config: ResolvedConfig, cut_class: CutClass, plant: Plant, target
         nominal = nominal_value(plant, key)
         if nominal is None:
             continue
-        low, high, why = limits.get(key, (0.0, math.inf, ""))
-        span = ranges.get(key)
-        largest = span[1] if nominal == 0.0 and span else 0.0
-        found.append(Parameter(key, name, nominal, key in assumed, low, high, why, largest, span))
+        low, high = limits.get(key, (0.0, math.inf))
+        found.append(Parameter(key, name, nominal, key in assumed, low, high, ranges.get(key)))
     return tuple(found)
 
 
@@ -170,13 +126,10 @@ def nominal_value(plant: Plant, key: str) -> float | None:
     return float(getattr(holder, field))
 
 
-def limits_of(cut_class: CutClass, plant: Plant, target_m_s: float) -> dict[str, tuple[float, float, str]]:
-    """(low, high, reason) of the parameters that cannot go anywhere."""
-    entry = plant.entry
+def limits_of(cut_class: CutClass, plant: Plant, target_m_s: float) -> dict[str, tuple[float, float]]:
+    """(low, high) of the parameters that cannot go anywhere; a mass stays in its category."""
     return {
-        "entry.low_m_s": (target_m_s, entry.high_m_s, "from the target to the highest entry speed"),
-        "entry.high_m_s": (
-            entry.low_m_s, plant.position.max_entry_speed_m_s, "from the lowest entry speed to the limit of the type",
-        ),
-        "cut.mass_t": (*cut_class.mass_limits_t, "the category, tare and gross mass"),
-    }  # fmt: skip
+        "entry.low_m_s": (target_m_s, plant.entry.high_m_s),
+        "entry.high_m_s": (plant.entry.low_m_s, plant.position.max_entry_speed_m_s),
+        "cut.mass_t": cut_class.mass_limits_t,
+    }

@@ -11,7 +11,7 @@ from pydantic import Field
 from plant_models.library import CARS, POSITIONS, RETARDERS, SENSORS
 from synth.frame.settings.section import Section, choice, many, of_library, setting
 from synth.frame.settings.value_forms import Grade, Numbers, Pairs
-from synth.retarder.configuration.named_type import named_type
+from synth.retarder.configuration.top_keys import named_type
 
 DEFAULT_POSITION = "knp-5-bunch"
 

@@ -46,13 +46,6 @@ def with_values(plant: Plant, values: Mapping[str, float]) -> Plant:
     )
 
 
-def stages_out_of_reach(plant: Plant, values: Mapping[str, float]) -> int:
-    """How many stages `with_values` lowers because the supply does not reach them."""
-    factor = values.get(STAGE_PRESSURES, 1.0)
-    reached = changed_position(plant, values).stage_pressures_kpa
-    return sum(p < factor * q for p, q in zip(reached, plant.position.stage_pressures_kpa, strict=True))
-
-
 def fields_in(section: str, values: Mapping[str, float]) -> dict[str, Any]:
     """Those of `values` that stand directly in `section`, by the last part of their keys."""
     parts = ((key.rpartition("."), value) for key, value in values.items())

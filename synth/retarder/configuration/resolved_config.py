@@ -27,7 +27,13 @@ from synth.problem.criterion import Criterion
 from synth.problem.estimator_resolution import estimator_resolution
 from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution, finer_for_check
-from synth.retarder.configuration.cut_class import CutClass, Surroundings, category_warnings, resolve_cut
+from synth.retarder.configuration.cut_class import (
+    CutClass,
+    Surroundings,
+    category_warnings,
+    resolve_cut,
+    resolve_targets,
+)
 from synth.retarder.configuration.grid_warnings import grid_warnings
 from synth.retarder.configuration.plant_fault import in_file
 from synth.retarder.configuration.point_sensors.resolved_sensors import ResolvedSensors, require_served, resolve_sensors
@@ -43,7 +49,6 @@ from synth.retarder.configuration.settings import (
     TuneOutputSettings,
     ValidationSettings,
 )
-from synth.retarder.configuration.targets import resolve_targets
 from tuning_tables.canonical import canonical_json
 from tuning_tables.excerpt import excerpt
 
@@ -94,6 +99,10 @@ class ResolvedConfig:
         """Commanded exit speeds of the class `label`."""
         (own,) = (c.targets_m_s for c in self.cuts if c.label == label)
         return self.targets_m_s if own is None else own
+
+    def aims_of(self, label: str) -> tuple[Aim, ...]:
+        """The same, with what a pass costs that misses one."""
+        return tuple(Aim(target, self.criterion) for target in self.targets_of(label))
 
     @property
     def lowest_target_m_s(self) -> float:

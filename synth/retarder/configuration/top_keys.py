@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
-from plant_models.library import WEIGHT_CATEGORIES, YARD_CATEGORIES
+from typing import Any
+
+from plant_models.library import BUILT_IN, WEIGHT_CATEGORIES, YARD_CATEGORIES, Kind
 from synth.frame.settings.section import Section, choice, many
 from synth.frame.settings.value_forms import Title
-from synth.retarder.configuration.named_type import named_type
+
+
+def named_type(default: str | None, kind: Kind, meaning: str) -> Any:
+    """A key that names a type, of the library or the user's own; `default` None: what it is then is told elsewhere."""
+    names = BUILT_IN.names(kind)
+    return choice(default, f"{meaning}; one of {', '.join(names)}, or the path of your own file", names[0])
 
 
 class TopKeys(Section):

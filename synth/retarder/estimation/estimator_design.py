@@ -15,7 +15,6 @@ from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import Controller
 from synth.simulation.passes import PassTrace
-from synth.simulation.random_passes import RandomPasses
 from synth.solver.any_time.estimate_error import EstimateError, error_along_path
 from tuning_tables.estimator import MOST_BREAKS, MOST_READINGS, Estimator
 
@@ -78,16 +77,6 @@ def frozen_readings(sensor: DopplerSensor) -> int:
         return 1
     needed = math.log(REPEATED_BY_CHANCE) / math.log(again) if again < 1.0 else math.inf
     return math.ceil(min(needed, MOST_READINGS))
-
-
-def speed_error_m_s(loop: ClosedLoop, controller: Controller, passes: RandomPasses) -> float:
-    """Root mean square error of the speed that `controller` compares with its lines, where it decides."""
-    squares, count = 0.0, 0.0
-    for index, trace, decided in decisions(loop, controller, loop.draws(passes)):
-        weight = float(passes.weight[index])
-        squares += weight * float(((trace.measured_m_s - trace.speed_m_s)[decided] ** 2).sum())
-        count += weight * int(decided.sum())
-    return math.sqrt(squares / max(count, 1.0))
 
 
 def error_of_estimate(loop: ClosedLoop, controller: Controller, draws: Draws, least_std_m_s: float) -> EstimateError:

@@ -13,8 +13,8 @@ from synth.frame.input_error import InputError
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import MODEL_ONLY
-from synth.retarder.explore.options import ExploreOptions
-from synth.retarder.tables_configuration import configuration_for, given_config, made_elsewhere
+from synth.retarder.tables_configuration import configuration_of, given_config, made_elsewhere
+from synth.retarder.tables_options import TablesOptions
 
 if TYPE_CHECKING:
     from synth.retarder.explore.explore_page import PlayedTable
@@ -49,13 +49,13 @@ class ExplorePage:
     file: File
 
 
-def resolve(asked: Asked[ResolvedConfig | None, ExploreOptions]) -> Asking:
+def resolve(asked: Asked[ResolvedConfig | None, TablesOptions]) -> Asking:
     """The tables; refused are those without a plant, aim tables, and more than a page may hold."""
     from synth.retarder.forms.tables_at import tables_at
 
     path = asked.options.source
     tables = tables_at(path).only_of_stages("explore")
-    config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, path, tables)
+    config, source = configuration_of(asked, tables)
     played = tuple(played_tables(tables, path, config, source))
     asking = Asking(config, Path(source).name, played)  # no file holds a path
     size = len(page_of(asking)) + BESIDE_BYTES * len(tables)
@@ -126,7 +126,7 @@ def show(page: ExplorePage) -> Iterator[Chapter]:
 COMMAND = Command(
     name="explore",
     read=given_config,
-    options=ExploreOptions,
+    options=TablesOptions,
     resolve=resolve,
     head=head,
     steps=lambda asking: Steps(len(asking.tables), "playing", "tables"),

@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-from synth.retarder.fmi.description import Head, build_description, model_description
-from synth.retarder.fmi.description_2 import model_description_2
+from synth.retarder.fmi.description import Head, build_description, model_description, model_description_2
 from synth.retarder.fmi.variables import Variable, scalars
 from synth.retarder.forms.code_options import FMU_NAMES
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from synth.frame.results_directory import CONFIGURATION, SUMMARY
-from synth.frame.summary import FORMAT
+from synth.frame.results_directory import CONFIGURATION
+from synth.retarder.forms.table_file import summaries_beside
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.export_prefix import AIM, ExportPrefix
 from tuning_tables.table_kinds import AnyTable
@@ -33,14 +32,12 @@ def configuration_beside(source: Path, tables: Sequence[AnyTable]) -> KeptConfig
     summary must have the hash of the tables' configuration, and that of the copy.
     """
     sha256s = {table.generator.config_sha256 for table in tables}
-    here = source if source.is_dir() else source.parent
-    for folder in (here, here.parent):
+    for folder, document in summaries_beside(source):
         try:
-            document = json.loads((folder / SUMMARY).read_bytes())
-            is_theirs = document["format"] == FORMAT and document["generator"]["config_sha256"] in sha256s
+            is_theirs = document["generator"]["config_sha256"] in sha256s
             content = (folder / CONFIGURATION).read_bytes() if is_theirs else b""
             is_whole = document["files"][CONFIGURATION] == hashlib.sha256(content).hexdigest()
-        except (OSError, ValueError, KeyError, TypeError):  # no summary, none of ours, or no copy
+        except (OSError, ValueError, KeyError, TypeError):  # none of a tune, or no copy
             continue
         if is_theirs and is_whole:
             return KeptConfiguration(folder / CONFIGURATION, content)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from synth.retarder.forms.passage_file import is_book
-from synth.retarder.forms.table_file import files_at
-from synth.retarder.forms.table_mark import is_table_of
+from synth.retarder.forms.table_file import files_at, is_table_of
+from synth.retarder.forms.tables_at import is_book
 from tuning_tables.table_kinds import KINDS
 
 

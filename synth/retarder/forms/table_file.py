@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, Final
 
 from synth.frame.input_error import InputError
 from synth.frame.machine_fault import MACHINE_FAULTS
+from synth.frame.results_directory import SUMMARY
 from synth.frame.summary import FORMAT
-from synth.retarder.forms.aim_file import read_aims
-from synth.retarder.forms.table_mark import is_table_of
 from tuning_tables import ControllerTable, read_book, read_json
 from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.document import FORMAT as TABLE
+from tuning_tables.json_text import LARGEST_FILE_BYTES
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.regular_file import first_bytes
+from tuning_tables.table_kinds import AnyTable, kind_of
 
 HDF5_SIGNATURE = b"\x89HDF"
 BOOK_SUFFIXES = (".h5", ".hdf5")
@@ -60,7 +64,7 @@ def table_files(directory: Path) -> list[Path]:
     Aim tables are not meant. Beside tables for point sensors a book is theirs.
     """
     folder = directory / "tables" if (directory / "tables").is_dir() else directory
-    tables = sorted(file for file in folder.glob("*.json") if file.name != "summary.json")
+    tables = sorted(file for file in folder.glob("*.json") if file.name != SUMMARY)
     others = [file for file in tables if not is_table_of(AimTable, file)]
     with_lines = [file for file in others if not is_table_of(PassageTable, file)]
     return with_lines or ([] if others else sorted(directory.glob("*.h5")))
@@ -96,17 +100,21 @@ def file_stem(table: ControllerTable | AimTable | PassageTable) -> str:
     return re.sub(r"[^\w.-]+", "-", table.id).lstrip(".-") or "table"
 
 
-def summary_beside(path: Path) -> dict[str, object] | None:
-    """summary.json of the tune that left the table, book or directory `path`; None where none can be read."""
+def summaries_beside(path: Path) -> Iterator[tuple[Path, dict[str, Any]]]:
+    """Every summary of a command with its folder: that of `path`, of a table, book or directory, or the one above."""
     here = path if path.is_dir() else path.parent
     for folder in (here, here.parent):
         try:
-            document = json.loads((folder / "summary.json").read_bytes())
+            document = json.loads((folder / SUMMARY).read_bytes())
         except (OSError, ValueError):
             continue
-        if isinstance(document, dict) and document.get("format") == FORMAT and "cases" in document.get("tables", {}):
-            return document
-    return None
+        if isinstance(document, dict) and document.get("format") == FORMAT:
+            yield folder, document
+
+
+def summary_beside(path: Path) -> dict[str, object] | None:
+    """summary.json of the tune that left the table, book or directory `path`; None where none can be read."""
+    return next((found for _, found in summaries_beside(path) if "cases" in found.get("tables", {})), None)
 
 
 def is_infeasible(table: ControllerTable | PassageTable, summary: dict[str, object] | None) -> bool:
@@ -117,3 +125,40 @@ def is_infeasible(table: ControllerTable | PassageTable, summary: dict[str, obje
             same = sha256 == table.generator.config_sha256
             return same and any(case.get("verdict") == "infeasible" for case in found)
     return False
+
+
+OF_FORMAT: Final = re.compile(rb'"format"\s*:\s*"%s"' % TABLE.encode())
+OF_KIND: Final = re.compile(rb'"kind"\s*:\s*"(\w+)"')
+"""No text in a JSON document can hold these: its quotes would be escaped."""
+
+
+def is_table_of(table: type[AnyTable], file: Path) -> bool:
+    """Whether a JSON file says that it is a table of this class; what cannot be read does not."""
+    try:
+        content = b"" if file.suffix in BOOK_SUFFIXES else first_bytes(file, LARGEST_FILE_BYTES)
+    except OSError:  # whoever reads it for its tables tells why
+        return False
+    return bool(OF_FORMAT.search(content)) and OF_KIND.findall(content) == [kind_of(table).encode()]
+
+
+@dataclass(frozen=True)
+class AimFile:
+    """The aim table of one file; reading it has checked its sum."""
+
+    path: Path
+    table: AimTable
+
+
+def read_aims(path: Path) -> tuple[AimFile, ...]:
+    """The aim tables at `path`: a file, or those of a directory, in tables/ if it has that; empty where there is none.
+
+    `TableError` where one is damaged.
+    """
+    return tuple(AimFile(file, read_json(file, AimTable)) for file in files_of(AimTable, path))
+
+
+def files_of(table: type[AnyTable], path: Path) -> list[Path]:
+    """The JSON files with a table of this class at `path`: a file, or those of a directory or of its tables/."""
+    folder = path / "tables" if (path / "tables").is_dir() else path
+    files = sorted(folder.glob("*.json")) if path.is_dir() else [path]
+    return [file for file in files if is_table_of(table, file)]

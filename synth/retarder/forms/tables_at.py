@@ -7,13 +7,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.frame.input_error import InputError
-from synth.retarder.forms.aim_file import AimFile, read_aims
-from synth.retarder.forms.passage_file import read_passages
-from synth.retarder.forms.table_file import TableFile, book_in, holds_tables, read_table_file, read_tables
+from synth.retarder.forms.table_file import (
+    HDF5_SIGNATURE,
+    AimFile,
+    TableFile,
+    book_in,
+    files_of,
+    holds_tables,
+    read_aims,
+    read_table_file,
+    read_tables,
+)
+from tuning_tables.hdf5_file import read_any_book
+from tuning_tables.json_file import read_json
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.regular_file import first_bytes
 
 if TYPE_CHECKING:
     from tuning_tables import ControllerTable
-    from tuning_tables.passages.passage_table import PassageTable
     from tuning_tables.table_kinds import AnyTable, StageTable
 
 
@@ -68,3 +79,21 @@ def tables_at(path: Path, else_there: bool = False) -> TablesAt:
     book = book_in(path)
     in_order = files if book == path else (read_table_file(book),)
     return TablesAt(path, tuple(table for file in in_order for table in file.tables), files, passages, aims)
+
+
+def read_passages(path: Path) -> tuple[PassageTable, ...]:
+    """The tables for point sensors at `path`: a file, or those of a directory, in tables/ if it has that.
+
+    Empty where there is none. `TableError` where one is damaged.
+    """
+    if path.is_dir() or not is_book(path):
+        return tuple(read_json(file, PassageTable) for file in files_of(PassageTable, path))
+    return tuple(table for table in read_any_book(path) if isinstance(table, PassageTable))
+
+
+def is_book(file: Path) -> bool:
+    """Whether a file is HDF5; what cannot be read is not."""
+    try:
+        return first_bytes(file, len(HDF5_SIGNATURE)) == HDF5_SIGNATURE
+    except OSError:  # whoever reads it for its tables tells why
+        return False

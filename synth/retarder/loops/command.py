@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.command import Asked, Command, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.input_error import InputError
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import MODEL_ONLY
-from synth.retarder.loops.options import LoopOptions
-from synth.retarder.tables_configuration import configuration_for, given_config
+from synth.retarder.tables_configuration import configuration_of, given_config
+from synth.retarder.tables_options import TablesOptions
 
 if TYPE_CHECKING:
     from synth.retarder.line_control_loop import LineControlLoop
@@ -46,7 +46,7 @@ class FoundLoops:
     loops: tuple[AnyLoop, ...]
 
 
-def resolve(asked: Asked[ResolvedConfig | None, LoopOptions]) -> AskedLoops:
+def resolve(asked: Asked[ResolvedConfig | None, TablesOptions]) -> AskedLoops:
     """The tables; refused where one fits no class of the configuration, or python-control cannot close its loop."""
     from synth.retarder.forms.tables_at import tables_at
 
@@ -54,7 +54,7 @@ def resolve(asked: Asked[ResolvedConfig | None, LoopOptions]) -> AskedLoops:
     tables = tables_at(path).of_stages
     if not tables:
         raise InputError(f"{path}: its tables are aim tables, which regulate nothing; give those of a tune")
-    config, place = (asked.settings, asked.place) if asked.settings else configuration_for(None, path, tables)
+    config, place = configuration_of(asked, tables)
     return AskedLoops(config, tuple(closing(table, config, place) for table in tables))
 
 
@@ -74,16 +74,6 @@ def closing(table: StageTable, config: ResolvedConfig, source: str) -> Callable[
             "rest and for point sensors: give one of those"
         )
     return partial(line_control_loop, table, served_class(table, config, source))
-
-
-def head(asked: AskedLoops) -> Head:
-    """What is said of the configuration."""
-    return head_of(asked.config)
-
-
-def steps(asked: AskedLoops) -> Steps:
-    """A step for each table."""
-    return Steps(len(asked.closings), "closing", "loops")
 
 
 def compute(asked: AskedLoops, work: Work) -> FoundLoops:
@@ -114,10 +104,10 @@ def show(found: FoundLoops) -> Iterator[Chapter]:
 COMMAND = Command(
     name="loop",
     read=given_config,
-    options=LoopOptions,
+    options=TablesOptions,
     resolve=resolve,
-    head=head,
-    steps=steps,
+    head=lambda asked: head_of(asked.config),
+    steps=lambda asked: Steps(len(asked.closings), "closing", "loops"),
     compute=compute,
     show=show,
     limits=limits,

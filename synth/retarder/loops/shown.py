@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
+
+from matplotlib.figure import Figure
 
 from synth.frame.command import Limit
 from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
@@ -16,9 +18,11 @@ from synth.retarder.comparison.limit_cycle import Hunting
 from synth.retarder.forms.table_file import file_stem
 from synth.retarder.line_control_loop import LineControlLoop
 from synth.retarder.passage_control_loop import PassageControlLoop
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from synth.retarder.pictures.block_diagram import loop_structure
+from synth.retarder.pictures.loop_cycle import loop_cycle
+from synth.retarder.pictures.loop_portrait import loop_portrait
+from synth.retarder.pictures.loop_response import loop_response
+from synth.simulation.nominal_response import commands_of
 
 AnyLoop: TypeAlias = LineControlLoop | PassageControlLoop
 
@@ -117,7 +121,7 @@ def row_of(loop: AnyLoop) -> Row:
         "simulator_m_s": loop.trace.exit_speed_m_s,
         "difference_mm_s": 1e3 * abs(loop.difference.largest_m_s),
         "parted_s": loop.difference.parted_s,
-        "commands": len(loop.response.commands),
+        "commands": len(commands_of(loop.response)),
         "forecast": None if forecast is None else forecast.commands,
         "by_noise": None if forecast is None else forecast.by_noise,
         "cycles": cycles(loop),
@@ -148,48 +152,19 @@ def cycles(loop: AnyLoop) -> str | None:
 def charts(loop: AnyLoop, stem: str) -> Iterator[Chart]:
     """The pictures of a loop; `stem`: the beginning of their names."""
     named = partial(chart, loop, stem)
-    yield named("response", "Nominal response", RESPONSE, response)
+    yield named("response", "Nominal response", RESPONSE, partial(loop_response, loop))
+    structure = named("structure", "Block diagram", STRUCTURE, partial(loop_structure, loop))
     if isinstance(loop, PassageControlLoop):
-        yield named("structure", "Block diagram", STRUCTURE, structure)
+        yield structure
         return
-    yield named("portrait", "Phase portrait", PORTRAIT, portrait)
+    yield named("portrait", "Phase portrait", PORTRAIT, partial(loop_portrait, loop))
     for i, hunting in enumerate(loop.hunting):
         name = "cycle" if i == 0 else f"cycle-{i + 1}"
-        yield named(name, f"Limit cycle {i + 1}", CYCLE, partial(cycle, hunting=hunting))
+        yield named(name, f"Limit cycle {i + 1}", CYCLE, partial(loop_cycle, loop, hunting))
     if loop.table.estimator is None:
-        yield named("structure", "Block diagram", STRUCTURE, structure)
+        yield structure
 
 
-def chart(loop: AnyLoop, stem: str, name: str, title: str, caption: str, draw: Callable[[AnyLoop], Figure]) -> Chart:
+def chart(loop: AnyLoop, stem: str, name: str, title: str, caption: str, draw: Callable[[], Figure]) -> Chart:
     """One picture of a loop."""
-    return Chart(f"{stem}-{name}", f"{title}, {loop.table.id}", caption, partial(draw, loop))
-
-
-def response(loop: AnyLoop) -> Figure:
-    """Drawn by a module that needs matplotlib, as all of these."""
-    from synth.retarder.pictures.loop_response import loop_response
-
-    return loop_response(loop)
-
-
-def portrait(loop: AnyLoop) -> Figure:
-    """See `response`."""
-    from synth.retarder.pictures.loop_portrait import loop_portrait
-
-    assert isinstance(loop, LineControlLoop)
-    return loop_portrait(loop)
-
-
-def cycle(loop: AnyLoop, hunting: Hunting) -> Figure:
-    """See `response`."""
-    from synth.retarder.pictures.loop_cycle import loop_cycle
-
-    assert isinstance(loop, LineControlLoop)
-    return loop_cycle(loop, hunting)
-
-
-def structure(loop: AnyLoop) -> Figure:
-    """See `response`."""
-    from synth.retarder.pictures.loop_structure import loop_structure
-
-    return loop_structure(loop)
+    return Chart(f"{stem}-{name}", f"{title}, {loop.table.id}", caption, draw)

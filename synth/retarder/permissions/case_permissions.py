@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TypeVar
 
 from plant_models import Plant
 from plant_models.approach import Approach
@@ -14,7 +13,7 @@ from synth.retarder.attempted_case import attempted
 from synth.retarder.class_setup import ClassSetup, Origin, class_setup, origin_of, validation_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configuration.settings import RegulatorSettings
-from synth.retarder.failed_case import FailedCase, parted
+from synth.retarder.failed_case import FailedCase
 from synth.retarder.permissions.permission import (
     AllPermissions,
     CasePermissions,
@@ -22,9 +21,9 @@ from synth.retarder.permissions.permission import (
     Permission,
     PermissionResult,
 )
+from synth.retarder.tune import every_case
 from synth.retarder.tuned_table import TunedTable, at_any_time, solutions, tuned_table
 from synth.retarder.watcher import Watcher
-from synth.retarder.work_queue import run_nested
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
@@ -37,8 +36,6 @@ APPROACH_M = 4.0
 
 Design = Callable[[], PermissionResult | FailedCase]
 """Designs, predicts and simulates one permission; raises what `attempted` takes for a failure, or returns one."""
-
-Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
@@ -78,10 +75,6 @@ class CaseTuned:
         ratio, ci95 = rms_ratio(sample, self.sample, self.target_m_s)
         return PermissionResult(permission, exit_statistics(sample, self.target_m_s), ratio, ci95, predicted_m_s)
 
-    def attempt(self, make: Callable[[], Made]) -> Made | FailedCase:
-        """What `make` gives for this case, or why it gives nothing."""
-        return attempted(make, self.setup.label, self.target_m_s, self.config)
-
 
 @one_blas_thread()
 def permissions_of(config: ResolvedConfig, created: str, workers: int, watcher: Watcher) -> AllPermissions:
@@ -91,29 +84,21 @@ def permissions_of(config: ResolvedConfig, created: str, workers: int, watcher: 
     """
     origin, passes = origin_of(config.sha256, created), validation_passes(config)
 
-    def start(label: str, plant: Plant) -> list[Callable[[], CasePermissions | FailedCase]]:
+    def prepared(label: str, plant: Plant) -> list[Callable[[], CasePermissions]]:
         solved = solved_class(config, label, plant, passes, origin)
-        if isinstance(solved, FailedCase):
-            failed = [replace(solved, target_m_s=target) for target in config.targets_of(label)]
-            return [partial(case_failed, watcher, case) for case in failed]
         others = tuple(other_classes(solved))
-        return [partial(told_permissions, watcher, solved, others, each) for each in range(len(solved.solutions))]
+        return [partial(permissions_of_case, solved, others, each) for each in range(len(solved.solutions))]
 
-    found = run_nested([partial(start, *each) for each in config.plants()], workers)
-    return AllPermissions(*parted(case for cases in found for case in cases))
+    def done(case: CasePermissions) -> None:
+        watcher.done(f"{case.label} to {case.target_speed_m_s:g} m/s: {case.told}")
+
+    return AllPermissions(*every_case(config, prepared, done, watcher, workers))
 
 
-def solved_class(
-    config: ResolvedConfig, label: str, plant: Plant, passes: RandomPasses, origin: Origin
-) -> SolvedClass | FailedCase:
-    """All targets of a class solved at once, or why they cannot be."""
-
-    def solve() -> SolvedClass:
-        setup = class_setup(config, label, plant, passes, origin)
-        aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
-        return SolvedClass(config, setup, solutions(setup.design, aims))
-
-    return attempted(solve, label, 0.0, config)
+def solved_class(config: ResolvedConfig, label: str, plant: Plant, passes: RandomPasses, origin: Origin) -> SolvedClass:
+    """All targets of a class solved at once."""
+    setup = class_setup(config, label, plant, passes, origin)
+    return SolvedClass(config, setup, solutions(setup.design, config.aims_of(label)))
 
 
 def other_classes(solved: SolvedClass) -> Iterator[OtherClass]:
@@ -127,27 +112,8 @@ def other_classes(solved: SolvedClass) -> Iterator[OtherClass]:
         (Permission.NO_ESTIMATOR if regulator.estimator else Permission.ESTIMATOR, other, plant),
         (Permission.NO_APPROACH if ahead else Permission.APPROACH, config, replace(plant, approach=approach)),
     ):
-        anew = solved_class(changed, setup.label, changed_plant, setup.passes.passes, setup.origin)
-        yield OtherClass(permission, anew)
-
-
-def told_permissions(
-    watcher: Watcher, solved: SolvedClass, others: tuple[OtherClass, ...], index: int
-) -> CasePermissions | FailedCase:
-    """All permissions of one target of a class, told of."""
-    target_m_s = solved.solutions[index].aim.target_speed_m_s
-    case = attempted(partial(case_tuned, solved, index), solved.setup.label, target_m_s, solved.config)
-    if isinstance(case, FailedCase):
-        return case_failed(watcher, case)
-    found = case_permissions(case, designs(case, others, index))
-    watcher.done(f"{found.label} to {found.target_speed_m_s:g} m/s: {found.told}")
-    return found
-
-
-def case_failed(watcher: Watcher, case: FailedCase) -> FailedCase:
-    """A case without a table, told of."""
-    watcher.done(case.sentence)
-    return case
+        solve = partial(solved_class, changed, setup.label, changed_plant, setup.passes.passes, setup.origin)
+        yield OtherClass(permission, attempted(solve, setup.label, 0.0, changed))
 
 
 def case_tuned(solved: SolvedClass, index: int) -> CaseTuned:
@@ -157,11 +123,12 @@ def case_tuned(solved: SolvedClass, index: int) -> CaseTuned:
     return CaseTuned(solved.config, setup, solution.aim, tuned, setup.passes.run(TableController(tuned.table)))
 
 
-def case_permissions(case: CaseTuned, asked: Iterable[tuple[Permission, Design]]) -> CasePermissions:
-    """All permissions `asked` of one case; with its reason each that nothing can be designed for."""
+def permissions_of_case(solved: SolvedClass, others: tuple[OtherClass, ...], index: int) -> CasePermissions:
+    """All permissions of one target of a class; with its reason each that nothing can be designed for."""
+    case = case_tuned(solved, index)
     results, failed = [], []
-    for permission, design in asked:
-        found = case.attempt(design)
+    for permission, design in designs(case, others, index):
+        found = attempted(design, case.setup.label, case.target_m_s, case.config)
         if isinstance(found, FailedCase):
             failed.append(FailedPermission(permission, found.reason))
         else:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.command import Asked, Command, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -56,22 +56,12 @@ def resolve(asked: Asked[ResolvedConfig, PermissionsOptions]) -> AskedPermission
     return AskedPermissions(asked.settings, asked.place, asked.options.workers)
 
 
-def head(asked: AskedPermissions) -> Head:
-    """What is said of the configuration."""
-    return head_of(asked.config, sensors_left_aside(asked.config))
-
-
-def steps(asked: AskedPermissions) -> Steps:
-    """A step for each case."""
-    return Steps(len(asked.config.problems()), "comparing", "cases")
-
-
 def compute(asked: AskedPermissions, work: Work) -> FoundPermissions:
     """All permissions of all cases; `InputError` where no case has a table."""
     from synth.frame.creation_time import creation_time
     from synth.kernels.cache import guarded
+    from synth.retarder.attempted_case import require_a_table, tables_refused
     from synth.retarder.permissions.case_permissions import permissions_of
-    from synth.retarder.tables_refused import require_a_table, tables_refused
 
     with tables_refused(asked.place, asked.config):
         told = guarded(permissions_of, asked.config, creation_time(), asked.workers, work.progress)
@@ -98,8 +88,8 @@ COMMAND = Command(
     read=parse_config,
     options=PermissionsOptions,
     resolve=resolve,
-    head=head,
-    steps=steps,
+    head=lambda asked: head_of(asked.config, sensors_left_aside(asked.config)),
+    steps=lambda asked: Steps(len(asked.config.problems()), "comparing", "cases"),
     compute=compute,
     show=show,
     limits=limits,

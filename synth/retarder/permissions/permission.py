@@ -1,9 +1,11 @@
-"""One permission that hardware may give a regulator, and what it would give in one case."""
+"""Permissions that hardware may give a regulator, and what each would give: in one case, and over all."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from statistics import median
 
 from synth.retarder.failed_case import FailedCase
 from synth.simulation.exit_statistics import ExitStatistics
@@ -87,3 +89,18 @@ class AllPermissions:
     def complete(self) -> bool:
         """Whether all that was asked for is told."""
         return not self.failed and not any(case.failed for case in self.cases)
+
+
+def asked_of(cases: Sequence[CasePermissions]) -> list[Permission]:
+    """The permissions that were asked for in some case."""
+    return [each for each in Permission if any(case.of(each) for case in cases)]
+
+
+def median_ratios(cases: Sequence[CasePermissions]) -> dict[str, float]:
+    """The median of each permission's ratio over all cases, by its name."""
+    return {each.value: median(result.ratio for case in cases if (result := case.of(each))) for each in asked_of(cases)}
+
+
+def medians(cases: Sequence[CasePermissions]) -> str:
+    """The same as a list in words."""
+    return ", ".join(f"{name} {ratio:.2f}" for name, ratio in median_ratios(cases).items())

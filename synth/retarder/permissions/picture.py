@@ -16,7 +16,7 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.retarder.permissions.permission import CasePermissions, Permission
+from synth.retarder.permissions.permission import CasePermissions, asked_of
 
 ROW = 0.62
 """Share of a row's height that its marks take."""
@@ -24,7 +24,7 @@ ROW = 0.62
 
 def ratio_rows(title: str, cases: Sequence[CasePermissions]) -> Figure:
     """The figure."""
-    shown = [each for each in Permission if any(case.of(each) for case in cases)]
+    shown = asked_of(cases)
     figure = new_figure(9.0, 0.5 * len(cases) + 2.4, "What permissions of the hardware would give", title)
     place(figure, left=2.2, right=0.25, bottom=1.1, top=0.8)
     axes = figure.subplots()

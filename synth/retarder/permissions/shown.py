@@ -9,8 +9,7 @@ from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table, T
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import counted, decimals
 from synth.retarder.exit_figures import CASE, LOOP, PREDICTED, loop_row
-from synth.retarder.permissions.overview import asked_of, median_ratios, medians
-from synth.retarder.permissions.permission import AllPermissions, CasePermissions
+from synth.retarder.permissions.permission import AllPermissions, CasePermissions, asked_of, median_ratios, medians
 
 FIGURES = (
     *CASE,

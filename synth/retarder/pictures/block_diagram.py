@@ -13,9 +13,37 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch, Rectangle
 
 from synth.frame.picture.house_style import GREY, INK, MATHEMATICS, new_figure
-from synth.retarder.pictures.block_layout import HEIGHT_IN, NAMES, SIZE_IN, WIDTH_IN, Place, Route, centre, corners
+from synth.retarder.line_control_loop import LineControlLoop
+from synth.retarder.passage_control_loop import PassageControlLoop
+from synth.retarder.pictures.block_layout import (
+    HEIGHT_IN,
+    NAMES,
+    POINT_SENSOR_ROUTES,
+    RADAR_ROUTES,
+    SIZE_IN,
+    WIDTH_IN,
+    Place,
+    Route,
+    centre,
+    corners,
+)
+from synth.retarder.pictures.table_picture import subject
+from synth.simulation.controllers import TableController
 from synth.simulation.structure.diagram import Box, Sketch, Wire
 from synth.simulation.structure.part import Block
+from synth.simulation.structure.passage_diagram import passage_diagram
+from synth.simulation.structure.radar_diagram import radar_diagram
+
+
+def loop_structure(loop: LineControlLoop | PassageControlLoop) -> Figure:
+    """The parts of the loop and their wires. `ValueError` for a table with an estimator."""
+    if isinstance(loop, PassageControlLoop):
+        return block_diagram(
+            passage_diagram(loop.loop, loop.controller).sketch, POINT_SENSOR_ROUTES, subject(loop.table)
+        )
+    diagram = radar_diagram(loop.plant, TableController(loop.table), 0.5 * loop.plant.sensor.sample_period_s)
+    return block_diagram(diagram.sketch, RADAR_ROUTES, subject(loop.table))
+
 
 FILLS: Mapping[Block, str] = {
     Block.MEASURING: "#eaf4fb",

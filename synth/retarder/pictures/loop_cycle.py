@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import warnings
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,11 +12,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from synth.frame.picture.house_style import BLUE, GREEN, GREY, INK, VERMILLION, dress, legend_below, new_figure, place
-from synth.retarder.comparison.cycle_wave import cycle_wave
-from synth.retarder.comparison.describing_function import describing_function_analysis
-from synth.retarder.comparison.limit_cycle import Hunting, LimitCycle
+from synth.retarder.comparison.limit_cycle import Hunting, LimitCycle, cycle_wave
 from synth.retarder.line_control_loop import LineControlLoop
 from synth.retarder.pictures.table_picture import subject
+
+if TYPE_CHECKING:
+    from control import DescribingFunctionResponse
+
 
 PERIODS = 2
 
@@ -91,3 +95,26 @@ def draw_plane(axes: Axes, cycle: LimitCycle) -> None:
         axes.plot([at.real], [at.imag], "o", color=INK, markersize=6)
         title = f"python-control, with equal slopes: ±{100.0 * amplitude:.1f} cm/s in {2.0 * math.pi / omega:.2f} s"
     dress(axes, title, "real part", "imaginary part")
+
+
+def describing_function_analysis(cycle: LimitCycle) -> DescribingFunctionResponse:
+    """python-control's own analysis, to plot: relay with hysteresis, exact dead time, integrator.
+
+    It knows one amplitude and one delay: both stages count as (rise + fall)/2 and both changes as delayed by
+    the mean. The dead time is exact because the loop is given as frequency response data.
+    """
+    import control
+
+    height, edge = 0.5 * (cycle.rise_m_s2 + cycle.fall_m_s2), 0.5 * max(0.0, cycle.gap_m_s)
+    delay = 0.5 * (cycle.brake_delay_s + cycle.release_delay_s)
+    fastest = 0.5 * math.pi / delay
+    slowest = 0.5 * math.pi / (delay + edge * math.pi**2 / (8.0 * height))  # as arccos lies above its chord
+    omega = np.linspace(0.9 * slowest, 1.1 * fastest, 400)
+    loop = control.frd(np.exp(-1j * omega * delay) / (1j * omega), omega, smooth=True)
+    largest = 4.0 * height / (math.pi * omega[0])
+    amplitudes = np.linspace(max(1.0001 * edge, 0.1 * largest), 1.1 * largest, 80)
+    relay = control.relay_hysteresis_nonlinearity(height, edge)
+    with warnings.catch_warnings():
+        # Where its search for more digits fails, the crossing on this fine a grid stands.
+        warnings.filterwarnings("ignore", "not able to refine result", UserWarning)
+        return control.describing_function_response(loop, relay, amplitudes, omega=omega)

@@ -28,8 +28,7 @@ from synth.frame.picture.house_style import (
 )
 from synth.retarder.command_panels import DOWN, HOLD, UP, label_panels, stage_panels
 from synth.retarder.pictures.stage_colours import finite, outcome, parts_in_stage
-from synth.retarder.pictures.stage_surfaces import stage_surfaces
-from synth.retarder.pictures.surfaces import PATH_POINTS, surface_figure
+from synth.retarder.pictures.stage_surfaces import PATH_POINTS, stage_surfaces, surface_figure
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import TRACE_FACTORS, ExitSample, PassTrace
 from synth.solver.tabulate import lines_of

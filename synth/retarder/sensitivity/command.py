@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Steps, Work
+from synth.frame.command import Asked, Command, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.processors import available
 from synth.retarder.configuration.config_file import parse_config
@@ -16,7 +16,6 @@ from synth.retarder.configured import head_of
 from synth.retarder.sensitivity.options import SensitivityOptions
 
 if TYPE_CHECKING:
-    from synth.frame.terminal.progress import Progress
     from synth.retarder.sensitivity.fixed_tables import FixedTables
     from synth.retarder.sensitivity.sensitivity import Sensitivity, Trial
 
@@ -54,11 +53,6 @@ def resolve(asked: Asked[ResolvedConfig, SensitivityOptions]) -> AskedSensitivit
     return AskedSensitivity(config, asked.place, Trial(options.points, options.passes, seed), given, reads)
 
 
-def head(asked: AskedSensitivity) -> Head:
-    """What is said of the configuration."""
-    return head_of(asked.config, reads=asked.reads)
-
-
 def steps(asked: AskedSensitivity) -> Steps:
     """A step for each class that is simulated, and for each that is tuned before."""
     return Steps(len(asked.given) if asked.given else 2 * len(asked.config.cuts), "simulating", "steps")
@@ -66,23 +60,17 @@ def steps(asked: AskedSensitivity) -> Steps:
 
 def compute(asked: AskedSensitivity, work: Work) -> Sensitivity:
     """Tune the tables unless they are given, and let the plant vary under them."""
-    from synth.kernels.cache import guarded
-
-    return guarded(shared_out, asked, work.progress)
-
-
-def shared_out(asked: AskedSensitivity, progress: Progress) -> Sensitivity:
-    """The same with kernels that may have to be compiled anew."""
     from synth.frame.creation_time import creation_time
+    from synth.kernels.cache import guarded
+    from synth.retarder.attempted_case import tables_refused
     from synth.retarder.sensitivity.fixed_tables import tables_tuned
     from synth.retarder.sensitivity.sensitivity import sensitivity
-    from synth.retarder.tables_refused import tables_refused
 
     config = asked.config
     with tables_refused(asked.place, config):
         workers = min(len(config.cuts), available())
-        fixed = asked.given or tables_tuned(config, creation_time(), workers, progress.done)
-        return sensitivity(config, fixed, asked.trial, available(), progress.done)
+        fixed = asked.given or guarded(tables_tuned, config, creation_time(), workers, work.progress.done)
+        return guarded(sensitivity, config, fixed, asked.trial, available(), work.progress.done)
 
 
 def show(found: Sensitivity) -> Iterator[Chapter]:
@@ -100,7 +88,7 @@ COMMAND = Command(
     read=parse_config,
     options=SensitivityOptions,
     resolve=resolve,
-    head=head,
+    head=lambda asked: head_of(asked.config, reads=asked.reads),
     steps=steps,
     compute=compute,
     show=show,

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 from plant_models import Plant
-from synth.problem.aim import Aim
 from synth.retarder.class_setup import class_setup, origin_of, validation_passes
 from synth.retarder.configuration.cut_class import CutClass
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.forms.tables_at import tables_at
 from synth.retarder.served_class import plant_for
 from synth.retarder.tuned_table import solutions, tuned_table
+from synth.retarder.watcher import Tell
 from synth.solver.one_blas_thread import one_blas_thread
 from tuning_tables import ControllerTable
-
-Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -51,17 +48,10 @@ def tables_tuned(config: ResolvedConfig, created: str, workers: int, tell: Tell)
         plant = config.plant_of(cut_class)
         origin = origin_of(config.sha256, created)
         setup = class_setup(config, cut_class.label, plant, validation_passes(config).part(0, 1), origin)
-        aims = [Aim(target, config.criterion) for target in config.targets_of(cut_class.label)]
-        tables = tuple(tuned_table(setup, solution).table for solution in solutions(setup.design, aims))
+        found = solutions(setup.design, config.aims_of(cut_class.label))
+        tables = tuple(tuned_table(setup, solution).table for solution in found)
         tell(f"{cut_class.label}: {len(tables)} tables tuned")
         return FixedTables(cut_class, plant, tables)
 
-    return side_by_side(of, config.cuts, workers)
-
-
-def side_by_side(
-    work: Callable[[CutClass], FixedTables], cuts: Sequence[CutClass], workers: int
-) -> tuple[FixedTables, ...]:
-    """`work` of each class, in their order."""
     with ThreadPoolExecutor(max_workers=workers) as pool:
-        return tuple(pool.map(work, cuts))
+        return tuple(pool.map(of, config.cuts))

@@ -6,8 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from synth.frame.picture.house_style import BLUE, GREY, INK, PALE_GREY, dress, new_figure, place
-from synth.retarder.sensitivity.ranking import ranked
-from synth.retarder.sensitivity.sensitivity import Sensitivity
+from synth.retarder.sensitivity.sensitivity import Sensitivity, ranked
 
 MOST_BARS = 12
 DARK_CELL = 0.35

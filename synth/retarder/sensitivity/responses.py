@@ -1,23 +1,52 @@
-"""What fixed tables do at the points of a hypercube: every point another plant, everywhere the same passes."""
+"""What fixed tables do, an output each, at the points of a hypercube: every point another plant, the same passes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, PlantError
+from synth.problem.aim import OVERSPEED_M_S
+from synth.retarder.configuration.plant_parameter import Parameter
 from synth.retarder.configuration.plant_values import with_values
-from synth.retarder.sensitivity.outputs import OUTPUTS
-from synth.retarder.sensitivity.varied import Varied, values_at
+from synth.retarder.sensitivity.varied import values_at
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import common_passes
+from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from tuning_tables import ControllerTable
 
 Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Output:
+    """`figure` makes the number from the exit errors (n,) and weights (n,) of the passes."""
+
+    name: str
+    title: str
+    unit: str
+    figure: Callable[[Floats, Floats], float]
+
+    def of(self, sample: ExitSample, target_m_s: float) -> float:
+        """The number of a sample; a stalled pass counts with exit speed 0, as in `exit_statistics`."""
+        return self.figure(sample.exit_speed_m_s - target_m_s, sample.weight)
+
+
+OUTPUTS: Final = (
+    Output("rms_m_s", "rms exit error", "m/s", lambda e, w: math.sqrt(float(w @ e**2 / w.sum()))),
+    Output("bias_m_s", "mean exit error", "m/s", lambda e, w: float(w @ e / w.sum())),
+    Output(
+        "overspeed", f"share over +{OVERSPEED_M_S:g} m/s", "1", lambda e, w: float(w @ (e > OVERSPEED_M_S) / w.sum())
+    ),
+)
+"""The first is what the ranking is told by."""
 
 AT_ONCE = 25
 """Points of one task of a thread."""
@@ -26,7 +55,7 @@ AT_ONCE = 25
 def responses(
     plant: Plant,
     tables: Sequence[ControllerTable],
-    varied: Mapping[str, Varied],
+    varied: Mapping[str, Parameter],
     keys: Sequence[str],
     unit: Floats,
     passes: RandomPasses,

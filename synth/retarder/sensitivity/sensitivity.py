@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synth.frame.input_error import InputError
+from synth.retarder.configuration.plant_parameter import Parameter
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.sensitivity.fixed_tables import FixedTables
-from synth.retarder.sensitivity.hypercube import unit_hypercube
-from synth.retarder.sensitivity.outputs import OUTPUTS, Output
-from synth.retarder.sensitivity.responses import responses
+from synth.retarder.sensitivity.responses import OUTPUTS, Output, responses
 from synth.retarder.sensitivity.shares import Estimates, Share, first_order, mean_estimates, noise_share
-from synth.retarder.sensitivity.varied import Varied, moving, varied_parameters
+from synth.retarder.sensitivity.varied import moving, varied_parameters
+from synth.retarder.watcher import Tell
 from synth.simulation.stratified_passes import stratified_passes
 
 Floats = NDArray[np.float64]
-Tell = Callable[[str], None]
 
 REPEATED = 100
 """Points that are simulated once more, with other passes."""
@@ -79,7 +78,7 @@ class Sensitivity:
     trial: Trial
     keys: tuple[str, ...]
     names: tuple[str, ...]
-    varied: tuple[tuple[str, tuple[Varied, ...]], ...]
+    varied: tuple[tuple[str, tuple[Parameter, ...]], ...]
     cases: tuple[CaseShares, ...]
     overall: tuple[OutputShares, ...]
 
@@ -121,7 +120,7 @@ def sensitivity(
 
 
 def class_shares(
-    fixed: FixedTables, varied: Sequence[Varied], keys: Sequence[str], unit: Floats, trial: Trial, threads: int
+    fixed: FixedTables, varied: Sequence[Parameter], keys: Sequence[str], unit: Floats, trial: Trial, threads: int
 ) -> list[CaseShares]:
     """The cases of one class."""
     by_key = {each.key: each for each in varied}
@@ -165,3 +164,37 @@ def mean_of_cases(cases: Sequence[OutputShares]) -> OutputShares:
         mean_estimates([case.estimates for case in counted]),
         mean_estimates([case.noise_estimates for case in counted]),
     )
+
+
+def unit_hypercube(parameters: int, points: int, seed: int) -> NDArray[np.float64]:
+    """Points of a Latin hypercube, (points, parameters), each number in [0, 1)."""
+    from scipy.stats import qmc  # start-up: scipy only where it is needed
+
+    unit: NDArray[np.float64] = qmc.LatinHypercube(parameters, rng=np.random.default_rng(seed)).random(points)
+    return unit
+
+
+UNDECIDABLE = "not decidable with these passes"
+MOST_NAMED = 3
+
+
+def ranked(keys: Sequence[str], found: OutputShares) -> tuple[tuple[str, Share], ...]:
+    """(key, share), the largest share first; equal ones in the order of the keys."""
+    return tuple(sorted(zip(keys, found.shares, strict=True), key=lambda pair: -pair[1].value))
+
+
+def measure_first(names: Sequence[str], found: OutputShares) -> str:
+    """'measure first, for the rms exit error: … (24 % [20, 28] of its variance), …': at most three decided ones."""
+    title = found.output.title
+    if not found.varies:
+        return f"the {title} is the same at every point, so nothing has to be measured for it"
+    best = [(name, share) for name, share in ranked(names, found) if share.decided][:MOST_NAMED]
+    if not best:
+        return f"measure first, for the {title}: {UNDECIDABLE}; take more points"
+    return f"measure first, for the {title}: " + "; ".join(f"{name}, {percent(share)}" for name, share in best)
+
+
+def percent(share: Share) -> str:
+    """'24 % [20, 28]'."""
+    low, high = share.ci95
+    return f"{100.0 * share.value:.0f} % [{100.0 * low:.0f}, {100.0 * high:.0f}]"

@@ -8,8 +8,14 @@ from typing import Any, Final
 
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
-from synth.retarder.sensitivity.ranking import UNDECIDABLE, measure_first, percent
-from synth.retarder.sensitivity.sensitivity import REPEATED, OutputShares, Sensitivity
+from synth.retarder.sensitivity.sensitivity import (
+    REPEATED,
+    UNDECIDABLE,
+    OutputShares,
+    Sensitivity,
+    measure_first,
+    percent,
+)
 from synth.retarder.sensitivity.shares import GROUPS, HARMONICS, Share
 from synth.retarder.sensitivity.varied import NEVER_VARIED
 

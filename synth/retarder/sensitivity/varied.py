@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Final
 
 from plant_models import Plant
@@ -21,33 +21,14 @@ NEVER_VARIED: Final = {
 """Keys that are held although the library has a range for them, and why."""
 
 
-@dataclass(frozen=True)
-class Varied:
-    """A number under `key` of the configuration, uniform from `low` to `high`; equal ends hold it.
-
-    For the keys of `plant_values.RELATIVE` these are factors on the configured value, `nominal` is then 1. `assumed`:
-    nothing citable stands behind it.
-    """
-
-    key: str
-    name: str
-    nominal: float
-    low: float
-    high: float
-    assumed: bool
-
-    def at(self, u: float) -> float:
-        """The value at `u` of [0, 1)."""
-        return self.low + (self.high - self.low) * u
-
-
 def varied_parameters(
     config: ResolvedConfig, cut_class: CutClass, plant: Plant, target_m_s: float
-) -> tuple[Varied, ...]:
-    """Every parameter of `plant` that has a range in the library; `target_m_s`: the highest it is to leave with.
+) -> tuple[Parameter, ...]:
+    """Every parameter of `plant` that has a range in the library, uniform from its `low` to its `high`.
 
-    Ranges are those of the library, within what physics and use allow, and wide enough to hold the value itself. The
-    mass goes over its category: every cut has its own. What the user's configuration sets is held: the yard knows it.
+    `target_m_s`: the highest that the cut is to leave with. Ranges are those of the library, within what physics and
+    use allow, and wide enough to hold the value itself. The mass goes over its category: every cut has its own. What
+    the user's configuration sets is held: the yard knows it.
     """
     known = set_by_user(config, cut_class)
     own = {"cut." + value.key.partition(".")[2]: sensible_range(value) for value in cut_class.provenance}
@@ -65,11 +46,11 @@ def varied_parameters(
     return tuple(found)
 
 
-def within_limits(parameter: Parameter, span: tuple[float, float]) -> Varied:
+def within_limits(parameter: Parameter, span: tuple[float, float]) -> Parameter:
     """`parameter` over `span` as far as its limits allow."""
     nominal = parameter.nominal
     low, high = max(min(span[0], nominal), parameter.low), min(max(span[1], nominal), parameter.high)
-    return Varied(parameter.key, parameter.name, nominal, low, high, parameter.assumed)
+    return replace(parameter, low=low, high=high)
 
 
 def set_by_user(config: ResolvedConfig, cut_class: CutClass) -> frozenset[str]:
@@ -79,14 +60,16 @@ def set_by_user(config: ResolvedConfig, cut_class: CutClass) -> frozenset[str]:
     return frozenset((*retarder, *cut)) - {MASS}
 
 
-def moving(classes: Sequence[Sequence[Varied]]) -> tuple[str, ...]:
+def moving(classes: Sequence[Sequence[Parameter]]) -> tuple[str, ...]:
     """Keys that are not held in all classes, in the order of the first class."""
     free = {each.key for varied in classes for each in varied if each.high > each.low}
     return tuple(each.key for each in classes[0] if each.key in free)
 
 
-def values_at(varied: Mapping[str, Varied], keys: Sequence[str], row: Sequence[float]) -> Iterator[tuple[str, float]]:
+def values_at(
+    varied: Mapping[str, Parameter], keys: Sequence[str], row: Sequence[float]
+) -> Iterator[tuple[str, float]]:
     """(key, value) at the point `row` of the unit cube; its numbers belong to `keys`."""
     for key, u in zip(keys, row, strict=True):
         if varied[key].high > varied[key].low:  # so that a number that is held keeps every bit
-            yield key, varied[key].at(u)
+            yield key, varied[key].low + (varied[key].high - varied[key].low) * u

@@ -16,6 +16,7 @@ from plant_models import Plant, PointSensors
 from synth.kernels.vector.packs import EIGHT
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
+from synth.retarder.policy_map import PolicyMap, policy_map
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.chain.decisions import Decisions
@@ -110,3 +111,23 @@ def candidate_places(
     chain = persistent_chain(plant, resolution, EveryNode(sensors))
     offsets = tuple(plant.cut.axle_offsets_m[axle] for axle in sensors.axles(plant.cut))
     return CandidatePlaces(chain, case.aims, offsets)
+
+
+MAP = Resolution(path_step_m=0.5, speed_step_m_s=0.03, friction_nodes=7, resistance_nodes=1)
+"""Its grid: finer in speed than the search's, for it is looked at."""
+
+TOLERANCE_M2_S2 = 1e-5
+"""Commands that cost no more than this from the best are indifferent."""
+
+
+def policy_anywhere(case: LayoutCase, sensors: PointSensors, ahead_m: float) -> PolicyMap:
+    """The best command for the first aim of `case` at every place from `ahead_m` before the entrance on.
+
+    As if a sensor of this kind stood at every half metre. Of the commands up, and of those down, by however many
+    stages, the best counts.
+    """
+    places = candidate_places(case, sensors, ahead_m, MAP)
+    (solution,) = solve_all(places.chain, case.aims[:1], nodes_kept=1, value_type=np.float64)
+    gain = np.where(np.any(solution.gain != 0.0, axis=3, keepdims=True), solution.gain, -np.inf)
+    either = np.stack([gain[0::2].max(axis=0), gain[1::2].max(axis=0)])
+    return policy_map(replace(solution, gain=either), TOLERANCE_M2_S2)

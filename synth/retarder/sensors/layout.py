@@ -46,9 +46,9 @@ def rule_layout(plant: Plant, sensors: PointSensors, target_speed_m_s: float, sh
     return tuple(places)
 
 
-def first_sensor_m(plant: Plant, sensors: PointSensors, target_speed_m_s: float, share: float = 0.99) -> float:
+def first_sensor_m(plant: Plant, sensors: PointSensors, target_speed_m_s: float) -> float:
     """Place of the first sensor by the rule: its command is in force when the first axle enters."""
-    return rule_layout(plant, sensors, target_speed_m_s, share)[0]
+    return rule_layout(plant, sensors, target_speed_m_s)[0]
 
 
 def equal_layout(first_m: float, exit_m: float, count: int) -> tuple[float, ...]:

@@ -5,18 +5,22 @@ What is chosen, is chosen on passes of its own; what is told of it, is of others
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
-from plant_models import PointSensors
+from plant_models import PointSensors, first_axle
+from plant_models.library import load_wheel_sensor
 from synth.problem.resolution import Resolution
+from synth.retarder.configuration.point_sensors.settings import DEFAULT_WHEEL_SENSOR
+from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.sensors.candidate_places import LayoutCase, candidate_places
 from synth.retarder.sensors.layout import LAST_SECTION_M, equal_layout, first_sensor_m, with_layout
 from synth.retarder.sensors.layout_search import ForEach, LayoutSearch
 from synth.retarder.sensors.layout_tables import ExitErrors, LayoutTable, errors_of, polished, solutions
+from synth.retarder.watcher import Tell
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 
@@ -32,13 +36,6 @@ NEAR_BEST = 1.5
 CHOOSING_PASSES = 2_000
 FIRST_CHOOSING = 1_000_000
 """Number of the first pass to choose on: no figure is told from so many passes."""
-
-Tell = Callable[[str], None]
-"""Is told a sentence when a step has ended."""
-
-
-def silent(_sentence: str) -> None:
-    """Nobody wants to know."""
 
 
 @dataclass(frozen=True)
@@ -122,18 +119,6 @@ class LayoutProblem:
         return tuple(polished(*pair) for pair in made)
 
 
-def plan_layouts(
-    problem: LayoutProblem,
-    counts: Sequence[int],
-    passes: PlanPasses,
-    threads: int = 1,
-    tell: Tell = silent,
-) -> tuple[JudgedLayout, ...]:
-    """The best layout found for each number of deciding sensors; how many `threads` there are changes nothing of it."""
-    with ThreadPoolExecutor(max_workers=threads) as searching, ThreadPoolExecutor(max_workers=threads) as judging:
-        return ended(judging.submit(searched, problem, counts, passes, (searching, judging), tell))
-
-
 def ended(search: Future[dict[int, Future[JudgedLayout]]]) -> tuple[JudgedLayout, ...]:
     """What `searched` has handed out, when all of it is judged, by number."""
     return tuple(each.result() for _, each in sorted(search.result().items()))
@@ -183,3 +168,16 @@ def fewest_for(plans: Sequence[JudgedLayout], rms_m_s: float) -> JudgedLayout | 
     """The plan of the fewest sensors whose rms is at most `rms_m_s` on the passes to choose on; None if none is."""
     enough = [plan for plan in plans if plan.chosen_by_m_s <= rms_m_s]
     return min(enough, key=lambda plan: plan.deciding, default=None)
+
+
+def layout_problem(config: ResolvedConfig) -> tuple[LayoutProblem, tuple[str, ...]]:
+    """The problem of all cut classes and targets, and the labels of the classes; [sensors] path_m is not read."""
+    cases = tuple(LayoutCase(plant, config.aims_of(label)) for label, plant in config.plants())
+    return LayoutProblem(cases, sensors_of(config), config.resolution), tuple(label for label, _ in config.plants())
+
+
+def sensors_of(config: ResolvedConfig) -> PointSensors:
+    """The sensors of [sensors], or the usual ones that decide on the first axle; their places mean nothing."""
+    if config.sensors is not None:
+        return config.sensors.sensors
+    return load_wheel_sensor(DEFAULT_WHEEL_SENSOR).at((0.0,), first_axle)

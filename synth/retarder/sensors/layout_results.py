@@ -10,79 +10,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.frame.interval import Interval
-from synth.retarder.case_result import PolicyMap
-from synth.retarder.configuration.config_source import ConfigSource
-from synth.retarder.sensors.anywhere import policy_anywhere
+from synth.retarder.configuration.config_file import ConfigSource
+from synth.retarder.policy_map import PolicyMap
+from synth.retarder.sensors.candidate_places import policy_anywhere
 from synth.retarder.sensors.layout import rule_layout
 from synth.retarder.sensors.layout_plan import (
     JudgedLayout,
     LayoutProblem,
     PlanPasses,
-    Tell,
     ended,
     fewest_for,
     plan_passes,
     searched,
-    silent,
     steps_of_plan,
 )
 from synth.retarder.sensors.layout_tables import ExitErrors, radar_errors
+from synth.retarder.watcher import Tell, silent
 
 NEAR_RADAR = 1.1
 """Times the radar's rms is wanted where no rms is asked for."""
 
 
 @dataclass(frozen=True)
-class LayoutResults:
-    """Plans by number of sensors, rising; the layout by the rule; the radar's errors on the same final passes.
-
-    `source`: the configuration that asked. `labels`: of the cases. `anywhere`: what a regulator would command that
-    could decide anywhere, in the first case for its first aim. `asked_rms_m_s`: None where 1.1 times the radar's is
-    wanted. `chosen`: the plan of the fewest sensors that reach what is wanted on the passes to choose on, None if none
-    does.
-    """
-
-    source: ConfigSource
-    problem: LayoutProblem
-    labels: tuple[str, ...]
-    plans: tuple[JudgedLayout, ...]
-    rule: JudgedLayout
-    radar: ExitErrors
-    anywhere: PolicyMap
-    asked_rms_m_s: float | None
-    chosen: JudgedLayout | None
-
-    @property
-    def shown(self) -> JudgedLayout:
-        """The plan that is drawn: the chosen one, else the one of most sensors."""
-        return self.chosen or self.plans[-1]
-
-    @property
-    def wanted_rms_m_s(self) -> float:
-        """As asked for, or as the radar has it on the final passes."""
-        return NEAR_RADAR * self.radar.rms.value if self.asked_rms_m_s is None else self.asked_rms_m_s
-
-    def is_reached(self, layout: JudgedLayout) -> bool | None:
-        """Whether a layout has what is wanted on the final passes; None where its 95 % interval holds the limit.
-
-        The radar's rms is compared pass by pass.
-        """
-        told: Interval = layout.errors.rms
-        limit = self.wanted_rms_m_s
-        if self.asked_rms_m_s is None:
-            told, limit = layout.errors.over(self.radar), NEAR_RADAR
-        return True if told.high95 <= limit else False if told.low95 > limit else None
-
-    def places_of(self, layout: JudgedLayout) -> tuple[float, ...]:
-        """The places of all sensors of a layout, with the one behind the exit of the longest cut."""
-        return self.problem.placed(layout.deciding_m).path_m
-
-
-@dataclass(frozen=True)
 class AskedLayouts:
     """A problem of all cut classes and targets, the labels of the classes, and what is asked.
 
-    `source`: the configuration; `sensors`: numbers of them, the one behind the exit counted.
+    `source`: the configuration; `sensors`: numbers of them, the one behind the exit counted; `rms_m_s`: None where 1.1
+    times the radar's is wanted.
     """
 
     source: ConfigSource
@@ -97,6 +51,47 @@ class AskedLayouts:
     def steps(self) -> int:
         """How many steps `layout_results` tells of: those of the plan, the rule, the radar's classes."""
         return steps_of_plan([number - 1 for number in self.sensors]) + 1 + len(self.labels)
+
+
+@dataclass(frozen=True)
+class LayoutResults:
+    """Plans by number of sensors, rising; the layout by the rule; the radar's errors on the same final passes.
+
+    `anywhere`: what a regulator would command that could decide anywhere, in the first case for its first aim.
+    `chosen`: the plan of the fewest sensors that reach what is wanted on the passes to choose on, None if none does.
+    """
+
+    asked: AskedLayouts
+    plans: tuple[JudgedLayout, ...]
+    rule: JudgedLayout
+    radar: ExitErrors
+    anywhere: PolicyMap
+    chosen: JudgedLayout | None
+
+    @property
+    def shown(self) -> JudgedLayout:
+        """The plan that is drawn: the chosen one, else the one of most sensors."""
+        return self.chosen or self.plans[-1]
+
+    @property
+    def wanted_rms_m_s(self) -> float:
+        """As asked for, or as the radar has it on the final passes."""
+        return NEAR_RADAR * self.radar.rms.value if self.asked.rms_m_s is None else self.asked.rms_m_s
+
+    def is_reached(self, layout: JudgedLayout) -> bool | None:
+        """Whether a layout has what is wanted on the final passes; None where its 95 % interval holds the limit.
+
+        The radar's rms is compared pass by pass.
+        """
+        told: Interval = layout.errors.rms
+        limit = self.wanted_rms_m_s
+        if self.asked.rms_m_s is None:
+            told, limit = layout.errors.over(self.radar), NEAR_RADAR
+        return True if told.high95 <= limit else False if told.low95 > limit else None
+
+    def places_of(self, layout: JudgedLayout) -> tuple[float, ...]:
+        """The places of all sensors of a layout, with the one behind the exit of the longest cut."""
+        return self.asked.problem.placed(layout.deciding_m).path_m
 
 
 def layout_results(asked: AskedLayouts, threads: int, tell: Tell = silent) -> LayoutResults:
@@ -115,9 +110,7 @@ def layout_results(asked: AskedLayouts, threads: int, tell: Tell = silent) -> La
         choosing, final = radar_on([each.result() for each in radar], passes)
         wanted = NEAR_RADAR * choosing.rms.value if asked.rms_m_s is None else asked.rms_m_s
         chosen = fewest_for(plans, wanted)
-        return LayoutResults(
-            asked.source, problem, asked.labels, plans, rule.result(), final, anywhere.result(), asked.rms_m_s, chosen
-        )
+        return LayoutResults(asked, plans, rule.result(), final, anywhere.result(), chosen)
 
 
 def judged_rule(problem: LayoutProblem, passes: PlanPasses, tell: Tell) -> JudgedLayout:

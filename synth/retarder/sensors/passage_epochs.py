@@ -8,7 +8,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from plant_models import Plant
-from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
 from synth.retarder.configuration.point_sensors.resolved_sensors import ResolvedSensors
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -36,5 +35,4 @@ class PassageEpochs:
 
         config = ground.config
         setup = sensor_class(label, plant, self.sensors, config.resolution, ground.passes, ground.origin)
-        aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
-        return [partial(sensor_case, setup, aim, ground.store) for aim in aims]
+        return [partial(sensor_case, setup, aim, ground.store) for aim in config.aims_of(label)]

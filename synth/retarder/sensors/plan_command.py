@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
+from synth.frame.command import Asked, Command, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.frame.printed_numbers import counted
-from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.config_source import source_of_text
+from synth.retarder.configuration.config_file import parse_config, source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.sensors.plan_options import PlanOptions
@@ -37,7 +36,7 @@ class AskedPlan:
 
 def resolve(asked: Asked[ResolvedConfig, PlanOptions]) -> AskedPlan:
     """The problem of a configuration."""
-    from synth.retarder.sensors.layout_order import layout_problem
+    from synth.retarder.sensors.layout_plan import layout_problem
     from synth.retarder.sensors.layout_results import AskedLayouts
 
     config, options = asked.settings, asked.options
@@ -46,16 +45,6 @@ def resolve(asked: Asked[ResolvedConfig, PlanOptions]) -> AskedPlan:
     seed = config.validation.seed
     layouts = AskedLayouts(source, problem, labels, options.sensors, options.rms_m_s, seed, options.passes)
     return AskedPlan(config, layouts, options.workers)
-
-
-def head(asked: AskedPlan) -> Head:
-    """What is said of the configuration."""
-    return head_of(asked.config)
-
-
-def steps(asked: AskedPlan) -> Steps:
-    """Each number of sensors, each layout, and what stands beside them."""
-    return Steps(asked.layouts.steps, "planning", "steps")
 
 
 def compute(asked: AskedPlan, work: Work) -> LayoutResults:
@@ -98,8 +87,8 @@ COMMAND = Command(
     read=parse_config,
     options=PlanOptions,
     resolve=resolve,
-    head=head,
-    steps=steps,
+    head=lambda asked: head_of(asked.config),
+    steps=lambda asked: Steps(asked.layouts.steps, "planning", "steps"),
     compute=compute,
     show=show,
     limits=limits,

@@ -71,7 +71,7 @@ def tiles(found: LayoutResults) -> Tiles:
 
 def how(found: LayoutResults) -> Sentence:
     """How the figures came about."""
-    axles = "every_axle" if found.problem.sensors.axles is every_axle else "first_axle"
+    axles = "every_axle" if found.asked.problem.sensors.axles is every_axle else "first_axle"
     return Sentence(
         f"Root of the mean square error at the exit over all classes and targets, simulated: {found.radar.rms.n} "
         "passes of every table, the same for all layouts, with 95 % intervals. Places and number were chosen on "
@@ -118,7 +118,7 @@ def case_rows(found: LayoutResults) -> Iterator[Row]:
 
 def rms_rows(found: LayoutResults, head: Row, rms_m_s: Sequence[Interval]) -> Iterator[Row]:
     """A row a case, in the order of the problem."""
-    cases = zip(found.labels, found.problem.cases, strict=True)
+    cases = zip(found.asked.labels, found.asked.problem.cases, strict=True)
     each = [(label, aim.target_speed_m_s) for label, case in cases for aim in case.aims]
     for (label, target_m_s), value in zip(each, rms_m_s, strict=True):
         yield {**head, "case": label, "target_m_s": target_m_s, "rms_m_s": value}
@@ -136,8 +136,8 @@ def links(found: LayoutResults) -> Iterator[File]:
             f"{number} sensors, {name}, of retarder-synth sensors: rms {told.value:.4f} m/s, 95 % interval "
             f"{told.low95:.4f} to {told.high95:.4f}"
         )
-        sensors = {**found.source.tree.get("sensors", {}), "path_m": list(found.places_of(layout))}
-        source = replace(found.source, place=place, tree={**found.source.tree, "sensors": sensors})
+        sensors = {**found.asked.source.tree.get("sensors", {}), "path_m": list(found.places_of(layout))}
+        source = replace(found.asked.source, place=place, tree={**found.asked.source.tree, "sensors": sensors})
         for path, content in source.files(file).items():
             files[path] = content, f"The configuration with {number} sensors" if layout is found.shown else ""
     for path, (content, title) in files.items():

@@ -14,9 +14,8 @@ from synth.retarder.class_setup import Origin
 from synth.retarder.configuration.point_sensors.resolved_sensors import ResolvedSensors
 from synth.retarder.sensors.tuned_passages import PassageChains, passage_chains
 from synth.simulation.exit_range import exit_range
-from synth.simulation.filled_trace import filled_trace
 from synth.simulation.passage_controller import PassageController, of_speeds
-from synth.simulation.passage_loop import PassageLoop, close_passage_loop
+from synth.simulation.passage_loop import PassageLoop, close_passage_loop, filled_trace
 from synth.simulation.passage_sample import PassageSample, PassageTrace
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses

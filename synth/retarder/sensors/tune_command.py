@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from synth.frame.command import Asked, Command, Head, Work
+from synth.frame.command import Asked, Command, Work
 from synth.frame.exhibits import Chapter, Sentence
 from synth.frame.input_error import InputError
 from synth.retarder.asked_tune import AskedTune, asked_tune, drawing, limits, steps, tuned
@@ -50,24 +50,11 @@ def resolve(asked: Asked[ResolvedConfig, TuneOptions]) -> AskedTune[SensorCase, 
     return asked_tune(config, place, PassageEpochs(config.sensors), asked.options)
 
 
-def head(asked: AskedTune[SensorCase, PassageTable]) -> Head:
-    """What is said of the configuration."""
-    return head_of(asked.config)
-
-
 def compute(asked: AskedTune[SensorCase, PassageTable], work: Work) -> FoundBook[SensorCase]:
     """The book, and its tables as C99 and as Structured Text."""
     from synth.retarder.tune import no_notice
 
-    return tuned(asked, work, no_notice, found_book)
-
-
-def found_book(book: Book[SensorCase]) -> FoundBook[SensorCase]:
-    """The book with its verdicts and files."""
-    from synth.retarder.acceptance import judged
-    from synth.retarder.found_book import FoundBook
-
-    return FoundBook(book, judged(book.cases, book.config.acceptance), *book_files(book))
+    return tuned(asked, work, no_notice, book_files)
 
 
 def book_files(book: Book[SensorCase]) -> tuple[tuple[File, ...], str]:
@@ -110,7 +97,7 @@ COMMAND = Command(
     read=parse_config,
     options=TuneOptions,
     resolve=resolve,
-    head=head,
+    head=lambda asked: head_of(asked.config),
     steps=steps,
     compute=compute,
     show=show,

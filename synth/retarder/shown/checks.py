@@ -64,7 +64,7 @@ DESIGNS: Final = (
 
 def checks(cases: Sequence[CaseResult]) -> Iterator[Exhibit]:
     """Hunting by case, the regulator of the stage pressure, how the lines were found, and all doubts."""
-    rows = [hunting_row(case, each) for case in cases for each in hunting_report(case.plant, case.study.table_lines)]
+    rows = [hunting_row(case, each) for case in cases for each in hunting_report(case.plant, case.table_lines)]
     yield Sentence(LEAD if rows else "No limit cycle fits into the path.")
     if rows:
         yield Table("hunting", "Predicted limit cycles", HUNTING, rows)
@@ -98,7 +98,7 @@ def lines_row(case: CaseResult) -> Row:
     return {
         **design_row(case),
         **vars(case.grid),
-        "ties": case.study.policy_map.ties,
+        "ties": case.ties,
         **({} if case.estimate is None else estimate_row(case.estimate)),
     }
 

@@ -13,13 +13,14 @@ from synth.frame.exhibits import Chart, Exhibit, Sentence
 from synth.frame.printed_numbers import of_ten_thousand, speed
 from synth.problem.aim import OVERSPEED_M_S
 from synth.retarder.case_names import file_stem
-from synth.retarder.case_result import CaseResult
 from synth.retarder.exit_bins import prediction_origin
-from synth.retarder.pareto.pareto_front import ParetoFront
 from synth.retarder.shown_case import ShownCase, shown_case
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from synth.retarder.case_result import CaseResult
+    from synth.retarder.pareto.pareto_front import ParetoFront
 
 
 RUN: Final = (

@@ -14,11 +14,11 @@ from synth.retarder.case_result import CaseResult, fronts_of
 from synth.retarder.comparison.measured import Measured
 from synth.retarder.exit_figures import CASE, DETAILS, EFFORT, TOLD, told
 from synth.retarder.found_book import FoundBook
-from synth.retarder.off_nominal.worst import worst_of
 from synth.retarder.pareto.pareto_front import told as nearly_free
 from synth.retarder.permissions.refusal import tellable
 from synth.retarder.shown.cases import KEYS, PROMISE, UNAVOIDABLE, VERDICT, case_row, cases_table, passes_told
 from synth.retarder.shown.first_screen import tiles, to_do
+from synth.retarder.shown.off_nominal import worst_of
 from synth.retarder.shown.pictures import accuracy_charts
 
 ENTRY: Final = (

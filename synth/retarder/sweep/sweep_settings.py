@@ -10,6 +10,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from plant_models.errors import require
 from synth.frame.settings.section import Section, choice, many, optional, setting
+from synth.frame.settings.template import template
 from synth.retarder.configuration.settings import Settings
 
 MOST_VALUES = 1000
@@ -177,3 +178,8 @@ class SweepTable(Section):
 
 class SweepFileSettings(Settings, SweepTable):
     """The whole file of a sweep."""
+
+
+def default_sweep_toml() -> str:
+    """The defaults as TOML; it reads back to the same sweep."""
+    return template(SweepTable(), "Sweep over classes, targets and conditions", "sweep run")

@@ -21,12 +21,12 @@ from synth.retarder.rounded_table import predict
 from synth.retarder.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
 from synth.retarder.sweep.refinement import Bench, Gap, refined
 from synth.retarder.sweep.unit_result import Row, UnitResult
-from synth.retarder.tuned_table import solutions, tuned_table, validated_table
+from synth.retarder.tuned_table import read_back, solutions, tuned_table, validated_table
 from synth.simulation.exit_statistics import overspeed_of
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
 from synth.solver.one_blas_thread import one_blas_thread
-from tuning_tables import ControllerTable, Stage, from_json, to_json
+from tuning_tables import ControllerTable, Stage
 from tuning_tables.active_table import between
 
 
@@ -116,7 +116,7 @@ def between_rms_m_s(check: Chain, slower: ControllerTable, faster: ControllerTab
 
 def row_of(config: ResolvedConfig, setup: ClassSetup, table: ControllerTable) -> Row:
     """The table as a controller reads it, simulated on the common passes, and judged."""
-    found, limits = validated_table(setup, table, as_read), config.acceptance
+    found, limits = validated_table(setup, table, read_back), config.acceptance
     # In single precision, as a tune keeps them: both count the same passes.
     speeds = found.sample.exit_speed_m_s.astype(np.float32).astype(np.float64)
     counted = replace(found.sample, exit_speed_m_s=speeds)
@@ -127,8 +127,3 @@ def row_of(config: ResolvedConfig, setup: ClassSetup, table: ControllerTable) ->
         brake_power=found.brake_power,
         judgement=judgement(found.statistics, over, table.predicted, limits),
     )
-
-
-def as_read(table: ControllerTable) -> ControllerTable:
-    """The table as a controller will load it; it is kept in the unit's file."""
-    return from_json(to_json(table))

@@ -15,7 +15,7 @@ from synth.frame.processors import available
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY
-from synth.retarder.tables_configuration import configuration_for, given_config, made_elsewhere
+from synth.retarder.tables_configuration import configuration_of, given_config, made_elsewhere
 from synth.retarder.validation.options import ValidateOptions
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def resolve(asked: Asked[ResolvedConfig | None, ValidateOptions]) -> AskedPasses
     tables = found.of_stages
     if not tables:
         raise InputError(f"{path}: its tables are aim tables, which regulate nothing; 'aim' simulates what it makes")
-    config, source = (asked.settings, asked.place) if asked.settings else configuration_for(None, path, tables)
+    config, source = configuration_of(asked, tables)
     if found.passages and options.log is not None:
         raise InputError(f"{path}: its tables are for point sensors, whose passes are not logged; leave out --log")
     if options.log is None and options.model_fields_set & {"log_passes", "gauge_std_kpa"}:
@@ -104,17 +104,11 @@ def steps(asked: AskedPasses) -> Steps:
 def compute(asked: AskedPasses, work: Work) -> FoundPasses:
     """The passes of all tables, and the log."""
     from synth.kernels.cache import guarded
-
-    return guarded(rehearsed, asked, work)
-
-
-def rehearsed(asked: AskedPasses, work: Work) -> FoundPasses:
-    """The same, where kernels are loaded."""
     from synth.retarder.validation.revalidation import revalidated
 
     rehearsal = asked.rehearsal
-    found = revalidated(asked.tables, rehearsal, asked.infeasible, work.progress.done)
-    log = None if asked.log is None else log_file(rehearsal, asked.log)
+    found = guarded(revalidated, asked.tables, rehearsal, asked.infeasible, work.progress.done)
+    log = None if asked.log is None else guarded(log_file, rehearsal, asked.log)
     logged = 0 if asked.log is None else asked.log.passes
     return FoundPasses(rehearsal.config.title, rehearsal.seed, tuple(found), log, logged)
 
@@ -122,7 +116,7 @@ def rehearsed(asked: AskedPasses, work: Work) -> FoundPasses:
 def log_file(rehearsal: Rehearsal, log: AskedLog) -> File:
     """Passes of the tables, simulated once more, as cuts come, as a controller logs them."""
     from plant_models.pressure_gauge import PressureGauge
-    from synth.retarder.validation.rehearsed_log import rehearsed_log
+    from synth.retarder.validation.revalidation import rehearsed_log
     from tuning_tables.pass_log.log_files import write_log
 
     gauge = None if log.gauge_std_kpa is None else PressureGauge(log.gauge_std_kpa)

@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path, PurePath
+from pathlib import PurePath
 from typing import Final
 
 from pydantic import field_validator
 
 from plant_models.pressure_gauge import USUAL_NOISE_KPA
-from synth.frame.settings.options import BY_PLACE, NEEDED, Options, number_option, word_option
+from synth.frame.settings.options import number_option, word_option
+from synth.retarder.tables_options import TablesOptions
 
 LARGEST_STD_KPA: Final = 100.0
 LOG_FORMS: Final = (".csv", ".h5")
 
 
-class ValidateOptions(Options):
+class ValidateOptions(TablesOptions):
     """Options of the command line. `gauge_std_kpa` None: there is no gauge."""
 
-    source: Path = word_option(BY_PLACE, "TABLE|BOOK|DIR", NEEDED, "A table, a book, or a folder of tables.")
-    config: Path | None = word_option(
-        "--config", "C", None, "Configuration with the plant; that of the tables, or built-in, unless given."
-    )
     passes: int | None = number_option(
         "--passes", "N", None, 1000, 100_000_000, "Passes of each table; as configured unless given."
     )

@@ -2,30 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
+from plant_models.pressure_gauge import PressureGauge
 from synth.retarder.comparison.measured import prediction_ratio_of
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.judgement import Judgement, judgement
 from synth.retarder.sensors.sensor_class import full_brake as full_brake_at_passages
-from synth.retarder.served_class import PassageClass, ServedClass, served_class
+from synth.retarder.served_class import PassageClass, ServedClass, plant_for, served_class
+from synth.retarder.watcher import Tell, silent
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.controllers import Controller, full_brake
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics, overspeed_of
+from synth.simulation.logged_passes import LoggedClass, mixed_log
 from synth.simulation.passage_controller import PassageController, of_table
 from synth.simulation.passage_loop import close_passage_loop, simulate_passages
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import Interval
+from tuning_tables import ControllerTable
+from tuning_tables.pass_log.pass_log import PassLog
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.table_kinds import StageTable
-
-Tell = Callable[[str], None]
-
-
-def no_notice(sentence: str) -> None:
-    """Nobody wants to know."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ class Rehearsal:
 
 
 def revalidated(
-    tables: Sequence[StageTable], rehearsal: Rehearsal, infeasible: Sequence[bool], tell: Tell = no_notice
+    tables: Sequence[StageTable], rehearsal: Rehearsal, infeasible: Sequence[bool], tell: Tell = silent
 ) -> list[Revalidation]:
     """Simulate each table on the cut class that it is for; `InputError` if there is none for one of them.
 
@@ -137,3 +136,20 @@ def confirmed(table: StageTable, found: ExitStatistics) -> bool | None:
         return None
     low, high = table.validated.rms_ci95_m_s
     return low <= found.rms_ci95_m_s[1] and found.rms_ci95_m_s[0] <= high
+
+
+def rehearsed_log(
+    tables: Sequence[ControllerTable], rehearsal: Rehearsal, passes: int, gauge: PressureGauge | None
+) -> PassLog:
+    """`passes` passes of each table on the cut class that it is for, as cuts come, in a shuffled order.
+
+    Plants and seed are those of `rehearsal`; but its passes are stratified, and these are drawn as they come.
+    `gauge`: what is on the drive, None for nothing. `InputError` if there is no class for one of the tables.
+    """
+    classes = [
+        LoggedClass(
+            plant_for(table, rehearsal.config, rehearsal.source)[1], TableController(table), table.target_speed_m_s
+        )
+        for table in tables
+    ]
+    return mixed_log(classes, [passes] * len(classes), rehearsal.seed, gauge)

@@ -79,17 +79,6 @@ class PolynomialSurfaces:
             raise ValueError(f"surfaces of degrees {self.degrees} have no slope that is the same at every path")
         return self.coefficients[:, :, -1] / PRESSURE_UNIT_KPA
 
-    def powers(self) -> NDArray[np.float64]:
-        """Coefficients (K + 1, 2, powers of x, powers of u), ascending."""
-        found = np.zeros((*self.has_line.shape, len(self.degrees), max(self.degrees) + 1))
-        first = 0
-        for power, degree in enumerate(self.degrees):
-            for stage, side in self.lines:
-                series = np.polynomial.legendre.leg2poly(self.coefficients[stage, side, first : first + degree + 1])
-                found[stage, side, power, : len(series)] = series
-            first += degree + 1
-        return found
-
 
 def surfaces_of_lines(
     lines: PolynomialLines, stage_kpa: NDArray[np.float64], degrees: tuple[int, ...] = CUBIC_AND_SLOPE

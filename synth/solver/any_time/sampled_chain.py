@@ -15,11 +15,11 @@ from synth.kernels.sweep.chain_arrays import PathNoise
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.any_time.drive_modes import DriveModes, drive_modes
 from synth.solver.any_time.estimate_error import EstimateError
-from synth.solver.chain.entry import entry_distribution
 from synth.solver.chain.grid import Grid, make_grid
 from synth.solver.chain.path_noise import correlated_noise
 from synth.solver.chain.scenarios import Scenarios, check_scenarios, persistent_scenarios
 from synth.solver.chain.speed_measurement import SpeedMeasurement, quantised_measurement, smooth_measurement
+from synth.solver.chain.time_samples import entry_distribution
 
 PRESSURE_STEP_KPA = 30.0
 """Largest distance of pressures at which the drive is valued; between them a cubic."""

@@ -17,7 +17,6 @@ from synth.kernels.any_time.sampled_arrays import Costs, Lines, Met, SampledArra
 from synth.kernels.any_time.value import value
 from synth.problem.aim import Aim
 from synth.solver.any_time.sampled_chain import SampledChain, sampled_arrays
-from synth.solver.any_time.working_memory import WorkingMemory
 from synth.solver.exit_density import ExitDensity
 
 Result = TypeVar("Result")
@@ -153,3 +152,18 @@ class SurfaceEvaluation:
         """What both passes take of the chain, and of scenario `i`."""
         c = self.chain
         return sampled_arrays(c), c.scenarios.factor[i] * (1.0 + c.noise.levels), float(c.scenarios.extra_m_s2[i])
+
+
+class WorkingMemory:
+    """Memory of one pass at a time.
+
+    `heading` (W, L, ring, E') of ways and `here` (M, L, E') of modes: zeros between passes. `records`: what a forward
+    pass keeps for the backward one; a longer array takes its place where it does not suffice.
+    """
+
+    def __init__(self, chain: SampledChain) -> None:
+        levels, row = len(chain.noise.levels), len(chain.grid.speed_m_s) + ROOM
+        ring = 1 + max(len(chain.first_energy), len(chain.entry))
+        self.heading = np.zeros((len(chain.periods.target), levels, ring, row))
+        self.here = np.zeros((len(chain.modes.stage), levels, row))
+        self.records = np.empty(0)

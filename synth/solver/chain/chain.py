@@ -114,11 +114,6 @@ def chain_of(
     )
 
 
-def with_known_friction(chain: Chain, factor: float) -> Chain:
-    """The same plant whose ξ_cut is known to be `factor` (friction-known bound)."""
-    return replace(chain, scenarios=Scenarios(np.array([float(factor)]), np.zeros(1), np.ones(1)))
-
-
 def noise_on_landings(path_noise: PathNoise, landings: Landings, grid: Grid) -> TransientNoise:
     """The mean of η over every change of stage, up to the longest path that one takes."""
     longest = math.ceil(landings.travel_m.max() / grid.path_step_m) + 2

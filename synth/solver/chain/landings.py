@@ -30,7 +30,8 @@ class Landings:
     """End of every change of stage that may be commanded, from every decision, for friction `factors` (F,).
 
     `ends` (R, ·, F, 2, E'), see `kernels.landing.land`, of which `points` E are energies of the grid; `change_chain`
-    (C, H): index of the transient of a command in a mode, −1 if none; `end_mode` of the transients.
+    (C, H): index of the transient of a command in a mode, −1 if none; the first two commands go one stage down and one
+    up. `end_mode` of the transients.
     """
 
     factors: NDArray[np.float64]
@@ -40,18 +41,6 @@ class Landings:
     overpressure_kpa: NDArray[np.float64]
     samples: NDArray[np.int64]
     points: int
-
-    @property
-    def lower_chain(self) -> NDArray[np.int64]:
-        """The transients one stage down, (H,)."""
-        chains: NDArray[np.int64] = self.change_chain[0]
-        return chains
-
-    @property
-    def upper_chain(self) -> NDArray[np.int64]:
-        """The transients one stage up, (H,)."""
-        chains: NDArray[np.int64] = self.change_chain[1]
-        return chains
 
     @property
     def travel_m(self) -> NDArray[np.float64]:

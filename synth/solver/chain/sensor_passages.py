@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Approach, Plant, PlantError, PointSensors
+from plant_models import Plant, PlantError, PointSensors
 from plant_models.point_sensors import Passage, deciding_passages
 from synth.problem.resolution import Resolution
 from synth.solver.chain.decisions import Decisions
@@ -124,8 +124,8 @@ def nodes_of(place_m: NDArray[np.float64], step_m: float, steps: int) -> NDArray
     return np.minimum(np.maximum.accumulate(node - rank), steps - len(node)) + rank
 
 
-def with_point_sensors(plant: Plant, sensors: PointSensors, entrance_stage: int | None = None) -> Plant:
-    """`plant` whose regulator acts from the first sensor on; `entrance_stage`: highest stage before the entrance."""
+def with_point_sensors(plant: Plant, sensors: PointSensors) -> Plant:
+    """`plant` whose regulator acts from the first sensor on."""
     first = deciding_passages(sensors, plant.cut, plant.exit_m)
     ahead_m = -first[0].path_m if first else 0.0
     if not first or ahead_m < 0.0:
@@ -133,5 +133,4 @@ def with_point_sensors(plant: Plant, sensors: PointSensors, entrance_stage: int 
             f"sensors: path_m begins at {sensors.path_m[0]:g}; the first sensor must stand at the entrance or ahead of "
             "it, at 0 or less"
         )
-    stage = plant.approach.entrance_stage if entrance_stage is None else entrance_stage
-    return replace(plant, approach=Approach(ahead_m, stage, plant.approach.initial_stage))
+    return replace(plant, approach=replace(plant.approach, length_m=ahead_m))

@@ -7,8 +7,7 @@ import pytest
 
 from plant_models import Plant
 from plant_models.valve_drive import drive_on, wait_after_command
-from synth.solver.any_time.drive_modes import COMMANDS, drive_modes
-from synth.solver.any_time.pressure_grid import pressure_grid
+from synth.solver.any_time.drive_modes import COMMANDS, drive_modes, pressure_grid
 
 
 def test_every_period_is_that_of_the_drive(plant: Plant) -> None:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from plant_models import Plant
 from synth.simulation.closed_loop import close_loop
@@ -13,6 +14,18 @@ from synth.simulation.random_passes import random_passes
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.switching_lines import SwitchingLines
 from tests.synth.any_time.tabled import tabled
+
+
+def powers_of(surfaces: PolynomialSurfaces) -> NDArray[np.float64]:
+    """Coefficients (K + 1, 2, powers of x, powers of u), ascending."""
+    found = np.zeros((*surfaces.has_line.shape, len(surfaces.degrees), max(surfaces.degrees) + 1))
+    first = 0
+    for power, degree in enumerate(surfaces.degrees):
+        for stage, side in surfaces.lines:
+            series = np.polynomial.legendre.leg2poly(surfaces.coefficients[stage, side, first : first + degree + 1])
+            found[stage, side, power, : len(series)] = series
+        first += degree + 1
+    return found
 
 
 def falling_lines(plant: Plant, nodes: int) -> SwitchingLines:
@@ -38,7 +51,7 @@ def test_the_polynomial_rule_commands_what_its_polynomial_says(plant: Plant) -> 
     series[:, :, 1] = -0.5
     has_line = np.array([[False, True], [True, True], [True, False]])
     surfaces = polynomials(plant, series, has_line, (3, 0))
-    coefficients, controller = surfaces.powers(), tabled(plant, surfaces)
+    coefficients, controller = powers_of(surfaces), tabled(plant, surfaces)
     loop, stages = close_loop(plant, plant.position.top_stage + 1), plant.position.stage_pressures_kpa
     commands = in_transient = 0
     for i in range(20):

@@ -16,8 +16,7 @@ from synth.logs.estimate import Estimate
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.identifiability import findings_of
 from synth.logs.identified_config import identified
-from synth.retarder.configuration.config_file import load_config, parse_config
-from synth.retarder.configuration.config_source import ConfigSource, config_source
+from synth.retarder.configuration.config_file import ConfigSource, config_source, load_config, parse_config
 
 OWN = """library = ["types/"]
 [position]

@@ -10,26 +10,24 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, PointSensors
+from scripts.studies.point_sensors.layouts import plan_layouts
 from synth.frame.exhibits import File, Table
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
-from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.config_source import source_of_text
-from synth.retarder.configuration.point_sensors.template import default_sensors_toml
-from synth.retarder.sensors.anywhere import policy_anywhere
-from synth.retarder.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places
+from synth.retarder.configuration.config_file import parse_config, source_of_text
+from synth.retarder.configuration.config_template import default_sensors_toml
+from synth.retarder.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places, policy_anywhere
 from synth.retarder.sensors.layout import equal_layout, fastest_m_s, first_sensor_m, longest_change_s, rule_layout
 from synth.retarder.sensors.layout_plan import (
     LayoutProblem,
     fewest_for,
-    plan_layouts,
     plan_passes,
 )
 from synth.retarder.sensors.layout_results import AskedLayouts, layout_results
 from synth.retarder.sensors.layout_search import LayoutSearch
 from synth.retarder.sensors.plan_command import COMMAND
-from synth.retarder.sensors.plan_map import plan_map
+from synth.retarder.sensors.plan_pictures import plan_map
 from synth.retarder.sensors.tuned_passages import passage_chains
 from synth.solver.backward_induction import solve
 from synth.solver.chain.sensor_passages import with_point_sensors

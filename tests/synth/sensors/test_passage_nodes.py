@@ -13,7 +13,7 @@ from plant_models import PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles, Passage, deciding_passages
 from synth.problem.resolution import Resolution
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.point_sensors.template import default_sensors_toml
+from synth.retarder.configuration.config_template import default_sensors_toml
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.chain.sensor_passages import SensorPassages, nodes_of, with_point_sensors
 from synth.solver.passage_speeds import SMALLEST_GAP_M_S, PassageSpeeds, ordered

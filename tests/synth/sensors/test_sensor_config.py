@@ -10,7 +10,7 @@ import pytest
 from plant_models import every_axle
 from synth.frame.input_error import InputError
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.point_sensors.template import (
+from synth.retarder.configuration.config_template import (
     DUMPER_POSITION,
     default_sensors_toml,
     filled_sensors_toml,

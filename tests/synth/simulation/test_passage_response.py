@@ -11,14 +11,17 @@ import pytest
 from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
 from synth.simulation.control_system import nominal_loop
-from synth.simulation.filled_trace import filled_trace
 from synth.simulation.impulse_train import resting_train
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_plant, one_pass
-from synth.simulation.passage_control_system import passage_regulator_start, passage_regulator_system
-from synth.simulation.passage_loop import PassageLoop, close_passage_loop
-from synth.simulation.passage_response import passage_response, rolled
+from synth.simulation.nominal_response import SAME_PASSAGE_S, commands_of, response_difference
+from synth.simulation.passage_loop import PassageLoop, close_passage_loop, filled_trace
+from synth.simulation.passage_response import (
+    passage_regulator_start,
+    passage_regulator_system,
+    passage_response,
+    rolled,
+)
 from synth.simulation.passage_sample import PassageTrace
-from synth.simulation.response_difference import SAME_PASSAGE_S, response_difference
 from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule, exact, holding_rule, with_approach
 
 control = pytest.importorskip("control")
@@ -67,8 +70,8 @@ def test_passes_are_the_simulators(plant: Plant, axles: Axles, limits: tuple[flo
         assert found.exit_speed_m_s == pytest.approx(trace.exit_speed_m_s, abs=2e-5)
         assert found.time_s[-1] == pytest.approx(trace.time_s[-1], abs=1e-4)
         told = [t for t, k in zip(trace.readings.time_s, np.diff(trace.readings.stage, prepend=0), strict=True) if k]
-        assert [t for t, _ in found.commands] == pytest.approx(told, abs=1e-4)
-        commands += len(found.commands)
+        assert [t for t, _ in commands_of(found)] == pytest.approx(told, abs=1e-4)
+        commands += len(commands_of(found))
     assert commands >= 7  # the comparison is about something
 
 
@@ -84,7 +87,7 @@ def test_without_commands_the_exit_is_that_of_energy(plant: Plant) -> None:
     found = passage_response(loop, holding_rule(plant, sensors), 5.5)
     gravity = 9.81 * 52.0 / (52.0 + 0.42 * 4) * 1e-3 * (8.0 - plant.resistance.mean_n_per_kn)
     assert found.exit_speed_m_s == pytest.approx(math.sqrt(5.5**2 + 2.0 * gravity * plant.exit_m), abs=1e-7)
-    assert found.commands == ()
+    assert commands_of(found) == ()
     for place in sensors.path_m[1:]:
         for coil in (place - 0.1, place + 0.1):
             assert np.abs(found.path_m - coil).min() < 1e-9

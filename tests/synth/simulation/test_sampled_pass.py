@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from synth.retarder.bench.table_shadow import TableShadow
+from synth.retarder.bench.run import TableShadow
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import random_passes
 from synth.simulation.sampled_pass import PassEnd, SampledPass, sampled_pass

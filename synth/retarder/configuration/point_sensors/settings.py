@@ -12,7 +12,7 @@ from pydantic import Field
 from plant_models.library import WHEEL_SENSORS
 from synth.frame.settings.section import Section, choice, of_library
 from synth.frame.settings.value_forms import Numbers
-from synth.retarder.configuration.named_type import named_type
+from synth.retarder.configuration.top_keys import named_type
 
 DEFAULT_WHEEL_SENSOR: Final = "ds-2"
 

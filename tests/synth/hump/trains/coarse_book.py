@@ -9,7 +9,6 @@ import numpy as np
 
 from plant_models.frozen_arrays import Floats
 from synth.hump.trains.hump_position import Arrivals
-from synth.problem.aim import Aim
 from synth.retarder.class_setup import class_setup, origin_of, validation_passes
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.estimation.estimator_design import estimator_of
@@ -60,7 +59,7 @@ def coarse_tables() -> tuple[ControllerTable, ...]:
     made: list[ControllerTable] = []
     for label, plant in config.plants():
         setup = class_setup(config, label, plant, validation_passes(config), origin_of(config.sha256, CREATED))
-        aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
+        aims = config.aims_of(label)
         made += [from_json(to_json(tuned_table(setup, found).table)) for found in solutions(setup.design, aims)]
     return tuple(made)
 

@@ -12,8 +12,7 @@ from plant_models.motion import braked_axles, mean_braked_axles
 from synth.frame.input_error import InputError
 from synth.logs.configured_numbers import configured_numbers
 from synth.logs.identified_config import with_numbers
-from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.config_source import ConfigSource, source_of_text
+from synth.retarder.configuration.config_file import ConfigSource, parse_config, source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 
 from .conftest import TEXT

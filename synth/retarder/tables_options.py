@@ -1,4 +1,4 @@
-"""Options of the command `loop`."""
+"""Options of commands on exported tables: which, and by which configuration."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 from synth.frame.settings.options import BY_PLACE, NEEDED, Options, word_option
 
 
-class LoopOptions(Options):
-    """Options of the command line."""
+class TablesOptions(Options):
+    """Options of the command line of a command on tables; `loop` and `explore` have no other."""
 
     source: Path = word_option(BY_PLACE, "TABLE|BOOK|DIR", NEEDED, "A table, a book, or a folder of tables.")
     config: Path | None = word_option(
