@@ -119,8 +119,8 @@ def test_canonical_form_is_that_of_the_tables_and_is_read_back(value: object) ->
 @pytest.mark.parametrize("number", [2**53, -(2**53), 2.0**53 + 2.0, -1e17, 1e20, 123456789012345678.0])
 def test_a_whole_number_is_beyond_2_53_a_double_as_the_reader_has_it(number: float) -> None:
     text = canonical_json([number])
-    found, read = parse_json(text), read_json_text(text, "t.json", lambda document, source: document)[1]
-    assert (found, type(found[0])) == (read, type(number)) == ([number], type(read[0]))
+    _, read = read_json_text(text, "t.json", lambda document, source: document)
+    assert repr(parse_json(text)) == repr(read) == repr([number])
 
 
 @pytest.mark.parametrize(
