@@ -117,7 +117,8 @@ def judged(output: Path, ended: Ended, whole: Mapping[str, bytes], by: str) -> I
     """What is wrong after a kill."""
     if ended.code not in ENDS[by]:
         yield f"it ended with {ended.code}: {ended.err[-300:]}"
-    if ended.code == 74 and ": " not in ended.err.splitlines()[-1].removeprefix("retarder-synth: "):
+    is_whole = ended.err.endswith("\n")  # it is a file, too, which the disk may have been too full for
+    if ended.code == 74 and is_whole and ": " not in ended.err.splitlines()[-1].removeprefix("retarder-synth: "):
         yield f"no file is named: {ended.err[-300:]!r}"
     if ended.code == 130 and "interrupted" not in ended.err.splitlines()[-1]:
         yield f"its last line is {ended.err[-300:]!r}"

@@ -176,7 +176,7 @@ def drawn(whole: Whole, seed: str) -> str:
     text = whole.base
     if dice.random() < 0.8:  # pictures last longer than all else
         text = with_setting(with_setting(text, "output", "plots", "false"), "output", "report", "false")
-    for setting in dice.sample(every, dice.choice((1, 1, 2, 2, 3, 5))):
+    for setting in dice.sample(every, min(dice.choice((1, 1, 2, 2, 3, 5)), len(every))):
         text = with_setting(text, setting.section, setting.key, setting.drawn(dice))
     return text
 

@@ -6,6 +6,7 @@ import json
 import os
 import platform
 import shutil
+import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -130,6 +131,23 @@ def test_a_compiler_that_waits_for_ever_or_steers_the_terminal_is_told(
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     check = compiler_check("steers", "", {}, tmp_path)
     assert (check.outcome, check.found.isprintable(), len(check.found)) == (Outcome.FAILED, True, 1000)
+
+
+def test_a_process_under_way_ends_with_the_command(tmp_path: Path) -> None:
+    """In a process of its own, which does what `leave` does before it ends."""
+    text = """\
+import atexit, sys, threading, time
+from pathlib import Path
+from synth.cli.qualification.program import process
+one = threading.Thread(target=process, args=(["sh", "-c", "touch begun; exec sleep 60"], Path(sys.argv[1])))
+one.start()
+while not Path(sys.argv[1], "begun").exists():
+    time.sleep(0.01)
+atexit._run_exitfuncs()
+one.join(20.0)
+print(one.is_alive())
+"""
+    assert process([sys.executable, "-c", text, str(tmp_path)], tmp_path).out == "False\n"
 
 
 def test_one_number_is_changed(books: Books) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
 import subprocess
@@ -53,15 +54,22 @@ def process(
     """Run `words` in `folder`; what does not start, or has not ended after `longest_s`, has the exit code -1."""
     environment = {**os.environ, **(surroundings or {})}
     try:
-        ran = subprocess.run(
-            words, cwd=folder, env=environment, capture_output=True, text=True, errors="replace",
-            stdin=subprocess.DEVNULL, timeout=longest_s, check=False,
+        child = subprocess.Popen(
+            words, cwd=folder, env=environment, text=True, errors="replace",
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         )  # fmt: skip
-    except subprocess.TimeoutExpired:
-        return Ran(-1, "", f"{words[0]} has not ended after {longest_s:g} s")
     except OSError as fault:
         return Ran(-1, "", str(fault))
-    return Ran(ran.returncode, ran.stdout, ran.stderr)
+    atexit.register(child.kill)  # where this process is asked to end, nobody waits for the other one
+    with child:
+        try:
+            out, err = child.communicate(timeout=longest_s)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            return Ran(-1, "", f"{words[0]} has not ended after {longest_s:g} s")
+        finally:
+            atexit.unregister(child.kill)
+    return Ran(child.returncode, out, err)
 
 
 def program(line: str, folder: Path, surroundings: Mapping[str, str] | None = None) -> Ran:
