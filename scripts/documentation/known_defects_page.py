@@ -16,5 +16,6 @@ def defects_text() -> str:
 def told(each: Defect) -> tuple[str, ...]:
     """The cells of a defect."""
     versions = f"from {each.introduced}" + (f", before {each.fixed}" if each.fixed else "")
+    tables = f"{', '.join(each.kinds)} ({', '.join(each.steps)})"
     words = (each.wrong, each.effect, each.detect, each.remedy)
-    return (each.id, versions, ", ".join(each.kinds), "yes" if each.unsafe else "no", *words)
+    return (each.id, versions, tables, "yes" if each.unsafe else "no", *words)

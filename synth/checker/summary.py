@@ -135,14 +135,10 @@ class Summary:
 
 def require_fit(plant: Plant, table: Table | PassageTable) -> None:
     """Raise `UnusableConfigError` where plant and table differ in what both state."""
-    clock = (
-        [
-            ("sampling period", plant.period_s, table.sample_period_s),
-            ("computing delay", plant.computing_s, table.computing_delay_s),
-        ]
-        if isinstance(table, Table)
-        else []
-    )  # a table for point sensors has all about them itself
+    clock: list[tuple[str, float, float]] = []
+    if isinstance(table, Table):  # one for point sensors has all about its clock itself
+        clock.append(("sampling period", plant.period_s, table.sample_period_s))
+        clock.append(("computing delay", plant.computing_s, table.computing_delay_s))
     for name, one, other in (
         *clock,
         ("zones", plant.zones_m, table.zones_m),

@@ -14,6 +14,7 @@ Document: TypeAlias = Mapping[str, Any]
 
 PLACE: Final = Path(__file__).with_name("KNOWN-DEFECTS.json")
 OWN: Final = "retarder-synth"
+MADE, EXPORTED = "made", "exported"
 NUMBERS: Final = re.compile(r"\d+(\.\d+)*")
 
 
@@ -21,15 +22,16 @@ NUMBERS: Final = re.compile(r"\d+(\.\d+)*")
 class Defect:
     """A defect of the versions from `introduced` on, before `fixed`, or of all that follow where that is None.
 
-    `kinds`: of the tables that it spoils. `unsafe`: a cut may leave faster than the table says. `wrong`, `effect`,
-    `detect` and `remedy` are for people: what is wrong, what it does at the retarder, how to find out whether a table
-    has it, and what to do.
+    `kinds`: of the tables that it spoils; `steps`: those that such a version `MADE`, or `EXPORTED`. `unsafe`: a cut may
+    leave faster than the table says. `wrong`, `effect`, `detect` and `remedy` are for people: what is wrong, what it
+    does at the retarder, how to find out whether a table has it, and what to do.
     """
 
     id: str
     introduced: str
     fixed: str | None
     kinds: tuple[str, ...]
+    steps: tuple[str, ...]
     unsafe: bool
     wrong: str
     effect: str
@@ -39,8 +41,12 @@ class Defect:
     def concerns(self, table: Document) -> bool:
         """Whether a version with this defect made the table, or exported it, as far as that is told."""
         made_by = table.get("generator", {})
-        programs = [(made_by.get("name"), made_by.get("version")), table.get("exported_by", "").split(" ", 1)]
-        return table["kind"] in self.kinds and any(self.is_in(each[1]) for each in programs if each[0] == OWN)
+        programs = {
+            MADE: (made_by.get("name"), made_by.get("version")),
+            EXPORTED: tuple(table.get("exported_by", "").split(" ", 1)),
+        }
+        found = (programs[step] for step in self.steps)
+        return table["kind"] in self.kinds and any(self.is_in(each[1]) for each in found if each[0] == OWN)
 
     def is_in(self, version: str) -> bool:
         """Whether this version of the program has it; so it is taken where the version is none of ours."""
@@ -81,7 +87,7 @@ class Concerned:
 def known_defects() -> tuple[Defect, ...]:
     """All that were known when this version was made."""
     listed = json.loads(PLACE.read_text(encoding="utf-8"))["defects"]
-    return tuple(Defect(**{**each, "kinds": tuple(each["kinds"])}) for each in listed)
+    return tuple(Defect(**{**each, "kinds": tuple(each["kinds"]), "steps": tuple(each["steps"])}) for each in listed)
 
 
 def concerned(tables: Callable[[], Iterable[Document]]) -> tuple[Concerned, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,8 @@ from tests.tuning_tables.every_kind import smallest_aim, smallest_lines, smalles
 from tuning_tables.document import to_document
 
 MADE_UP = Defect(
-    id="RS-0", introduced="0.0.9", fixed=None, kinds=("lines",), unsafe=True, wrong="lines lie 1 m/s too high",
-    effect="cuts leave too fast", detect="validate them", remedy="tune again",
+    id="RS-0", introduced="0.0.9", fixed=None, kinds=("lines",), steps=("made", "exported"), unsafe=True,
+    wrong="lines lie 1 m/s too high", effect="cuts leave too fast", detect="validate them", remedy="tune again",
 )  # fmt: skip
 KEYS = [*MADE_UP.__dataclass_fields__]
 
@@ -76,12 +77,13 @@ def test_a_defect_concerns_the_versions_that_have_it(
             assert each.concerns({**table, "exported_by": exported}) == (is_concerned and table["kind"] == kind)
             table |= {"generator": {"name": "retarder-synth", "version": made_by}, "exported_by": "another one"}
             assert each.concerns(table) == (is_concerned and table["kind"] == kind)
+            assert not replace(each, steps=("exported",)).concerns(table)
             assert not each.concerns({**table, "generator": {"name": "another program", "version": made_by}})
 
 
 @pytest.mark.usefixtures("unsafe")
 def test_the_page_has_a_row_for_each() -> None:
-    assert "| RS-0 | from 0.0.9 | lines | " in defects_text()
+    assert "| RS-0 | from 0.0.9 | lines (made, exported) | " in defects_text()
 
 
 def test_the_list_that_ships_is_in_order() -> None:
@@ -93,4 +95,5 @@ def test_the_list_that_ships_is_in_order() -> None:
         assert release(each.introduced)
         assert each.fixed is None or release(each.introduced) < release(each.fixed)
         assert set(each.kinds) <= {"lines", "passages", "aim"}
+        assert set(each.steps) <= {"made", "exported"}
         assert all(vars(each)[key] for key in KEYS if key not in ("fixed", "unsafe"))

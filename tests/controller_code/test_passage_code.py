@@ -175,7 +175,7 @@ def test_a_table_and_a_tracker_take_what_the_page_says(tmp_path: Path, tool: Too
     (tmp_path / "size.c").write_text(
         '#include "retarder_passages.h"\n'
         f"typedef char table_is_so_large[sizeof(retarder_passage_table) == "
-        f"{4 * (18 + 3 * heard + passages * (stages + 1) * stages)}u ? 1 : -1];\n"
+        f"{4 * (20 + 3 * heard + passages * (stages + 1) * stages)}u ? 1 : -1];\n"
         "typedef char tracker_is_so_large[sizeof(retarder_tracker) == 24u ? 1 : -1];\n"
         "int main(void) { return 0; }\n"
     )

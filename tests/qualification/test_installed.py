@@ -60,7 +60,7 @@ def test_a_changed_file_is_told(package: Distribution, tmp_path: Path, change: o
 
 
 def test_only_an_unsafe_defect_of_this_version_fails(package: Distribution) -> None:
-    safe = Defect("D-1", "0.9", "1.1", ("lines",), False, "it is slow", "none", "look", "wait")
+    safe = Defect("D-1", "0.9", "1.1", ("lines",), ("made",), False, "it is slow", "none", "look", "wait")
     assert installed.defect_check(()).found == "version 1.0: none"
     assert installed.defect_check((safe,)).outcome is Outcome.PASSED
     assert installed.defect_check((safe,)).found == "version 1.0: D-1: it is slow"
