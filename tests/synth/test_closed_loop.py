@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,8 @@ import pytest
 
 from plant_models import Cut, Friction, Plant, RollingResistance
 from plant_models.stage_regulator import stage_locked_actuator
+from synth.kernels.loop.closed_loop import run_passes
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import (
     LineController,
     TableController,
@@ -168,6 +171,17 @@ def test_a_table_read_back_drives_the_loop_like_its_own_lines(
     assert same.mean() > 0.99
     assert by_table.switchings.mean() > 1.0
     assert np.abs(by_table.exit_speed_m_s - by_lines.exit_speed_m_s).max() < 0.3
+
+
+def test_one_kernel_runs_whatever_made_the_arrays(plant_52t: Plant, passes: RandomPasses) -> None:
+    """Tables of another process, and passes that may be written to: none has it compiled anew."""
+    table, loop = cubic_table(plant_52t, 3.0), close_loop(plant_52t, 5)
+    draws = loop.draws(passes)
+    exits = loop.run(TableController(table), draws).exit_speed_m_s
+    compiled = len(run_passes.signatures)
+    again = loop.run(TableController(pickle.loads(pickle.dumps(table))), Draws(*map(np.array, draws))).exit_speed_m_s
+    assert again.tobytes() == exits.tobytes()
+    assert len(run_passes.signatures) == compiled
 
 
 def test_controller_must_fit_the_loop(plant_52t: Plant, passes: RandomPasses) -> None:
