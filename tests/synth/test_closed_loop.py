@@ -162,7 +162,7 @@ def test_a_table_read_back_drives_the_loop_like_its_own_lines(
 
 
 def test_one_kernel_runs_whatever_made_the_arrays(plant_52t: Plant, passes: RandomPasses) -> None:
-    """Tables of another process, and passes that may be written to; compiling it anew takes ten seconds."""
+    """Tables of another process, and passes that may be written to: none has it compiled anew."""
     table, loop = cubic_table(plant_52t, 3.0), close_loop(plant_52t, 5)
     draws = loop.draws(passes)
     exits = loop.run(TableController(table), draws).exit_speed_m_s
