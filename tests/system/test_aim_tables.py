@@ -142,7 +142,7 @@ def test_verify_reads_what_export_writes(command: Command, aims: Path) -> None:
     )
     code_lines = [line for line in told.out.splitlines() if "verify compares them" in line]
     for line, (name, language) in zip(code_lines, named, strict=True):
-        assert line.startswith(f"{aims / name}: aim tables in {language}; verify compares them with those")
+        assert line.startswith(f"{aims / name}: aim tables in {language}, exported by retarder-synth ")
     assert command("inspect", aims / "c" / "park_aim_table.c").code == 0
     code = aims / "c" / "park_aim_table.c"
     code.write_text(code.read_text().replace("{1, 2, 3, 5, 8}", "{1, 2, 3, 5, 9}", 1))

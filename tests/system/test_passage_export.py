@@ -72,7 +72,7 @@ def test_export_of_one_table_needs_nothing_heavy(command: Command, folder: Path,
     alone = passage_c_files(PassageBook(BOOK.tables[:1]))
     assert (output / "retarder_passages.c").read_bytes() == alone["retarder_passages.c"]
     ran = command("inspect", output)
-    assert f"{output / 'retarder_passages.c'}: tables for point sensors in C99; verify compares them" in ran.out
+    assert f"{output / 'retarder_passages.c'}: tables for point sensors in C99, exported by retarder-synth " in ran.out
     assert command("export", source, "--format", "st", "-o", tmp_path / "st").code == 0
     assert "tables for point sensors in Structured Text" in command("inspect", tmp_path / "st").out
 
