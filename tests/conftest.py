@@ -46,17 +46,22 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(RequirementMatrix(path))
 
 
-COMPILES = "checker/test_any_time_simulation.py"
-"""Its first tune compiles most kernels."""
+COMPILES = "checker/test_mutations.py"
+"""Its first tune compiles most kernels. Its tables are for commands at rest, as those of the process that helps it."""
 
 WITHOUT_KERNELS = ("architecture", "attack", "controller_code", "frame", "tuning_tables")
 """Folders whose tests need hardly any: one process runs them while the other compiles what both need afterwards."""
+
+WITH_KERNELS = "controller_code/fmi"
+"""What is in such a folder all the same: both processes would compile it."""
 
 
 def turn_of(item: pytest.Item) -> int:
     """When the file of a test comes: what compiles first, then what needs no kernel, then the rest."""
     place = item.path.relative_to(Path(__file__).parent)
-    return 0 if place.as_posix() == COMPILES else 1 if place.parts[0] in WITHOUT_KERNELS else 2
+    if place.as_posix() == COMPILES:
+        return 0
+    return 1 if place.parts[0] in WITHOUT_KERNELS and not place.is_relative_to(WITH_KERNELS) else 2
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

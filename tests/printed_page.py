@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
 
 import pytest
 
@@ -51,11 +50,9 @@ def page_about(pages: Sequence[Page], directory: object) -> Page:
     return next(page for page in pages if str(directory) in str(page[-1:]))
 
 
-def cells_of(table: PrintedTable[Any]) -> Read:
+def cells_of(table: PrintedTable) -> Read:
     """What the table was declared to say."""
-    return [
-        {plain(column.heading): plain(column.cell(row) or ABSENT) for column in table.columns} for row in table.rows
-    ]
+    return [{plain(column.title): plain(column.brief(row)) for column in table.columns} for row in table.table.rows]
 
 
 def require_nothing_cut(page: Page, lines_of: LinesOf = printed_page.page_lines) -> None:
@@ -79,16 +76,16 @@ def require_whole_words(text: str, lines: list[str], width: int) -> None:
     assert {word for word in text.split() if len(word) <= width // 2} <= set(printed.split())
 
 
-def require_whole_table(table: PrintedTable[Any], lines: list[str], width: int | None) -> None:
+def require_whole_table(table: PrintedTable, lines: list[str], width: int | None) -> None:
     """The lines hold the cells of the table, all of them or those of some columns and a sentence about the rest."""
     told = cells_of(table)
-    headings = [plain(column.heading) for column in table.columns]
+    headings = [plain(column.title) for column in table.columns]
     rule = next((number for number, line in enumerate(lines) if "─" in line), None)
     if rule is None:
         assert width is not None
         assert read_stacked(lines, headings, len(told)) == told
         return
-    essential = [plain(column.heading) for column in table.columns if not column.spare]
+    essential = [plain(column.title) for column in table.columns if not column.spare]
     found = read_side_by_side(lines, rule, table)
     kept = list(found[0])
     assert kept == [heading for heading in headings if heading in kept]
@@ -100,14 +97,14 @@ def require_whole_table(table: PrintedTable[Any], lines: list[str], width: int |
     assert width is not None or not left_out
 
 
-def read_side_by_side(lines: list[str], rule: int, table: PrintedTable[Any]) -> Read:
+def read_side_by_side(lines: list[str], rule: int, table: PrintedTable) -> Read:
     """The rows of a table with its columns beside each other, by the pieces of the rule below its headings."""
     spans = [(piece.start(), piece.end()) for piece in re.finditer("─+", lines[rule])]
-    above, title = lines[:rule], "".join(table.title.split())
+    above, title = lines[:rule], "".join(table.table.title.split())
     while title:
         title = title.removeprefix("".join(above.pop(0).split()))
     headings = [" ".join(" ".join(line[begin:end] for line in above).split()) for begin, end in spans]
-    columns = {plain(column.heading): column for column in table.columns}
+    columns = {plain(column.title): column for column in table.columns}
     rows: Read = []
     for line in lines[rule + 1 :]:
         if line.startswith("The terminal is too narrow") or not line.strip():

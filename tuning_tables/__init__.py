@@ -8,6 +8,7 @@ A controller with a radar needs `read_json` and `decide_for`; one with point sen
 from tuning_tables.active_table import ActiveTable
 from tuning_tables.alarm import Alarm
 from tuning_tables.approach import Approach, Interlock
+from tuning_tables.clock import RegulatorClock
 from tuning_tables.csv_file import to_csv, write_csv
 from tuning_tables.decisions import Decisions
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OtherKind, TableError, UnknownFormat
@@ -50,6 +51,7 @@ __all__ = [
     "PassageTable",
     "PlausibleMotion",
     "Predicted",
+    "RegulatorClock",
     "RetarderId",
     "SensorLayout",
     "Stage",

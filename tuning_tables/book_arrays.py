@@ -65,7 +65,7 @@ def checked_arrays(file: h5py.File, most_bytes: int, source: str) -> tuple[Layou
     if attributes["complete"] != 1:
         raise DamagedTable(f"{source}: complete is {attributes['complete']!r}, but must be 1; export the book again.")
     require_match(attributes["config_sha256"], "config_sha256", SHA256_HEX, "of 64 lower-case hex digits")
-    require_text(attributes["tool_version"], "tool_version")
+    require_text(attributes["exported_by"], "exported_by")
     expected = {column.name for column in layout.columns} | set(layout.axes)
     if set(file) != expected:
         found = excerpt(str(sorted(set(file) ^ expected)), LONGEST_REASON)

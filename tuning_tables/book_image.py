@@ -19,7 +19,7 @@ VERSION: Final = 1
 # The oldest file version whose metadata carry checksums, for readers that know nothing of the seal.
 FILE_VERSION: Final = ("v108", "v108")
 COORDINATES: Final = ("id", "cut_category", "cut_mass_t", "target_speed_m_s")
-ATTRIBUTES: Final = ("complete", "config_sha256", "format", "kind", "payload_sha256", "tool_version", "version")
+ATTRIBUTES: Final = ("complete", "config_sha256", "exported_by", "format", "kind", "payload_sha256", "version")
 
 
 def image_of(attributes: Mapping[str, str | int], arrays: Columns, layout: Layout) -> bytes:

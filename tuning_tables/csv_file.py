@@ -2,6 +2,7 @@
 
     record,key,value0,value1,value2,value3
     text,format,retarder-table,,,
+    text,exported_by,retarder-synth 0.1.0,,,
     number,valid.s_m,0.0,37.45,,
     number,stages.1.lower,0.5,0.25,0.0,0.0
     number,passages.0.switching_m_s.1,4.5,6.25,inf,inf
@@ -56,16 +57,16 @@ def to_csv(table: AnyTable) -> bytes:
     With `table` from the example of `ControllerTable`:
 
     >>> from tuning_tables import to_csv
-    >>> to_csv(table).decode().splitlines()[4]
+    >>> to_csv(table).decode().splitlines()[5]
     'text,id,by-hand,,,'
     """
     document = to_document(table)
-    format_word, version, kind = (document[key] for key in HEAD)
-    rows = [text_row("format", str(format_word)), ["number", "version", str(version)], text_row("kind", str(kind))]
+    told = {key: str(document[key]) for key in (*HEAD, CHECKSUM_KEY)}
+    rows = [["number", key, told[key]] if key == "version" else text_row(key, told[key]) for key in HEAD]
     rows += key_rows(table, "")
     if isinstance(table, AimTable):
         rows += node_rows(table)
-    return _rectangle([*rows, text_row(CHECKSUM_KEY, str(document[CHECKSUM_KEY]))])
+    return _rectangle([*rows, text_row(CHECKSUM_KEY, told[CHECKSUM_KEY])])
 
 
 def write_csv(table: AnyTable, path: str | os.PathLike[str]) -> None:

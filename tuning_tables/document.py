@@ -2,7 +2,8 @@
 
 A document has a head, the members that the class of its kind declares, and a checksum:
 
-    {"format": "retarder-table", "version": 1, "kind": "lines", ..., "crc32": "0f1e2d3c"}
+    {"format": "retarder-table", "version": 1, "kind": "lines", "exported_by": "retarder-synth 0.1.0", ...,
+     "crc32": "0f1e2d3c"}
 """
 
 from __future__ import annotations
@@ -12,24 +13,29 @@ from typing import Final, TypeVar
 from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
 from tuning_tables.declared.json_form import read, written
 from tuning_tables.declared.place import Place
+from tuning_tables.declared.texts import Text
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OtherKind, UnknownFormat
 from tuning_tables.excerpt import excerpt
+from tuning_tables.exporter import exporter
 from tuning_tables.table_kinds import KINDS, MEANINGS, AnyTable, kind_of
 
 FORMAT: Final = "retarder-table"
 VERSION: Final = 1
-HEAD: Final = ("format", "version", "kind")
+HEAD: Final = ("format", "version", "kind", "exported_by")
+EXPORTED_BY: Final = Text("program that wrote the file")
 LONGEST_REASON: Final = 400
 
 _T = TypeVar("_T")
 
 
-def to_document(table: AnyTable) -> dict[str, object]:
+def to_document(table: AnyTable, exported_by: str = "") -> dict[str, object]:
     """The document of `table`, in the order in which it is to be read, its checksum last.
+
+    `exported_by`: the program that writes it; this one unless given.
 
     Raises `InvalidTable` where a number is -0.0: RFC 8785 writes it as 0, so the checksum would not cover its sign.
     """
-    head = dict(zip(HEAD, (FORMAT, VERSION, kind_of(type(table))), strict=True))
+    head = dict(zip(HEAD, (FORMAT, VERSION, kind_of(type(table)), exported_by or exporter()), strict=True))
     document = {**head, **written(table)}
     return {**document, CHECKSUM_KEY: document_checksum(document)}
 
@@ -52,6 +58,7 @@ def from_document(document: object, source: str, kinds: tuple[type[_T], ...]) ->
     _require_checksum(members, source)
     place = Place(source)
     try:
+        EXPORTED_BY.check(members.get("exported_by"), "exported_by")
         return read(chosen, {key: value for key, value in members.items() if key not in (*HEAD, CHECKSUM_KEY)}, place)
     except InvalidTable as invalid:
         # The reason may quote a value, and a file may hold one of any length.

@@ -1,6 +1,6 @@
 """A book of tables as an HDF5 file, readable by h5py and xarray without this project. Needs h5py, and only when called.
 
-Root attributes: format "retarder-book", version, kind, tool_version, config_sha256, payload_sha256 (see `payload`),
+Root attributes: format "retarder-book", version, kind, exported_by, config_sha256, payload_sha256 (see `payload`),
 complete = 1.
 
 Datasets: the columns of tables of that kind (`declared.columns`), each with attributes `units` and `meaning`, chunked
@@ -30,6 +30,7 @@ from tuning_tables.book_layout import book_layout, stored_tables
 from tuning_tables.declared.columns import Columns
 from tuning_tables.errors import DamagedTable, InvalidTable, OtherKind
 from tuning_tables.excerpt import excerpt
+from tuning_tables.exporter import exporter
 from tuning_tables.payload import payload_sha256
 from tuning_tables.provenance import Generator
 from tuning_tables.seal import seal_of
@@ -84,9 +85,9 @@ def book_bytes(tables: Sequence[StageTable], generator: Generator | None = None)
     attributes: dict[str, str | int] = {
         "complete": 1,
         "config_sha256": origin.config_sha256,
+        "exported_by": exporter(),
         "format": FORMAT,
         "kind": layout.kind,
-        "tool_version": origin.version,
         "version": VERSION,
     }
     attributes["payload_sha256"] = payload_sha256(attributes, arrays, layout)

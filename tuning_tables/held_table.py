@@ -70,7 +70,7 @@ class TableParts(Protocol):
 def held_table(table: TableParts) -> LineTable:
     """The table as the programs take it; its arrays are read-only.
 
-    Category, axles, family and mass are 0: a single table does not choose between cuts.
+    What rules do not look at is 0: category, axles, family, mass, and the clock.
     """
     stages = len(table.has_line)
     with np.errstate(over="ignore"):  # a book refuses a target that float32 cannot hold
@@ -132,6 +132,7 @@ ESTIMATOR_NUMBERS = (
 NO_TABLE = LineTable(
     category=0, axles=0, family_no=0, stages=0, powers=1, at_any_time=0, entrance_stage=0, mass_t=np.float32(0.0),
     target_m_s=np.float32(0.0), path_min_m=np.float32(0.0), path_max_m=np.float32(0.0), approach_m=np.float32(0.0),
+    sample_period_s=np.float32(0.0), computing_delay_s=np.float32(0.0),
     has_line=read_only(np.zeros((0, 2)), np.bool_), coefficient=read_only(np.zeros((0, 2, 1)), np.float32),
     has_gauge=0, highest_kpa=np.float32(0.0), pressure_kpa=read_only(np.zeros(0), np.float32),
     slope=read_only(np.zeros((0, 2)), np.float32), **estimator_members(None),

@@ -8,15 +8,14 @@ the checksum covers what is said, this covers how, so that no byte of a file can
 from __future__ import annotations
 
 import os
-from typing import Any, TypeVar, cast, overload
+from typing import Any, TypeVar, overload
 
 from tuning_tables.atomic_file import write_atomically
 from tuning_tables.document import from_document, to_document
 from tuning_tables.json_text import LARGEST_FILE_BYTES, laid_out, read_json_text, require_layout
-from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.regular_file import read_regular_file
 from tuning_tables.table import ControllerTable
-from tuning_tables.table_kinds import KINDS, AnyTable, StageTable
+from tuning_tables.table_kinds import KINDS, AnyTable
 
 _T = TypeVar("_T")
 
@@ -92,7 +91,7 @@ def from_json(content: bytes, *kinds: type[Any], source: str = "table") -> Any:
     """
     wanted = kinds or (ControllerTable,)
     document, table = read_json_text(content, source, lambda found, at: from_document(found, at, wanted))
-    require_layout(content, document, to_json(table), source)
+    require_layout(content, document, laid_out(to_document(table, str(document["exported_by"]))), source)
     return table
 
 
@@ -195,8 +194,3 @@ def read_table(path: str | os.PathLike[str]) -> AnyTable:
     'ControllerTable'
     """
     return read_json(path, *KINDS.values())
-
-
-def read_stage_table(path: str | os.PathLike[str]) -> StageTable:
-    """The table with lines or for point sensors in the file at `path`; raises as `read_json`."""
-    return cast(StageTable, read_json(path, ControllerTable, PassageTable))

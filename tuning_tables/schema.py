@@ -9,7 +9,7 @@ from __future__ import annotations
 from tuning_tables.canonical import CHECKSUM_KEY
 from tuning_tables.declared.json_schema import DIALECT, object_of, schema_of
 from tuning_tables.declared.leaf import Json
-from tuning_tables.document import FORMAT, VERSION
+from tuning_tables.document import EXPORTED_BY, FORMAT, VERSION
 from tuning_tables.table_kinds import KINDS
 
 
@@ -38,7 +38,8 @@ def table_schema(kind: str) -> Json:
     'retarder-table 1, lines'
     """
     members = schema_of(KINDS[kind])
-    head = {"format": {"const": FORMAT}, "version": {"const": VERSION}, "kind": {"const": kind}}
+    const = {"format": FORMAT, "version": VERSION, "kind": kind}
+    head = {**{key: {"const": value} for key, value in const.items()}, "exported_by": EXPORTED_BY.schema()}
     checksum = {CHECKSUM_KEY: {"type": "string", "pattern": "^[0-9a-f]{8}$"}}
     whole = object_of({**head, **members["properties"], **checksum})
     return {"$schema": DIALECT, "title": f"{FORMAT} {VERSION}, {kind}", **members, **whole}

@@ -9,17 +9,12 @@ from tuning_tables.controller_code.st_export import st_export
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.language.st_unit import Export
-from tuning_tables.plc_forms.iec import part_files, unit_files
+from tuning_tables.plc_forms.iec import unit_files
 
 
 def correction_export(correction: Correction, prefix: ExportPrefix = RETARDER) -> Export:
     """The blocks and the self-test, to be laid out in any form."""
     return st_export(correction_code(correction), prefix)
-
-
-def correction_st_files(correction: Correction, prefix: ExportPrefix = RETARDER) -> Mapping[str, bytes]:
-    """The files by name, ASCII with LF: the blocks, and the self-test. Equal corrections give equal bytes."""
-    return part_files(correction_export(correction, prefix))
 
 
 def correction_st_unit_files(correction: Correction, prefix: ExportPrefix = RETARDER) -> Mapping[str, bytes]:

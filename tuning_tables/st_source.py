@@ -5,7 +5,6 @@ How it is used stands in docs/reference/structured-text.md.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Final
 
 from tuning_tables.controller_code.line_code import line_code
@@ -13,7 +12,6 @@ from tuning_tables.controller_code.st_export import st_export
 from tuning_tables.errors import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.language.st_unit import Export
-from tuning_tables.plc_forms.iec import part_files
 from tuning_tables.self_test_size import FULL, SelfTestSize
 from tuning_tables.table_book import TableBook
 
@@ -35,11 +33,3 @@ def line_export(book: TableBook, prefix: ExportPrefix = RETARDER, self_test: Sel
             "export fewer classes or targets at a time."
         )
     return st_export(line_code(book, self_test), prefix, self_test.line_checks)
-
-
-def st_files(book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL) -> Mapping[str, bytes]:
-    """The files of the export by name, ASCII with LF: the tables with their blocks, and the self-test.
-
-    Equal books give equal bytes. Raises as `line_export`.
-    """
-    return part_files(line_export(book, prefix, self_test))

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.approach import Approach, entrance_stage
+from tuning_tables.clock import RegulatorClock
 from tuning_tables.decisions import Decisions, farthest
 from tuning_tables.declared.members import Several, require_declared
 from tuning_tables.declared.numbers import Count, Number
@@ -63,6 +64,7 @@ class ControllerTable:
     ...     CutId,
     ...     Generator,
     ...     Predicted,
+    ...     RegulatorClock,
     ...     RetarderId,
     ...     Stage,
     ...     ValidRange,
@@ -76,6 +78,7 @@ class ControllerTable:
     ...     ),
     ...     cut=CutId("С", mass_t=52.0, axle_offsets_m=(0.0, 1.85, 8.65, 10.5)),
     ...     target_speed_m_s=3.0,
+    ...     clock=RegulatorClock(sample_period_s=0.1, computing_delay_s=0.02),
     ...     degree=1,
     ...     stages=(
     ...         Stage(0, 0.0, lower=None, upper=(4.5, -0.0625)),
@@ -96,6 +99,7 @@ class ControllerTable:
     retarder: RetarderId
     cut: CutId
     target_speed_m_s: Annotated[float, Number("exit speed that the table aims at", is_positive=True)]
+    clock: RegulatorClock
     decisions: Annotated[
         Decisions, Word("at rest: only when no change of stage is under way; at any time: at every sample", Decisions)
     ] = field(default=Decisions.AT_REST, kw_only=True)

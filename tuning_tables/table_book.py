@@ -109,7 +109,7 @@ class TableBook:
             if position_of(table) != position_of(first):
                 raise InvalidTable(
                     f"{table.id} is for the retarder {table.retarder.name}, {first.id} for {first.retarder.name}, "
-                    "or their zones or dead bands differ, but a book serves one position: export them apart."
+                    "or their zones, dead bands or clocks differ, but a book serves one position: export them apart."
                 )
             if times[table.id] > 1:
                 raise InvalidTable(f"the id {table.id} is given to {times[table.id]} tables of the book.")
@@ -164,16 +164,6 @@ class TableBook:
         """Whether there is something between any two tables."""
         return len({*self.families}) < len(self.tables)
 
-    @cached_property
-    def most_stages(self) -> int:
-        """Stages of the table that has most."""
-        return max(len(table.stages) for table in self.tables)
-
-    @cached_property
-    def highest_degree(self) -> int:
-        """Degree of the lines of the table where it is highest."""
-        return max(table.degree for table in self.tables)
-
     def choose(self, category: str, axles: int, commanded_m_s: float) -> Choice:
         """The lines for a cut.
 
@@ -217,8 +207,8 @@ class TableBook:
 
 
 def position_of(table: ControllerTable) -> tuple[object, ...]:
-    """What makes the retarder position of a table; where the pass ends depends on the length of the cut as well."""
-    return table.retarder.name, table.retarder.zones_m, table.retarder.dead_band_kpa
+    """What makes the retarder position of a table and its regulator; where the pass ends depends on the cut as well."""
+    return table.retarder.name, table.retarder.zones_m, table.retarder.dead_band_kpa, table.clock
 
 
 def require_order_between(slower: ControllerTable, faster: ControllerTable) -> None:

@@ -86,11 +86,6 @@ class Route:
         return element.at_m + element.vertex.branches[element.position or 0].fouling_m
 
     @property
-    def point_sensors_m(self) -> tuple[float, ...]:
-        """Where the point sensors are."""
-        return tuple(e.at_m + sensor.at_m for e in self.elements for sensor in e.edge.point_sensors)
-
-    @property
     def radars_m(self) -> tuple[tuple[float, float], ...]:
         """What each radar sees."""
         return tuple((e.at_m + r.from_m, e.at_m + r.to_m) for e in self.elements for r in e.edge.radars)

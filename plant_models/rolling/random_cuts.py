@@ -48,11 +48,6 @@ class DrawnCuts:
     def __len__(self) -> int:
         return len(self.types)
 
-    def of_cuts(self, rows: NDArray[np.int64]) -> DrawnCuts:
-        """The cuts `rows` of these."""
-        arrays = {each.name: getattr(self, each.name)[rows] for each in fields(self) if each.name != "mix"}
-        return replace(self, **arrays)
-
     @property
     def cars(self) -> int:
         """Cars of the longest cut, or more."""
@@ -124,6 +119,17 @@ class DrawnCuts:
         """Some of these cuts."""
         arrays = {f.name: getattr(self, f.name)[which] for f in fields(self) if f.name != "mix"}
         return DrawnCuts(mix=self.mix, **arrays)
+
+    def first_cars(self, cars: int, weather: Weather) -> DrawnCuts:
+        """These cuts without what comes behind their first `cars` cars."""
+        types, mass_t = self.types[:, :cars], self.mass_t[:, :cars]
+        return replace(
+            self,
+            types=types,
+            mass_t=mass_t,
+            basic_n_per_kn=self.basic_n_per_kn[:, :cars],
+            air_n_per_kn=air_n_per_kn(self.mix, weather, types, mass_t),
+        )
 
     def on_bends(self, law: ResistanceLaw, bends: Sequence[Bend]) -> DrawnCuts:
         """These cuts, whose bends are draws, with the heads that `bends` take from them by `law`."""

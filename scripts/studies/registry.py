@@ -19,7 +19,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         150.0,
         "explanation/approach.md",
         "scripts.studies.approach.study",
-        "scripts.studies.approach.picture",
     ),
     Study(
         "benchmark",
@@ -27,7 +26,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         300.0,
         "explanation/speed.md",
         "scripts.studies.benchmark.study",
-        "scripts.studies.benchmark.picture",
     ),
     Study(
         "book",
@@ -78,7 +76,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         41.0,
         "explanation/choices.md#criterion",
         "scripts.studies.criteria.study",
-        "scripts.studies.criteria.picture",
     ),
     Study(
         "degree",
@@ -86,14 +83,12 @@ POSITION_STUDIES: tuple[Study, ...] = (
         46.0,
         "explanation/choices.md#degree",
         "scripts.studies.degree.study",
-        "scripts.studies.degree.picture",
     ),
     Study(
         "estimator",
         "What is gained when the regulator compares an estimated speed with its lines?",
         76.0,
         "explanation/estimator.md#what-it-gains",
-        "scripts.studies.estimator.study",
         "scripts.studies.estimator.study",
     ),
     Study(
@@ -102,14 +97,12 @@ POSITION_STUDIES: tuple[Study, ...] = (
         240.0,
         "explanation/estimator.md#reserve",
         "scripts.studies.estimator.reserve_study",
-        "scripts.studies.estimator.reserve_picture",
     ),
     Study(
         "estimator-wrong",
         "What does the estimator cost where it is wrong: another friction, mass or gauge, a lost sensor?",
         18.0,
         "explanation/estimator.md#where-it-is-wrong",
-        "scripts.studies.estimator.wrong_study",
         "scripts.studies.estimator.wrong_study",
     ),
     Study(
@@ -119,13 +112,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "explanation/every-cut.md",
         "scripts.studies.every_cut.study",
         "scripts.studies.every_cut.picture",
-    ),
-    Study(
-        "friction-known",
-        "How good is the reference that regret is measured by: what would more effort make of it?",
-        150.0,
-        "reference/limits.md#the-friction-known-reference",
-        "scripts.studies.friction_known",
     ),
     Study(
         "identification",
@@ -140,7 +126,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         6.0,
         "how-to/controllers.md",
         "scripts.studies.interpolation",
-        "scripts.studies.interpolation_picture",
     ),
     Study(
         "limits",
@@ -148,7 +133,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         28.0,
         "explanation/estimator.md",
         "scripts.studies.limits.study",
-        "scripts.studies.limits.picture",
     ),
     Study(
         "peers",
@@ -164,7 +148,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         700.0,
         "how-to/point-sensors.md",
         "scripts.studies.point_sensors.study",
-        "scripts.studies.point_sensors.pictures",
     ),
     Study(
         "radar-faults",
@@ -223,12 +206,11 @@ POSITION_STUDIES: tuple[Study, ...] = (
         130.0,
         "explanation/any-time.md",
         "scripts.studies.switching_price.study",
-        "scripts.studies.switching_price.picture",
     ),
     Study(
         "time-price",
-        "What does less time in a position cost in accuracy, and what does it bring a whole hump?",
-        530.0,
+        "What does less time in a position cost in accuracy?",
+        120.0,
         "explanation/choices.md#time",
         "scripts.studies.time_price.study",
         "scripts.studies.time_price.picture",
@@ -247,7 +229,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         150.0,
         "how-to/watch.md#how-it-was-shown",
         "scripts.studies.watch.study",
-        "scripts.studies.watch.picture",
     ),
 )
 

@@ -54,7 +54,7 @@ class Result:
     def figures(self) -> Mapping[str, Figure]:
         """The pictures by the name of their file, without suffix."""
         name = self.study.name
-        return {f"{name}-{key}" if key else name: figure for key, figure in self.study.figures(self.findings).items()}
+        return {f"{name}-{key}": figure for key, figure in self.study.figures(self.findings).items()}
 
 
 def run_study(study: Study, options: Any = None, tell: Tell = silent) -> Result:

@@ -86,7 +86,7 @@ class Study:
         return found
 
     def figures(self, findings: Findings) -> Mapping[str, Figure]:
-        """Pictures by name, in the house style; the name '' stands for the one picture of a study."""
+        """Pictures by name, in the house style; a page shows each."""
         if not self.pictures:
             return {}
         drawn: Mapping[str, Figure] = import_module(self.pictures).figures(findings)

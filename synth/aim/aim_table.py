@@ -94,7 +94,7 @@ def aimed_speeds(
 
     Raises `PlantError` where a cut that stands that far away would be beyond the end of the track.
     """
-    by_cars = [table_cuts(scene, order, cars) for cars in order.cars]
+    by_cars = table_cuts(scene, order)
     spread = by_cars[order.cars.index(min(order.cars))].design  # the readings of short cuts spread most
     return tuple(known_speeds(order, knowledge, by_cars, spread) for knowledge in knowledges)
 
@@ -130,20 +130,19 @@ def known_speeds(
     )
 
 
-def table_cuts(scene: AimScene, order: AimOrder, cars: int) -> TableCuts:
-    """Cuts of `cars` cars for every use, with the thresholds that belong to them."""
+def table_cuts(scene: AimScene, order: AimOrder) -> list[TableCuts]:
+    """Cuts of each number of cars for every use, with the thresholds that belong to them."""
     distances = np.asarray(order.free_distances_m)
-    design = scene.draw(order.category, cars, order.seed, 0, order.design_cuts)
-    checked = scene.draw(order.category, cars, order.seed, 0, min(order.checked_cuts, order.design_cuts))
-    report = scene.draw(order.category, cars, order.seed, order.design_cuts, order.report_cuts)
-    require_on_track(design, float(distances[-1]))
-    return TableCuts(
-        design,
-        thresholds_at(order, design, distances),
-        checked,
-        thresholds_at(order, checked, with_midways(distances)),
-        report,
-    )
+    checked_cuts = min(order.checked_cuts, order.design_cuts)
+    uses = ((0, order.design_cuts), (0, checked_cuts), (order.design_cuts, order.report_cuts))
+    drawn = (scene.draw_each(order.category, order.cars, order.seed, first, count) for first, count in uses)
+    found = []
+    for design, checked, report in zip(*drawn, strict=True):
+        require_on_track(design, float(distances[-1]))
+        on_design = thresholds_at(order, design, distances)
+        on_checked = thresholds_at(order, checked, with_midways(distances))
+        found.append(TableCuts(design, on_design, checked, on_checked, report))
+    return found
 
 
 def thresholds_at(order: AimOrder, cuts: SceneCuts, free_distances_m: Floats) -> Floats:

@@ -34,15 +34,27 @@ class Thresholds:
 
     def weighted_limit_speeds(self, weights: Floats, p_overspeed: float, bounds_m_s: tuple[float, float]) -> Floats:
         """As `limit_speeds`, each cut counting by its weight (n,)."""
-        passed = np.cumsum(weights[self.order], axis=0)
-        place = np.minimum((passed <= p_overspeed * passed[-1]).sum(axis=0), len(passed) - 1)
-        return bounded(self.sorted_m_s[place, np.arange(passed.shape[1])], bounds_m_s)
+        kept = p_overspeed * weights.sum()
+        places = [place_beyond(kept, weights, order) for order in self.order.T]
+        return bounded(self.sorted_m_s[places, np.arange(len(places))], bounds_m_s)
 
 
 def thresholds_of(thresholds_m_s: Floats) -> Thresholds:
     """The list of `thresholds_m_s` (n, k), sorted."""
     order = np.argsort(thresholds_m_s, axis=0, kind="stable")
     return Thresholds(np.take_along_axis(thresholds_m_s, order, axis=0), order)
+
+
+def place_beyond(limit: float, weights: Floats, order: NDArray[np.int64]) -> int:
+    """First place at which the weights (n,) in `order` (n,) add up to more than `limit`, or the last one.
+
+    The first places are asked first: they seldom do not do.
+    """
+    for count in (len(order) // 4, len(order)):
+        passed = np.cumsum(weights[order[:count]])
+        if passed.size and passed[-1] > limit:
+            break
+    return min(int(np.searchsorted(passed, limit, side="right")), len(order) - 1)
 
 
 def bounded(speeds_m_s: Floats, bounds_m_s: tuple[float, float]) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -80,11 +81,18 @@ class AimScene:
 
     def draw(self, category: WeightCategory, cars: int, seed: int, first: int, count: int) -> SceneCuts:
         """Cuts `first` … of the row `seed`, rolled to the position."""
-        drawn = self.population.draw(category, cars, seed, first, count)
-        rolling = rolling_cuts(self.population, self.track, self.exit_m, drawn, self.threads)
+        return self.draw_each(category, (cars,), seed, first, count)[0]
+
+    def draw_each(
+        self, category: WeightCategory, cars: Sequence[int], seed: int, first: int, count: int
+    ) -> tuple[SceneCuts, ...]:
+        """As `draw` for each of several numbers of cars, each car drawn once: the first are the same in all."""
+        longest = self.population.draw(category, max(cars), seed, first, count)
         z = ndtri(uniform_numbers(seed, Purpose.BUNCH_EXIT, first, count, 1)[:, 0])
         begins = np.maximum(self.stretch.speed_mean_m_s + self.stretch.speed_std_m_s * z, SLOWEST_M_S)
-        return SceneCuts(self, category, rolling, begins, seed, first)
+        cuts = (longest.first_cars(n, self.population.weather) for n in cars)
+        rolling = (rolling_cuts(self.population, self.track, self.exit_m, each, self.threads) for each in cuts)
+        return tuple(SceneCuts(self, category, each, begins, seed, first) for each in rolling)
 
 
 @frozen_arrays

@@ -12,7 +12,7 @@ from synth.checker.finding import DamagedError, shown
 
 CHECKSUM_BYTES: Final = 4
 """That fletcher32 adds to a chunk."""
-HEAD: Final = frozenset({"format", "version", "kind", "crc32"})
+HEAD: Final = frozenset({"format", "version", "kind", "exported_by", "crc32"})
 """Of a document, in no dataset: attributes of the book tell it."""
 UNITS: Final = (
     ("_m2_s2_per_kpa", "m2/s2 per kPa"), ("_m_s_per_kpa", "m/s per kPa"), ("_m2_s2", "m2/s2"), ("_m_s2", "m/s2"),

@@ -25,7 +25,7 @@ from synth.checker.source_file import LARGEST_BYTES
 SIGNATURE: Final = b"\x89HDF\r\n\x1a\n"
 SEAL: Final = b"\n# sealed, sha256 of all before this line: "
 NUMBERED: Final = frozenset({"version", "complete"})
-ATTRIBUTES: Final = NUMBERED | {"format", "kind", "tool_version", "config_sha256", "payload_sha256"}
+ATTRIBUTES: Final = NUMBERED | {"format", "kind", "exported_by", "config_sha256", "payload_sha256"}
 SHA256: Final = re.compile("[0-9a-f]{64}")
 
 Shape = Mapping[str, Any]
@@ -94,7 +94,7 @@ def checked_documents(book: Any, shapes: Mapping[str, Shape]) -> list[dict[str, 
     require_axes(book, values, datasets)
     columns = {name: array.tolist() for name, array in values.items()}
     members = {key: form for key, form in shapes[kind].items() if key not in HEAD}
-    head = {"format": "retarder-table", "version": 1, "kind": kind}
+    head = {"format": "retarder-table", "version": 1, "kind": kind, "exported_by": attributes["exported_by"]}
     rows = ({name: column[row] for name, column in columns.items()} for row in range(len(columns["id"])))
     documents = [head | section_of(members, cells, "") for cells in rows]
     require_filled_up(columns, datasets, documents)
@@ -117,7 +117,7 @@ def root_attributes(book: Any) -> dict[str, Any]:
     found = {name: value.item() if getattr(value, "shape", None) == () else value for name, value in book.attrs.items()}
     whole = found.keys() == ATTRIBUTES and found["format"] == "retarder-book" and found["complete"] == 1
     whole = whole and all(type(value) is (int if name in NUMBERED else str) for name, value in found.items())
-    whole = whole and is_a(TEXT, found["tool_version"]) and bool(SHA256.fullmatch(found["config_sha256"]))
+    whole = whole and is_a(TEXT, found["exported_by"]) and bool(SHA256.fullmatch(found["config_sha256"]))
     if not whole:
         raise DamagedError(f"its attributes {shown(found)} are not those of a complete book")
     return found

@@ -27,12 +27,13 @@ def parse_json(content: bytes, largest_bytes: int = LARGEST_BYTES) -> Any:
             object_pairs_hook=unique_members,
             parse_constant=refuse_constant,
             parse_float=finite_number,
+            parse_int=whole_number,
         )
     except UnicodeDecodeError as fault:
         raise DamagedError(f"byte {fault.start} is not UTF-8 text") from None
     except RecursionError:
         raise DamagedError("it is nested too deeply") from None
-    except ValueError as fault:  # JSONDecodeError, and integers of thousands of digits
+    except json.JSONDecodeError as fault:
         raise DamagedError(f"it is not JSON: {fault}") from None
 
 
@@ -56,6 +57,13 @@ def finite_number(text: str) -> float:
     if not math.isfinite(number):
         raise DamagedError(f"the number {text[:40]} is beyond the range of double precision")
     return number
+
+
+def whole_number(text: str) -> int | float:
+    """The number; beyond 2^53 it is the double that RFC 8785 writes without a point below 10^21."""
+    if len(text) <= 17 and abs(number := int(text)) <= 2**53:  # int() refuses thousands of digits
+        return number
+    return finite_number(text)
 
 
 def canonical_form(value: object) -> str:

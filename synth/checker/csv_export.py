@@ -40,8 +40,9 @@ def read_rows(content: bytes) -> Rows:
 
 def differences(rows: Rows, document: Mapping[str, Any]) -> Iterator[str]:
     """Each row that is not what the document of a table, less its checksum, says."""
-    wanted = dict(rows_of(dict(document), ""))
-    wanted["text", "crc32"] = [f"{crc32(canonical_form(dict(document)).encode('utf-8')):08x}"]
+    told = with_exporter(document, rows)
+    wanted = dict(rows_of(told, ""))
+    wanted["text", "crc32"] = [checksum_of(told)]
     for key in sorted(wanted.keys() | rows.keys()):
         name = ",".join(key)
         if key not in rows:
@@ -50,6 +51,16 @@ def differences(rows: Rows, document: Mapping[str, Any]) -> Iterator[str]:
             yield f"the row {name} is in no table"
         elif not same(key[0], rows[key], wanted[key]):
             yield f"the row {name} holds {shown(rows[key])}, but the table says {shown(wanted[key])}"
+
+
+def with_exporter(document: Mapping[str, Any], rows: Rows) -> dict[str, Any]:
+    """The document as the program that wrote the rows would write it: that may be another than wrote the table."""
+    return {**document, "exported_by": (rows.get(("text", "exported_by")) or ("",))[0]}
+
+
+def checksum_of(document: dict[str, Any]) -> str:
+    """What stands at crc32 of a document less it."""
+    return f"{crc32(canonical_form(document).encode('utf-8')):08x}"
 
 
 def rows_of(value: Any, key: str) -> Iterator[tuple[tuple[str, str], list[Any]]]:

@@ -56,6 +56,7 @@ ORIGIN: Final[Mapping[str, Any]] = {
     "format": OneOf(("retarder-table",)),
     "version": COUNT,
     "kind": TEXT,
+    "exported_by": TEXT,
     "id": TEXT,
     "created": TEXT,
     "generator": {"name": TEXT, "version": TEXT, "config_sha256": TEXT},
@@ -107,6 +108,7 @@ LINES: Final = "lines"
 LINES_SHAPE: Final[Mapping[str, Any]] = {
     **ORIGIN,
     **PURPOSE,
+    "clock": {"sample_period_s": NUMBER, "computing_delay_s": NUMBER},
     "degree": COUNT,
     "stages": Row(
         "stage",

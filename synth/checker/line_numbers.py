@@ -45,6 +45,8 @@ def held(table: Table, tables: Sequence[Table]) -> Numbers:
         "pathminm": [table.path_m[0]],
         "pathmaxm": [table.path_m[1]],
         "approachm": [table.approach_m],
+        "sampleperiods": [table.sample_period_s],
+        "computingdelays": [table.computing_delay_s],
         "touchkpa": [table.estimator.touch_pressure_kpa if table.estimator else 0.0],
     }
     pairs = [*table.lines, *[(None, None)] * (stages - len(table.lines))]

@@ -135,7 +135,16 @@ class Summary:
 
 def require_fit(plant: Plant, table: Table | PassageTable) -> None:
     """Raise `UnusableConfigError` where plant and table differ in what both state."""
+    clock = (
+        [
+            ("sampling period", plant.period_s, table.sample_period_s),
+            ("computing delay", plant.computing_s, table.computing_delay_s),
+        ]
+        if isinstance(table, Table)
+        else []
+    )  # a table for point sensors has all about them itself
     for name, one, other in (
+        *clock,
         ("zones", plant.zones_m, table.zones_m),
         ("stage pressures", plant.stages_kpa, table.pressures_kpa),
         ("dead band", plant.drive.band_kpa, table.dead_band_kpa),

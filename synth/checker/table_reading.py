@@ -38,6 +38,8 @@ class Table:
     mass_t: float
     axle_offsets_m: tuple[float, ...]
     target_m_s: float
+    sample_period_s: float
+    computing_delay_s: float
     degree: int
     pressures_kpa: tuple[float, ...]
     lines: tuple[tuple[Line | None, Line | None], ...]
@@ -113,6 +115,7 @@ def table_of(document: Mapping[str, Any]) -> Table:
         mass_t=float(cut["mass_t"]),
         axle_offsets_m=numbers(cut["axle_offsets_m"]),
         target_m_s=float(document["target_speed_m_s"]),
+        **clock_of(document["clock"]),
         degree=degree,
         pressures_kpa=tuple(float(stage["pressure_kpa"]) for stage in stages),
         lines=tuple((line_of(stage["lower"]), line_of(stage["upper"])) for stage in stages),
@@ -158,6 +161,13 @@ def approach_of(document: Mapping[str, Any]) -> tuple[float, int]:
         first_m = document["estimator"]["s_m"][0]
         refuse_unless(first_m <= -length_m, first_m, "estimator.s_m[0]", "-approach.length_m at most")
     return float(length_m), stage
+
+
+def clock_of(clock: Mapping[str, Any]) -> dict[str, Any]:
+    """The numbers of the regulator's clock, by the names of `Table`."""
+    for key, low, high in (("sample_period_s", 0.001, 2.0), ("computing_delay_s", 0.0, 2.0)):
+        refuse_unless(low <= clock[key] <= high, clock[key], f"clock.{key}", f"from {low:g} to {high:g}")
+    return {key: float(value) for key, value in clock.items()}
 
 
 def numbers(values: list[float]) -> tuple[float, ...]:

@@ -10,26 +10,27 @@ from typing import Any
 
 import numpy as np
 
-from synth.checker.code_file import CodeFile
+from synth.checker.code_file import CodeFile, code_at
 from synth.cli.inspect_aim import aim_document, aim_page
-from synth.cli.inspect_code import code_at, code_document, code_sentence
+from synth.cli.inspect_code import code_document, code_sentence
 from synth.cli.inspect_drawn import AskedDrawing, draw
 from synth.cli.inspect_passages import passage_document, passage_page
-from synth.cli.inspect_table import table_words
+from synth.cli.inspect_table import table_words, told_document
 from synth.frame.command import Limit, Verdict
+from synth.frame.exhibits import Column, Table
 from synth.frame.known_defects import Concerned, concerned
-from synth.frame.printed_numbers import counted
+from synth.frame.printed_numbers import counted, decimals
 from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.printed_page import Exhibit
-from synth.frame.terminal.printed_table import Column, PrintedTable
+from synth.frame.terminal.printed_table import IN_JSON, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.frame.terminal.telling import OK
+from synth.retarder.forms.exporters import exporters_at
 from synth.retarder.forms.table_file import TableFile, summary_beside
 from synth.retarder.forms.tables_at import TablesAt, tables_at
 from tuning_tables import DamagedTable
 from tuning_tables.approach import Approach
 from tuning_tables.decisions import Decisions
-from tuning_tables.document import to_document
 from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
 
@@ -66,15 +67,16 @@ class Inspected:
 
     @property
     def defects(self) -> tuple[Concerned, ...]:
-        """Known ones of the versions that made the tables."""
+        """Known ones of the versions that made the tables, or exported the code."""
         tables = (*self.tables.of_stages, *(file.table for file in self.tables.aims))
-        return concerned(lambda: map(to_document, tables))
+        return concerned(lambda: (*map(told_document, tables), *(each.document for each in self.code)))
 
     def document(self) -> dict[str, Any]:
         """It for programs."""
         tables = self.tables
         files = [*map(file_document, tables.files), *map(aim_document, tables.aims)]
-        found: dict[str, Any] = {"path": str(tables.path), "files": files}
+        exporters = [*exporters_at(tables.path)]
+        found: dict[str, Any] = {"path": str(tables.path), "exported_by": exporters, "files": files}
         found |= {"passage_tables": [*map(passage_document, tables.passages)]} if tables.passages else {}
         found |= {"code": [*map(code_document, self.code)]} if self.code else {}
         found |= {"known_defects": [each.document for each in self.defects]}
@@ -93,6 +95,7 @@ class Inspected:
             yield from passage_page(each)
         for aim in tables.aims:
             yield from aim_page(aim)
+        yield from (f"{tables.path}: its tables were exported by {name}" for name in exporters_at(tables.path))
         yield from map(code_sentence, self.code)
         if self.summary is not None:
             yield f"{tables.path / 'summary.json'}: {self.summary['sentence']}"
@@ -120,7 +123,7 @@ def is_mixed(tables: Sequence[ControllerTable]) -> bool:
 def file_document(file: TableFile) -> dict[str, Any]:
     """A file for programs."""
     tables = [
-        {**to_document(table), "category_number": table.cut.number, "lines_at": lines_at(table)}
+        {**told_document(table), "category_number": table.cut.number, "lines_at": lines_at(table)}
         for table in file.tables
     ]
     return {"path": str(file.path), "kind": file.kind, "checksum": "right", "tables": tables}
@@ -133,6 +136,7 @@ def table_page(table: ControllerTable, says_none: bool) -> list[Exhibit]:
         f"    lines      degree {table.degree}, path {table.valid.s_m[0]:g} to {table.valid.s_m[1]:g} m, "
         f"speed {table.valid.v_m_s[0]:g} to {table.valid.v_m_s[1]:g} m/s",
     ]
+    words.insert(-1, f"    clock      {table.clock}")
     if table.estimator is not None:
         words.insert(-1, f"    estimator  {estimator_words(table.estimator)}")
     elif says_none:
@@ -144,22 +148,21 @@ def table_page(table: ControllerTable, says_none: bool) -> list[Exhibit]:
     return [*words, lines_table(table)]
 
 
-def lines_table(table: ControllerTable) -> PrintedTable[dict[str, Any]]:
+def lines_table(table: ControllerTable) -> PrintedTable:
     """The lines at some places, in m/s, and what a gauge adds."""
-
-    def speed_column(place: int, path_m: float) -> Column[dict[str, Any]]:
-        return Column(f"at {path_m:.2f}{NO_BREAK}m", lambda line: f"{line['v_m_s'][place]:.3f}")
-
-    def name(line: dict[str, Any]) -> str:
-        return f"stage {line['k']} ({line['pressure_kpa']:g} kPa) {line['line']}"
-
-    def slope(line: dict[str, Any]) -> str:
-        return f"{1e2 * line['slope_m_s_per_kpa']:+.4f}"
-
-    slopes = (Column("+ m/s per 100 kPa", slope),) if table.has_gauge else ()
-    speeds = (speed_column(place, path_m) for place, path_m in enumerate(shown_path(table)))
-    columns = (Column("line, m/s", name, words=True), *speeds, *slopes)
-    return PrintedTable(columns, lines_at(table), "the output of --json")
+    places = list(enumerate(shown_path(table)))
+    columns = [Column("name", "line, m/s", words=True)]
+    columns += [Column(f"at {place}", f"at {path_m:.2f}{NO_BREAK}m", form=decimals(3)) for place, path_m in places]
+    columns += [Column("slope_m_s_per_kpa", "+ m/s per 100 kPa", form=lambda slope: f"{1e2 * slope:+.4f}")]
+    rows = [
+        {
+            **line,
+            "name": f"stage {line['k']} ({line['pressure_kpa']:g} kPa) {line['line']}",
+            **{f"at {place}": speed for place, speed in enumerate(line["v_m_s"])},
+        }
+        for line in lines_at(table)
+    ]
+    return PrintedTable(Table("lines", "", columns, rows), IN_JSON)
 
 
 def decision_words(table: ControllerTable) -> str:

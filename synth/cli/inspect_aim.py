@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from synth.frame.printed_numbers import counted
+from synth.cli.inspect_table import told_document
+from synth.frame.exhibits import Column, Row, Table
+from synth.frame.printed_numbers import counted, decimals
 from synth.frame.terminal.printed_page import Exhibit
-from synth.frame.terminal.printed_table import Column, PrintedTable
+from synth.frame.terminal.printed_table import IN_JSON, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.retarder.forms.aim_file import AimFile
 from tuning_tables.aim.aim_table import AimTable
-from tuning_tables.document import to_document
 
 SHOWN_DISTANCES = 6
 
 
 def aim_document(file: AimFile) -> dict[str, Any]:
     """An aim table for programs."""
-    document = to_document(file.table)
+    document = told_document(file.table)
     return {"path": str(file.path), "kind": "aim table", "checksum": "right", "tables": [document]}
 
 
@@ -70,32 +71,23 @@ def reported_words(table: AimTable) -> str:
     )
 
 
-class SpeedRow(NamedTuple):
-    """Exit speeds in m/s at the shown distances, NaN where there is none."""
-
-    cuts: str
-    speed_m_s: list[float]
-
-
-def speed_table(table: AimTable) -> PrintedTable[SpeedRow]:
+def speed_table(table: AimTable) -> PrintedTable:
     """Exit speeds at some free distances, for every number of cars; at the ends and the middle of the resistances."""
     distance, resistance = table.axes.free_distance_m, table.axes.resistance_n_per_kn
-    shown = np.unique(np.linspace(0, len(distance) - 1, SHOWN_DISTANCES).round().astype(int))
+    shown = np.unique(np.linspace(0, len(distance) - 1, SHOWN_DISTANCES).round().astype(int)).tolist()
     nodes = table.exit_speed_m_s.reshape(*table.axes.shape[:2], -1)
     count = nodes.shape[2]
-    rows = []
+    rows: list[Row] = []
     for row, cars in enumerate(table.axes.cars.tolist()):
         for column in sorted({0, count // 2, count - 1}):
             of = "" if resistance is None else f", {resistance[column]:g} N/kN"
-            rows.append(SpeedRow(f"{counted(cars, 'car')}{of}", nodes[row, shown, column].tolist()))
+            speeds = {f"node {node}": speed_or_none(nodes[row, node, column]) for node in shown}
+            rows.append({"cuts": f"{counted(cars, 'car')}{of}", **speeds})
+    columns = [Column("cuts", "exit speed, m/s", words=True)]
+    columns += [Column(f"node {node}", f"{distance[node]:g}{NO_BREAK}m free", form=decimals(3)) for node in shown]
+    return PrintedTable(Table("speeds", "", columns, rows), IN_JSON)
 
-    def speed_column(place: int, distance_m: float) -> Column[SpeedRow]:
-        def cell(row: SpeedRow) -> str:
-            speed = row.speed_m_s[place]
-            return "none" if np.isnan(speed) else f"{speed:.3f}"
 
-        return Column(f"{distance_m:g}{NO_BREAK}m free", cell)
-
-    speeds = (speed_column(place, distance[node]) for place, node in enumerate(shown))
-    cuts = Column[SpeedRow]("exit speed, m/s", lambda row: row.cuts, words=True)
-    return PrintedTable((cuts, *speeds), rows, "the output of --json")
+def speed_or_none(speed_m_s: float) -> float | str:
+    """The speed of a node, or that it has none."""
+    return "none" if np.isnan(speed_m_s) else float(speed_m_s)

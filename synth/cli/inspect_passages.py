@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
-from synth.cli.inspect_table import table_words
+from synth.cli.inspect_table import table_words, told_document
+from synth.frame.exhibits import Column, Table
+from synth.frame.printed_numbers import decimals
 from synth.frame.terminal.printed_page import Exhibit
-from synth.frame.terminal.printed_table import Column, PrintedTable
+from synth.frame.terminal.printed_table import IN_JSON, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.retarder.highest_stage import highest_stage
-from tuning_tables.document import to_document
-from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
 
@@ -20,7 +20,7 @@ AXLES = {DecidesOn.FIRST_AXLE: "the first axle", DecidesOn.EVERY_AXLE: "every ax
 
 def passage_document(table: PassageTable) -> dict[str, Any]:
     """A table for programs."""
-    return {**to_document(table), "category_number": table.cut.number}
+    return {**told_document(table), "category_number": table.cut.number}
 
 
 def passage_page(table: PassageTable) -> list[Exhibit]:
@@ -32,6 +32,7 @@ def passage_page(table: PassageTable) -> list[Exhibit]:
         f"    sensors    {len(sensors.path_m)} at {places} m; base {sensors.base_m:g} m, timer "
         f"+-{1e3 * sensors.timer_noise_s:g} ms in steps of {1e3 * sensors.timer_resolution_s:g} ms; "
         f"{AXLES[sensors.decides_on]} decides",
+        f"    clock      {sensors.clock}",
         f"    approach   the regulator acts from {table.approach.length_m:g} m before the entrance on, where it "
         f"commands no stage above {table.entrance_stage}; it takes over a cut only when the cut ahead has left",
         f"    tracker    believes {table.plausible.speed_m_s[0]:g} to {table.plausible.speed_m_s[1]:g} m/s, gains of "
@@ -41,30 +42,29 @@ def passage_page(table: PassageTable) -> list[Exhibit]:
     ]
 
 
-class InForce(NamedTuple):
-    """What holds at a passage while a stage is in force; sensor and axle are counted from 0, as in the file."""
-
-    passage: PassageRow
-    stage: int
-
-
-def switching_table(table: PassageTable) -> PrintedTable[InForce]:
+def switching_table(table: PassageTable) -> PrintedTable:
     """A row for each passage and stage in force, up to the highest stage that is ever asked for."""
     used = highest_stage(table) + 1
-
-    def speed_column(below: int) -> Column[InForce]:
-        name = f"{below}{NO_BREAK}|{NO_BREAK}{below + 1}"
-        return Column(name, lambda row: speed_word(row.passage.switching_m_s[row.stage][below]))
-
-    columns = (
-        Column[InForce]("path, m", lambda row: f"{row.passage.path_m:.2f}", once=True),
-        Column[InForce]("sensor", lambda row: str(row.passage.sensor), once=True),
-        Column[InForce]("axle", lambda row: str(row.passage.axle), once=True),
-        Column[InForce]("in force", lambda row: str(row.stage)),
-        *map(speed_column, range(used - 1)),
-    )
-    rows = [InForce(passage, stage) for passage in table.passages for stage in range(used)]
-    return PrintedTable(columns, rows, "the output of --json")
+    columns = [
+        Column("path_m", "path, m", form=decimals(2), once=True),
+        Column("sensor", "sensor", once=True),
+        Column("axle", "axle", once=True),
+        Column("in_force", "in force"),
+        *(Column(f"below {below}", f"{below}{NO_BREAK}|{NO_BREAK}{below + 1}", form=speed_word)
+          for below in range(used - 1)),
+    ]  # fmt: skip
+    rows = [
+        {
+            "path_m": passage.path_m,
+            "sensor": passage.sensor,
+            "axle": passage.axle,
+            "in_force": stage,
+            **{f"below {below}": passage.switching_m_s[stage][below] for below in range(used - 1)},
+        }
+        for passage in table.passages
+        for stage in range(used)
+    ]
+    return PrintedTable(Table("switching", "", columns, rows), IN_JSON)
 
 
 def speed_word(speed_m_s: float) -> str:

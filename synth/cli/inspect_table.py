@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from tuning_tables.table_kinds import StageTable
+from typing import Any
+
+from tuning_tables.canonical import CHECKSUM_KEY
+from tuning_tables.document import to_document
+from tuning_tables.table_kinds import AnyTable, StageTable
+
+
+def told_document(table: AnyTable) -> dict[str, Any]:
+    """A table for programs, less what is of the file that it was read from."""
+    return {key: value for key, value in to_document(table).items() if key not in ("exported_by", CHECKSUM_KEY)}
 
 
 def table_words(table: StageTable) -> list[str]:

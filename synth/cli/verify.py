@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 def verify_command(source: Path, passes: int, seed: int, output: Path | None, manner: Manner) -> int:
     """Check what is at `source` and print it, a line a table, and on a page in `output`; the exit code."""
+    from synth.checker.code_file import code_at
     from synth.checker.finding import NothingToVerifyError
     from synth.checker.verdict import verify
 
@@ -36,7 +37,7 @@ def verify_command(source: Path, passes: int, seed: int, output: Path | None, ma
     except NothingToVerifyError as fault:
         say(str(fault))
         return INPUT_FAULT
-    defects = concerned(lambda: (each.document for each in tables_of(verdict)))
+    defects = concerned(lambda: (each.document for each in (*tables_of(verdict), *code_at(source))))
     code = verdict.code or (LIMITS_MISSED if any(each.defect.unsafe for each in defects) else 0)
     told = [*words(verdict), *(each.sentence for each in defects)]
     if output is not None:

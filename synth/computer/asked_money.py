@@ -18,7 +18,7 @@ from synth.computer.unpriced import is_given
 from synth.computer.usual_money import USUAL_CHANGE, USUAL_RANGES, RangeSettings
 
 if TYPE_CHECKING:
-    from synth.computer.economics.hump_day_change import HumpDayChange
+    from synth.frame.interval import Interval
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class HumpFigures:
 
     today: HumpRates
     change: HumpChange
-    found: HumpDayChange | None = None
+    found: Mapping[str, Interval] | None = None
     sha256: Mapping[str, str] = field(default_factory=dict)
     reads: tuple[Path, ...] = ()
 
@@ -40,19 +40,25 @@ def figure_sources(rates: RatesSettings, folder: Path, place: str) -> HumpFigure
     if rates.today_trial is None or rates.new_trial is None:
         return HumpFigures(rates.today, rates.change)
     # Whoever tells figures needs nothing of how trains are humped.
-    from synth.computer.economics.hump_day_change import change_of_figures, change_of_trains, figures_of_trains
+    from synth.computer.economics.hump_day_change import (
+        change_of,
+        change_of_figures,
+        change_of_trains,
+        figures_of_trains,
+        rates_of,
+    )
     from synth.hump.trains.outcome_file import TRAINS
     from synth.hump.trains.stored_trains import stored_trains
 
     folders = {"today_trial": folder / rates.today_trial, "new_trial": folder / rates.new_trial}
     stored = {key: stored_trains(each, f"{place}: rates.{key} is {str(each)!r}") for key, each in folders.items()}
     today, new = stored["today_trial"].found, stored["new_trial"].found
-    figures = figures_of_trains("today", today)
+    figures = figures_of_trains(today)
     same = len(today) == len(new) and bool((today.train == new.train).all() and (today.cuts == new.cuts).all())
-    found = change_of_trains(today, new) if same else change_of_figures(figures, figures_of_trains("new", new))
+    found = change_of_trains(today, new) if same else change_of_figures(figures, figures_of_trains(new))
     return HumpFigures(
-        today=figures.rates,
-        change=found.change,
+        today=rates_of(figures),
+        change=change_of(found),
         found=found,
         sha256={key: hashlib.sha256(each.content).hexdigest() for key, each in stored.items()},
         reads=tuple(each / TRAINS for each in folders.values()),

@@ -91,8 +91,6 @@ def found_results(config: ResolvedComputer, done: Callable[[str], None]) -> Comp
 
 def reliable(config: ResolvedComputer) -> ReliableComputer:
     """Reliability and what failures cost."""
-    from synth.computer.reliability.maintenance_interval import CalendarHours, UsefulHours
-
     upkeep = config.settings.reliability
     checked, loss, longest, why = upkeep.checked, upkeep.single_loss(), None, ""
     try:
@@ -100,8 +98,8 @@ def reliable(config: ResolvedComputer) -> ReliableComputer:
     except PlantError as fault:
         why = str(fault)
     return ReliableComputer(
-        best_useful_h=None if checked is None else UsefulHours().best_interval_h(checked),
-        best_calendar_h=None if checked is None else CalendarHours().best_interval_h(checked),
+        best_useful_h=None if checked is None else checked.best_useful_h,
+        best_calendar_h=None if checked is None else checked.best_calendar_h,
         single_availability=upkeep.chain.stationary().availability,
         single_loss=(loss.unnoticed, loss.maintenance, loss.repair),
         duplex_availability=1.0 - upkeep.duplex_unavailability,

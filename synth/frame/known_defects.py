@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 Document: TypeAlias = Mapping[str, Any]
-"""A table as its JSON file says it."""
+"""A table as its JSON file says it, or code of tables of a `kind`, by its name as `id`."""
 
 PLACE: Final = Path(__file__).with_name("KNOWN-DEFECTS.json")
 OWN: Final = "retarder-synth"
@@ -37,11 +37,10 @@ class Defect:
     remedy: str
 
     def concerns(self, table: Document) -> bool:
-        """Whether a version with this defect made the table."""
-        made_by = table["generator"]
-        if made_by["name"] != OWN or table["kind"] not in self.kinds:
-            return False
-        return self.is_in(made_by["version"])
+        """Whether a version with this defect made the table, or exported it, as far as that is told."""
+        made_by = table.get("generator", {})
+        programs = [(made_by.get("name"), made_by.get("version")), table.get("exported_by", "").split(" ", 1)]
+        return table["kind"] in self.kinds and any(self.is_in(each[1]) for each in programs if each[0] == OWN)
 
     def is_in(self, version: str) -> bool:
         """Whether this version of the program has it; so it is taken where the version is none of ours."""
@@ -61,10 +60,11 @@ class Concerned:
     def sentence(self) -> str:
         """The warning."""
         each, count = self.defect, len(self.tables)
-        named = self.tables[0] if count == 1 else f"{count} of these tables"
+        named = self.tables[0] if count == 1 else f"{count} of these"
         return (
-            f"known defect {each.id}{', unsafe' if each.unsafe else ''}: a version that has it made {named}: "
-            f"{each.wrong}; what it does: {each.effect}; how to find it: {each.detect}; what to do: {each.remedy}"
+            f"known defect {each.id}{', unsafe' if each.unsafe else ''}: a version that has it made or exported "
+            f"{named}: {each.wrong}; what it does: {each.effect}; how to find it: {each.detect}; what to do: "
+            f"{each.remedy}"
         )
 
     @property

@@ -2,7 +2,7 @@
 
 They are made fast with options that numba does not document (`kernels.vector.numba_internals`), which a new release may
 drop. With the environment variable `RETARDER_SYNTH_PLAIN_KERNELS=1` none of them is used. Results are the same to the
-last bit; study `command-times` tells how much longer a tune takes.
+last bit.
 """
 
 from __future__ import annotations

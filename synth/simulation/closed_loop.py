@@ -24,7 +24,7 @@ from synth.kernels.loop.motion import Path, brake_rows
 from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.regulator import Rule, Sensor
 from synth.kernels.loop.trace import EVENT_FIELDS, Trace
-from synth.simulation.controllers import Controller, LineController, Regulator, TableController, fixed
+from synth.simulation.controllers import Controller, LineController, Regulator, TableController, all_fixed, fixed
 from synth.simulation.drive_pieces import drive_pieces, empty_periods
 from synth.simulation.lost_readings import readings_z
 from synth.simulation.many_passes import many_passes
@@ -135,7 +135,7 @@ class ClosedLoop:
     def _run(self, controller: Regulator, draws: Draws, trace: Trace) -> ExitSample:
         if controller.stages != self.stages:
             raise ValueError(f"closed loop: the controller has {controller.stages} stages, the loop {self.stages}")
-        law, passes = controller.law(), len(draws.cut_factor)
+        law, passes, draws = controller.law(), len(draws.cut_factor), all_fixed(draws)
         exits, work = empty_exits(passes), lane_memory()
         if isinstance(law, AnyTimeLaw):
             memory = work, empty_periods(self.sampled), empty_observed(law.rule, passes)

@@ -20,6 +20,7 @@ from tuning_tables.stage import MOST_STAGES
 from tuning_tables.table import ControllerTable
 
 Scalar = TypeVar("Scalar", bound=np.generic)
+Values = TypeVar("Values", bound=tuple[Any, ...])
 
 Law = regulator.Rule | AnyTimeLaw
 
@@ -29,6 +30,12 @@ def fixed(array: NDArray[Any], dtype: type[Scalar]) -> NDArray[Scalar]:
     view: NDArray[Scalar] = np.ascontiguousarray(array, dtype=dtype).view()
     view.setflags(write=False)
     return view
+
+
+def all_fixed(values: Values) -> Values:
+    """A named tuple with every array `fixed`: one that was unpickled, or made by somebody else, is not."""
+    held = (fixed(each, each.dtype.type) if isinstance(each, np.ndarray) else each for each in values)
+    return type(values)(*held)
 
 
 @dataclass(frozen=True)
@@ -54,7 +61,7 @@ class TableController:
     @cached_property
     def rule(self) -> regulator.Rule:
         """What is asked at a decision, but for the pressure."""
-        none, table = fixed(np.empty((0, 0)), np.float64), self.table.held
+        none, table = fixed(np.empty((0, 0)), np.float64), all_fixed(self.table.held)
         # Passes side by side look at the lines alone: what is no line must give no command.
         there = np.where(table.has_line[:, :, None], table.coefficient, np.float32(np.nan))
         table = table._replace(coefficient=fixed(there, np.float32))

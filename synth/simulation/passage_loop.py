@@ -18,7 +18,7 @@ from synth.kernels.loop.passes import Draws
 from synth.kernels.loop.trace import EVENT_FIELDS
 from synth.simulation.axle_pulses import deciding_pulses, every_pulse
 from synth.simulation.closed_loop import SUBSTEP_S, ClosedLoop, close_loop, empty_exits, trace_of
-from synth.simulation.controllers import fixed
+from synth.simulation.controllers import all_fixed, fixed
 from synth.simulation.heard_pairs import HeardPairs, as_given
 from synth.simulation.many_passes import many_passes
 from synth.simulation.passage_controller import PassageController
@@ -96,8 +96,8 @@ class PassageLoop:
         exits, outcome = empty_exits(passes), np.empty((passes, len(self.deciding.path_m)), dtype=np.uint8)
         memory = pass_memory(sources, len(pairs.source))
         count, heard = kernel.run_passage_passes(
-            self.radar.path, self.drive, pulses, pairs.for_kernel(), controller.rule, controller.tracks, draws, memory,
-            exits, outcome, events, seen,
+            self.radar.path, self.drive, pulses, pairs.for_kernel(), controller.rule, controller.tracks,
+            all_fixed(draws), memory, exits, outcome, events, seen,
         )  # fmt: skip
         sample = PassageSample(
             exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight, outcome=outcome

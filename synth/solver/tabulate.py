@@ -20,6 +20,7 @@ from tuning_tables import (
     Estimator,
     Generator,
     Predicted,
+    RegulatorClock,
     RetarderId,
     Stage,
     ValidRange,
@@ -70,6 +71,7 @@ def tabulate(
         retarder=retarder_of(plant),
         cut=cut_of(plant),
         target_speed_m_s=float(target_speed_m_s),
+        clock=clock_of(plant),
         degree=path_lines.degree,
         stages=tuple(stages),
         valid=ValidRange((float(plant.start_m), float(plant.exit_m)), (LOWEST_VALID_SPEED_M_S, highest)),
@@ -105,6 +107,11 @@ def cut_of(plant: Plant) -> CutId:
     """What a table says of the cuts that it is for."""
     cut = plant.cut
     return CutId(cut.category, float(cut.mass_t), cut.axle_offsets_m, cut.category_number)
+
+
+def clock_of(plant: Plant) -> RegulatorClock:
+    """What a table says of the clock of its regulator."""
+    return RegulatorClock(float(plant.sensor.sample_period_s), float(plant.sensor.computing_delay_s))
 
 
 def approach_of(plant: Plant) -> Approach | None:

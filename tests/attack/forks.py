@@ -72,9 +72,14 @@ def warmed(words: Sequence[str], folder: Path) -> int:
 def forked(words: Sequence[str], folder: Path, stroke: Stroke | None = None, limits: Limits | None = None) -> Ended:
     """Give the command `words` in `folder`."""
     out, err = folder / ".out", folder / ".err"
-    started, child = time.monotonic(), os.fork()
+    hears, tells = os.pipe()
+    child = os.fork()
     if child == 0:
-        run(words, folder, (out, err), limits or Limits())
+        run(words, folder, (out, err), limits or Limits(), tells)
+    os.close(tells)
+    os.read(hears, 1)  # from here on it is the command that a stroke hits
+    os.close(hears)
+    started = time.monotonic()
     ends: list[tuple[float, int]] = [(started + (limits or Limits()).clock_s, signal.SIGKILL)]
     ends += [] if stroke is None else [(started + stroke.after_s, stroke.number)]
     while True:
@@ -90,8 +95,8 @@ def forked(words: Sequence[str], folder: Path, stroke: Stroke | None = None, lim
     return Ended(code, out.read_text(errors="replace"), err.read_text(errors="replace"), seconds)
 
 
-def run(words: Sequence[str], folder: Path, streams: Sequence[Path], limits: Limits) -> None:
-    """The child: it never returns."""
+def run(words: Sequence[str], folder: Path, streams: Sequence[Path], limits: Limits, tells: int) -> None:
+    """The child: it never returns; before it begins it writes to the descriptor `tells`."""
     code = 99
     try:
         os.setpgid(0, 0)
@@ -100,6 +105,7 @@ def run(words: Sequence[str], folder: Path, streams: Sequence[Path], limits: Lim
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
         os.chdir(folder)
         limit(limits)
+        os.write(tells, b"x")
         code = main(list(words))
         sys.stdout.flush()
         sys.stderr.flush()

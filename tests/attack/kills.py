@@ -78,32 +78,39 @@ def parser() -> argparse.ArgumentParser:
 
 def series(order: Order, asked: argparse.Namespace) -> Series:
     """Kill `order` again and again, each time in what the last one left; then let it end."""
-    dice, words = random.Random(f"{order.line} {asked.seed}"), order.line.split()
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+    folder = Path(tempfile.mkdtemp())  # no TemporaryDirectory: a fork that ends in order would remove that, too
+    try:
         for each in asked.inputs.iterdir():
             (folder / each.name).symlink_to(each.resolve())
-        shutil.rmtree(output := folder / order.output, ignore_errors=True)
-        output.unlink(missing_ok=True)
-        code = warmed(words, folder)
-        whole = contents(output)
-        shutil.rmtree(output)
-        first = forked(words, folder)
-        faults, landed = [f"undisturbed: {fault}" for fault in unlike(output, whole, first, code)], 0
-        shutil.rmtree(output)
-        for _ in range(asked.kills):
-            if dice.random() < 0.2:
-                shutil.rmtree(output, ignore_errors=True)
-            if asked.by == FULL:
-                ended = forked(words, folder, limits=Limits(file_bytes=int(10.0 ** dice.uniform(1.0, 5.5))))
-            else:
-                after_s = dice.uniform(0.0, 1.05) * first.seconds
-                ended = forked(words, folder, Stroke(after_s, SIGNALS[asked.by]))
-            landed += ended.code not in (0, 1)
-            faults += judged(output, ended, whole, asked.by)
-        last = forked(words, folder)
-        faults += [f"at the end: {fault}" for fault in unlike(output, whole, last, code)]
-        return Series(order, tuple(faults), landed)
+        return series_in(folder, order, asked)
+    finally:
+        shutil.rmtree(folder)
+
+
+def series_in(folder: Path, order: Order, asked: argparse.Namespace) -> Series:
+    """The same in a folder that holds the inputs."""
+    dice, words, output = random.Random(f"{order.line} {asked.seed}"), order.line.split(), folder / order.output
+    shutil.rmtree(output, ignore_errors=True)
+    output.unlink(missing_ok=True)
+    code = warmed(words, folder)
+    whole = contents(output)
+    shutil.rmtree(output)
+    first = forked(words, folder)
+    faults, landed = [f"undisturbed: {fault}" for fault in unlike(output, whole, first, code)], 0
+    shutil.rmtree(output)
+    for _ in range(asked.kills):
+        if dice.random() < 0.2:
+            shutil.rmtree(output, ignore_errors=True)
+        if asked.by == FULL:
+            ended = forked(words, folder, limits=Limits(file_bytes=int(10.0 ** dice.uniform(1.0, 5.5))))
+        else:
+            after_s = dice.uniform(0.0, 1.05) * first.seconds
+            ended = forked(words, folder, Stroke(after_s, SIGNALS[asked.by]))
+        landed += ended.code not in (0, 1)
+        faults += judged(output, ended, whole, asked.by)
+    last = forked(words, folder)
+    faults += [f"at the end: {fault}" for fault in unlike(output, whole, last, code)]
+    return Series(order, tuple(faults), landed)
 
 
 def judged(output: Path, ended: Ended, whole: Mapping[str, bytes], by: str) -> Iterator[str]:

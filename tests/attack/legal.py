@@ -99,6 +99,9 @@ COMMANDS: Final[Mapping[str, Whole]] = {
     "speed": Whole("trial", INPUTS["trial.toml"], "hump speed drawn.toml"),
     "make": Whole("short-hump", INPUTS["short.toml"], "hump make drawn.toml"),
     "computer": Whole("computer", INPUTS["computer.toml"], "computer drawn.toml"),
+    "explore": Whole("configuration", INPUTS["park.toml"], "explore park/book.h5 --config drawn.toml"),
+    "watch": Whole("configuration", INPUTS["park.toml"], "watch validated/log.h5 --config drawn.toml"),
+    "yard": Whole("yard", INPUTS["yard.toml"], "hump watch drawn.toml"),
 }
 
 
@@ -112,6 +115,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         text = drawn(whole, f"{asked.command} {asked.seed} {number}") if number >= 0 else whole.base
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
+            for each in asked.inputs.iterdir() if asked.inputs else ():
+                (folder / each.name).symlink_to(each.resolve())
             (folder / "drawn.toml").write_text(text, encoding="utf-8")
             if number < 0:
                 warmed(typed, folder)
@@ -138,6 +143,7 @@ def parser() -> argparse.ArgumentParser:
     asked.add_argument("command", choices=tuple(COMMANDS))
     asked.add_argument("--number", type=int, default=50, help="of configurations, after the smallest form itself")
     asked.add_argument("--seed", type=int, default=0)
+    asked.add_argument("--inputs", type=Path, help="what the golden commands leave, for explore, watch and yard")
     asked.add_argument("-o", "--output", type=Path, default=Path("out/attack/legal"), help="where faults are stored")
     return asked
 

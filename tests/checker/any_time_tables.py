@@ -14,6 +14,7 @@ from tuning_tables import (
     Estimator,
     Generator,
     Predicted,
+    RegulatorClock,
     RetarderId,
     Stage,
     ValidRange,
@@ -40,6 +41,7 @@ def sound_table(name: str) -> ControllerTable:
         retarder=RetarderId("one", ((0.0, 10.0),), 20.5, 15.0),
         cut=CutId("medium", 22.0, (0.0, 1.85, 8.65, 10.5)),
         target_speed_m_s=4.0,
+        clock=RegulatorClock(sample_period_s=0.1, computing_delay_s=0.02),
         degree=1,
         stages=(
             Stage(0, 0.0, None, line(4.3, -0.01)),

@@ -25,12 +25,13 @@ from synth.checker.verdict import verify
 from synth.cli import main
 from tests.checker.planted_fault import Document, found, judged, look
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
+from tests.st_files import aim_st_files
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
 from tuning_tables.aim import AimTables
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.aim.st_source import aim_export, aim_st_files
+from tuning_tables.aim.st_source import aim_export
 from tuning_tables.c_source import c_files
 from tuning_tables.canonical import canonical_json, document_checksum
 from tuning_tables.csv_file import to_csv

@@ -220,6 +220,9 @@ def test_what_is_not_modelled_is_said_and_not_passed(gauged: Path, section: str,
     sha256 = summary["generator"]["config_sha256"] = config_sha256(config)
     (gauged / "summary.json").write_text(json.dumps(summary, ensure_ascii=False), encoding="utf-8")
     rewrite(file, lambda document: document["generator"].update(config_sha256=sha256))
+    if section == "sensor":
+        assert found(judged(file), Kind.DISAGREES, r"other computing delay: 0\.1, not 0\.02")
+        rewrite(file, lambda document: document["clock"].update({key: value}))
     verdict = judged(file)
     assert found(
         verdict, Kind.CLAIM, "cannot be confirmed: commands at any time are modelled only for valves that close"

@@ -11,14 +11,13 @@ from typing import Final
 
 import pytest
 
-from synth.checker.code_file import FOLDERS, CodeFile, code_files
+from synth.checker.code_file import FOLDERS, CodeFile, code_at, code_files
 from synth.checker.code_records import plain
 from synth.checker.export_check import findings_of
 from synth.checker.exports import code_differences
 from synth.checker.finding import Finding, Kind
 from synth.checker.source import Source, read_source
 from synth.checker.verdict import verify
-from synth.cli.inspect_code import code_at
 from synth.retarder.forms.code_options import CODE_NAMES, OPTIONS, CodeOptions
 from synth.retarder.forms.table_forms import FORMS
 from tests.controller_code.passage_tables import passage_book

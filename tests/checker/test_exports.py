@@ -18,11 +18,12 @@ from synth.checker.table_reading import Table, read_table
 from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
 from tests.controller_code.sample_book import FOUR_AXLES, surface_book, table_of
 from tests.controller_code.unlike_pairs import at_rest
+from tests.st_files import st_files
 from tuning_tables import ControllerTable, Decisions, to_json
 from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.plc_forms.iec import unit_files
-from tuning_tables.st_source import line_export, st_files
+from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
 
 

@@ -157,7 +157,7 @@ def test_columns_of_a_section_that_no_table_has(mixed: Path, tmp_path: Path) -> 
     [("complete", True), ("complete", [1]), ("complete", 1.0), ("version", 2.0), ("version", [1]),
      ("version", 2), ("version", 0), ("kind", "passages"), ("kind", "aim"), ("kind", 1),
      ("format", ["retarder-book"]), ("format", np.bytes_(b"retarder-book")), ("config_sha256", "0" * 63),
-     ("config_sha256", 0), ("tool_version", ""), ("tool_version", "two\nlines"), ("tool_version", 0.1)],
+     ("config_sha256", 0), ("exported_by", ""), ("exported_by", "two\nlines"), ("exported_by", 0.1)],
     ids=repr,
 )  # fmt: skip
 def test_a_root_attribute_of_another_kind(mixed: Path, tmp_path: Path, name: str, value: Any) -> None:

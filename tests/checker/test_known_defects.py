@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from scripts.documentation.known_defects_page import defects_text
+from synth.checker.code_file import code_at
 from synth.cli import main
 from synth.frame import known_defects
 from synth.frame.known_defects import Defect, release
@@ -36,19 +37,18 @@ def unsafe(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.M
 def test_tables_of_a_version_with_a_defect_are_named(
     tuned_once: Path, name: str, unsafe: bool, capfd: pytest.CaptureFixture[str]
 ) -> None:
+    count = 2 + len(code_at(tuned_once / name))
     for words, code in ((("verify", "--passes", "100"), int(unsafe)), (("inspect",), 0)):
         capfd.readouterr()
         assert main([*words, str(tuned_once / name)]) == code
         printed = " ".join(capfd.readouterr().out.split())
-        warning = (
-            f"known defect RS-0{', unsafe' * unsafe}: a version that has it made 2 of these tables: lines lie 1 m/s"
-        )
+        warning = f"known defect RS-0{', unsafe' * unsafe}: a version that has it made or exported {count} of these: "
         assert warning in printed
         assert printed.endswith(": nothing found, but made by a version with an unsafe defect") == bool(code)
         assert main([*words, str(tuned_once / name), "--json"]) == code
         told = json.loads(capfd.readouterr().out)
         assert [(each["id"], each["unsafe"], len(each["tables"])) for each in told["known_defects"]] == [
-            ("RS-0", unsafe, 2)
+            ("RS-0", unsafe, count)
         ]
         assert told.get("exit_code", 0) == code
 
@@ -72,7 +72,9 @@ def test_a_defect_concerns_the_versions_that_have_it(
         each = Defect(**{**vars(MADE_UP), "introduced": introduced, "fixed": fixed, "kinds": (kind,)})
         for made in (smallest_lines, smallest_points, smallest_aim):
             table: dict[str, Any] = to_document(made())
-            table["generator"] = {"name": "retarder-synth", "version": made_by}
+            table["generator"], exported = {"name": "by hand", "version": "9"}, f"retarder-synth {made_by}"
+            assert each.concerns({**table, "exported_by": exported}) == (is_concerned and table["kind"] == kind)
+            table |= {"generator": {"name": "retarder-synth", "version": made_by}, "exported_by": "another one"}
             assert each.concerns(table) == (is_concerned and table["kind"] == kind)
             assert not each.concerns({**table, "generator": {"name": "another program", "version": made_by}})
 

@@ -14,10 +14,11 @@ from synth.checker.finding import DamagedError
 from synth.checker.line_numbers import due
 from synth.checker.table_reading import Table, read_table
 from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
+from tests.st_files import st_files
 from tuning_tables import to_json
 from tuning_tables.c_source import c_files
 from tuning_tables.self_test_size import SMALL
-from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
 
 NUMBER = r"-?(?:0x[01][0-9a-f.]*p[+-]\d+f|\d[\d.]*(?:E[+-]\d+)?)"

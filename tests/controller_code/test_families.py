@@ -23,11 +23,12 @@ from synth.checker.table_reading import Table, read_table
 from tests.controller_code.conftest import Built, ToChange
 from tests.controller_code.unlike_pairs import BETWEEN_M_S, CASES, LIGHT, LIKE, UNLIKE, axles_of, pairs
 from tests.effort import sized
+from tests.st_files import st_files
 from tuning_tables import Status, to_json
 from tuning_tables.book_families import families_of
 from tuning_tables.c_source import c_files
 from tuning_tables.self_test_size import SMALL
-from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.st_source import TABLE_FILE
 
 OWN = {"family_no", "target_m_s", "coefficient", "slope"}
 """The number of the family, and the members in which two of its tables may differ."""

@@ -16,11 +16,12 @@ from scripts.studies.in_the_loop.controller_process import CONTRACT, Controller,
 from scripts.studies.in_the_loop.held_words import table_words
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimating_book, park_book, sample_book
+from tests.st_files import st_files
 from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.self_test_size import FULL, SMALL
-from tuning_tables.st_source import line_export, st_files
+from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
 
 POSITIONS = {"bunch": estimating_book(), "park": park_book()}

@@ -7,10 +7,11 @@ from pathlib import Path
 import pytest
 
 from tests.controller_code.sample_book import sample_book
+from tests.st_files import st_files
 from tuning_tables.c_source import c_files
 from tuning_tables.estimator import begin, unseen_samples
 from tuning_tables.rule import decide_for, speed_for
-from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.st_source import TABLE_FILE
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "controllers.md"
 

@@ -26,6 +26,7 @@ def test_cell_std_tends_to_the_process_for_short_cells_and_to_white_noise_for_lo
     assert float(FRICTION.path_cell_std(1e4)) == pytest.approx(0.1 * math.sqrt(2 * 2.0 / 1e4), rel=1e-9)
 
 
+@pytest.mark.requirement("PRED-04")
 @pytest.mark.parametrize("cell_m", [0.1, 0.5, 2.0, 5.0])
 def test_cells_as_a_chain_carry_the_work_variance_of_the_process(cell_m: float) -> None:
     """Σ of an AR(1) chain of cells has, per metre, the variance 2ℓσ² of the continuous process."""

@@ -2,6 +2,8 @@
 
 In each copy a small tune is made with every export; then its tests, `verify`, the self-test of its C code (gcc) and
 `qualify` are asked. The first row has no fault: there nothing may be found. Hours; `--only 3` asks about one fault.
+
+All copies have one path: kernels are kept by path and content, so only what a fault changes is compiled anew.
 """
 
 from __future__ import annotations
@@ -11,7 +13,6 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -52,17 +53,22 @@ def found_by(
     said: Path,
 ) -> list[str]:
     """What the tune and each finder come to in a copy with the fault; their print goes into files that begin so."""
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Path(folder)
-        for name in (*PACKAGES, "tests", "scripts", "docs"):
-            shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
-        for name in ("pyproject.toml", "README.md"):
-            shutil.copy(ROOT / name, copy)
-        if fault is not None:
-            fault.plant(copy)
-        tune = outcome(copy, tuning(copy), said.with_suffix(".tune.txt"), (0, 1))
-        asked = {name: find(copy, fault) for name, find in finders.items()}
-        return [tune, *(outcome(copy, what, said.with_suffix(f".{name}.txt"), (0,)) for name, what in asked.items())]
+    copy = said.with_name("copy").absolute()
+    make_copy(copy, fault)
+    tune = outcome(copy, tuning(copy), said.with_suffix(".tune.txt"), (0, 1)) if TUNED & finders.keys() else "not asked"
+    asked = {name: find(copy, fault) for name, find in finders.items()}
+    return [tune, *(outcome(copy, what, said.with_suffix(f".{name}.txt"), (0,)) for name, what in asked.items())]
+
+
+def make_copy(copy: Path, fault: ProgramFault | None) -> None:
+    """Make the folder `copy` a checkout with the fault; files keep their times, by which kernels are told apart."""
+    shutil.rmtree(copy, ignore_errors=True)
+    for name in (*PACKAGES, "tests", "scripts", "docs"):
+        shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "README.md"):
+        shutil.copy(ROOT / name, copy)
+    if fault is not None:
+        fault.plant(copy)
 
 
 def outcome(copy: Path, orders: Sequence[Sequence[str]], said: Path, sound: tuple[int, ...]) -> str:
@@ -110,6 +116,9 @@ FINDERS: Final[Mapping[str, Callable[[Path, ProgramFault | None], list[list[str]
     "qualify": lambda _, __: [[*PROGRAM, "qualify", "-o", "qualified"]],
     "tests": tests,
 }
+
+TUNED: Final = {"verify", "self-test"}
+"""Those that ask about a tune."""
 
 if __name__ == "__main__":
     sys.exit(main())

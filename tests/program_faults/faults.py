@@ -59,7 +59,7 @@ PLANTED: Final = {
 }
 TESTS: Final = {
     "rule": ("tests/tuning_tables", "tests/controller_code", "tests/checker"),
-    "plant": ("tests/oracles", "tests/convergence", "tests/synth", "tests/checker"),
+    "plant": ("tests/plant_models", "tests/oracles", "tests/convergence", "tests/synth", "tests/checker"),
     "prediction": ("tests/oracles", "tests/convergence", "tests/synth", "tests/checker"),
     "exporter": ("tests/tuning_tables", "tests/controller_code", "tests/checker"),
 }

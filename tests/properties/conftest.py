@@ -7,21 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from plant_models import (
-    Approach,
-    Cut,
-    DopplerSensor,
-    EntrySpeed,
-    Friction,
-    Plant,
-    Pneumatics,
-    PressingForce,
-    RetarderPosition,
-    RollingResistance,
-    TrackProfile,
-)
+from plant_models import Approach, DopplerSensor, EntrySpeed, Friction, Plant, PressingForce, RollingResistance
 from synth.problem.resolution import Resolution
 from synth.solver.chain.chain import Chain, persistent_chain
+from tests.oracles.conftest import small_plant
 
 ROUGH = Friction(0.12, 0.0, 0.10, 2.0)
 RADAR = DopplerSensor(0.05, 0.04, 0.1, 0.02)
@@ -35,18 +24,14 @@ def random_plant(
     resistance: RollingResistance = RUNNER,
 ) -> Plant:
     """One retarder of 8 m, three stages, a cut of two axles."""
-    position = RetarderPosition(
-        "small",
-        ((0.0, 8.0),),
-        (0.0, 200.0, 400.0),
-        PressingForce(0.08, 50.0, (1.0, 0.9)),
-        Pneumatics(700.0, 0.0, 0.07, 0.12, 0.09, 0.25, 0.2, 15.0),
-        7.0,
+    return small_plant(
+        zones_m=((0.0, 8.0),),
+        force=PressingForce(0.08, 50.0, (1.0, 0.9)),
+        friction=friction,
+        resistance=resistance,
+        sensor=sensor,
+        entry=EntrySpeed(4.0, 5.0),
     )
-    cut = Cut("С", 20.0, (0.0, 1.5), 2)
-    return Plant(
-        position, cut, TrackProfile.uniform(8.0), friction, resistance, sensor, EntrySpeed(4.0, 5.0)
-    )  # fmt: skip
 
 
 COARSE = Resolution(

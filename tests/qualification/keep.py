@@ -12,20 +12,21 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
-from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
-from synth.cli.qualification.golden import Golden, golden_of, kept
+from synth.cli.qualification.golden import golden_of, kept, surroundings
 from synth.cli.qualification.tuned import KINDS, tuned
 
 
-def with_this(kind: str, processor: str, folder: Path) -> Golden:
-    """The kept book with its hash on this `processor`."""
-    found = golden_of(tuned(folder, kind, plain=False))
-    return Golden({**kept()[kind].sha256, processor: found.sha256[""]}, found.rms_m_s)
+def with_this(kind: str, processor: str, folder: Path) -> dict[str, Any]:
+    """The kept book with its hash on this `processor`, and those of the others if the libraries were the same."""
+    found, before = golden_of(tuned(folder, kind, plain=False)), kept()[kind]
+    others = before.sha256 if before.made_with == found.made_with else {}
+    return {"sha256": {**others, processor: found.sha256[""]}, "rms_m_s": found.rms_m_s}
 
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
-        golden = {kind: asdict(with_this(kind, sys.argv[1], Path(folder))) for kind in KINDS}
-    print(json.dumps(golden, indent=1, sort_keys=True))
+        books = {kind: with_this(kind, sys.argv[1], Path(folder)) for kind in KINDS}
+    print(json.dumps({"books": books, "made_with": surroundings()}, indent=1, sort_keys=True))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import platform
 import shutil
 from collections.abc import Mapping
@@ -12,11 +13,11 @@ from pathlib import Path
 import pytest
 
 from synth.cli.qualification import structured_text
-from synth.cli.qualification.c_code import COMPILERS, c_checks, fault_check, self_test
+from synth.cli.qualification.c_code import COMPILERS, c_checks, compiler_check, fault_check, self_test
 from synth.cli.qualification.check import Outcome
-from synth.cli.qualification.golden import OTHER_PROCESSOR, Golden, golden_check, golden_of, kept
+from synth.cli.qualification.golden import ELSEWHERE, LIBRARIES, golden_check, golden_of, kept
 from synth.cli.qualification.kernels import plain_checks, tune_checks
-from synth.cli.qualification.program import Ran
+from synth.cli.qualification.program import Ran, process
 from synth.cli.qualification.second_program import (
     CODE,
     loop_check,
@@ -49,13 +50,27 @@ def test_the_kept_bytes_are_those_that_are_made(books: Books, kind: str) -> None
         assert check.found.startswith("the bytes of processors"), f"{check.found}; python -m tests.qualification.keep"
 
 
-@pytest.mark.parametrize(("factor", "outcome"), [(0.5, Outcome.PASSED), (1.5, Outcome.FAILED)])
-def test_other_bytes_are_held_to_the_figures(books: Books, factor: float, outcome: Outcome) -> None:
+def test_the_kept_bytes_were_made_with_the_libraries_of_the_lock() -> None:
+    lock = (Path(__file__).parents[2] / "requirements.lock").read_text(encoding="utf-8").splitlines()
+    made_with = next(iter(kept().values())).made_with
+    assert {f"{name}=={made_with[name]} \\" for name in LIBRARIES} <= {*lock}
+
+
+@pytest.mark.parametrize(
+    ("factor", "library", "outcome"),
+    [(0.5, "numpy", Outcome.PASSED), (1.5, "numpy", Outcome.FAILED), (0.5, "", Outcome.FAILED)],
+)
+def test_other_bytes_pass_with_other_libraries_alone_and_near_the_figures(
+    books: Books, factor: float, library: str, outcome: Outcome
+) -> None:
     book = books[MEASURED]
-    golden = Golden({"of some kind": "0" * 64}, golden_of(book).rms_m_s)
-    check = golden_check(with_rms(book, 1.0 + factor * OTHER_PROCESSOR), golden)
+    kept_here = golden_of(book)
+    made_with = {name: "0.1" if name == library else value for name, value in kept_here.made_with.items()}
+    golden = replace(kept_here, made_with=made_with)
+    check = golden_check(with_rms(book, 1.0 + factor * ELSEWHERE), golden)
     assert check.outcome is outcome
     assert "other bytes" in check.found
+    assert library in check.limit
 
 
 def test_the_version_that_wrote_a_table_changes_no_hash(books: Books) -> None:
@@ -104,6 +119,17 @@ def test_the_self_test_of_c_is_run_and_finds_a_changed_number(books: Books, tmp_
     assert fault_check(COMPILERS[0], code, tmp_path).outcome is Outcome.PASSED
     broken = {**code, Path(CODE).name: b"#error"}
     assert "#error" in self_test(COMPILERS[0], "-O0", broken, tmp_path / "broken")
+
+
+def test_a_compiler_that_waits_for_ever_or_steers_the_terminal_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert process(["sleep", "60"], tmp_path, longest_s=0.1).sentence == "exit code -1: sleep has not ended after 0.1 s"
+    (tmp_path / "steers").write_text("#!/bin/sh\nprintf '\\033[31m%05000d' 0 >&2\n")
+    (tmp_path / "steers").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    check = compiler_check("steers", "", {}, tmp_path)
+    assert (check.outcome, check.found.isprintable(), len(check.found)) == (Outcome.FAILED, True, 1000)
 
 
 def test_one_number_is_changed(books: Books) -> None:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from scripts.studies.cases import Case, named_cases
 from scripts.studies.correction.ageing import FrictionFalls, SensorCreeps
-from scripts.studies.correction.findings import Corrected, Row
 from scripts.studies.correction.sequence import corrected, run_sequence
 from scripts.studies.correction.study import rms_ratio
 from scripts.studies.tuned_table import tuned_table
@@ -94,21 +91,3 @@ def test_the_interval_of_a_ratio_holds_the_truth() -> None:
                                    common + 0.3 * rng.standard_normal((10, 50)))  # fmt: skip
         hits += low <= 0.9 <= high
     assert hits >= 364
-
-
-ROW = Row("stays", True, "52 t to 3 m/s", 0.03, 1.0, (0.99, 1.01), 1.0, (0.99, 1.01), 0.0, 0.0, 0.9, 0.1)
-
-
-@pytest.mark.parametrize(
-    ("change", "fault"),
-    [
-        ({}, ""),
-        ({"ratio": 1.02, "ratio_ci95": (1.01, 1.03)}, "lies above 1"),
-        ({"ratio": 1.02, "ratio_ci95": (1.01, 1.03), "stays": False}, ""),
-        ({"largest_m_s": 0.151}, "beyond the limit"),
-    ],
-)
-def test_faults(change: dict[str, object], fault: str) -> None:
-    found = Corrected("", 1, 10, 100, 0.15, 100.0, 0.06, 0.05, (replace(ROW, **change),))  # type: ignore[arg-type]
-    assert fault in "".join(found.faults())
-    assert bool(fault) == bool(found.faults())

@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 
-from scripts.studies.documents import result_of
+from scripts.studies.document_pictures import pictures_of
+from scripts.studies.documents import documents, result_of
 from scripts.studies.registry import STUDIES
 from scripts.studies.result import Result, read_result, run_study
 from scripts.studies.study import Study
@@ -74,6 +75,14 @@ def assert_drawn(result: Result, folder: Path) -> None:
 @pytest.mark.parametrize("name", every(3, [each.name for each in STUDIES if each.pictures]))
 def test_a_kept_result_is_drawn(name: str, tmp_path: Path) -> None:
     assert_drawn(result_of(ROOT, name), tmp_path)
+
+
+def test_a_page_shows_every_picture_of_a_study() -> None:
+    """A picture that no page shows serves nobody."""
+    shown = {(study, picture) for page in documents(ROOT) for study, picture, _ in pictures_of(page)}
+    drawn = [(each.name, name) for each in STUDIES if each.pictures
+             for name in each.figures(result_of(ROOT, each.name).findings)]  # fmt: skip
+    assert set(drawn) == shown
 
 
 def test_names_are_sorted_and_questions_are_sentences() -> None:

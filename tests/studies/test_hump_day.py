@@ -22,7 +22,6 @@ from scripts.studies.humping.base_trial import (
     with_planner,
     with_stds,
 )
-from scripts.studies.humping.day_figures import Pair, fewer_catch_ups
 from scripts.studies.humping.findings import HumpDay
 from scripts.studies.humping.runs import Group, measured
 from scripts.studies.humping.sensitivity import on_graph, on_section, thrown_in, with_king_switch, with_switches
@@ -126,18 +125,6 @@ def test_switches_are_changed_alone_and_the_king_switch_keeps_its_fall(trial: Hu
     assert king(moved) == pytest.approx((50.0, king(trial)[1]))
     behind = moved.routes.length_m - trial.routes.length_m
     np.testing.assert_allclose(behind, 8.0)
-
-
-@pytest.mark.long
-def test_feedback_that_is_worse_is_told(trial: HumpTrial) -> None:
-    pair = Pair("a pair", trial)
-    outcomes = measured([pair.group], TRAINS, 1, lambda _: None)
-    good = outcomes[pair.feedback]
-    bad = replace(good, caught=good.caught + 1 + np.arange(TRAINS) % 2)
-    assert fewer_catch_ups(bad, good).ci95[0] > 0.0
-    found = pair.found({pair.open: good, pair.feedback: bad})
-    assert found.fewer.value == pytest.approx(-1.5 / 8)
-    assert found.fewer.ci95[1] < 0.0
 
 
 @pytest.mark.long

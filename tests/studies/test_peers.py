@@ -12,7 +12,6 @@ import pytest
 from numba import njit
 
 from plant_models import Plant
-from scripts.studies.peers.findings import PREDICTIVE, TABLE, Contest, Figures, as_good, beaten, better
 from scripts.studies.peers.kernels.peer_loop import BY_TABLE, Peer
 from scripts.studies.peers.kernels.prediction import Prediction, held, line_square, stage_by_prediction
 from scripts.studies.peers.kernels.pulses import STATE, Pulses, begin_pulses, stage_by_pulses
@@ -268,24 +267,6 @@ def test_the_cost_of_a_peer_is_that_of_the_tables(passes: CommonPasses, loop: Pe
     square = (sample.exit_speed_m_s - AIM_M_S) ** 2
     weight = sample.weight / sample.weight.sum()
     assert cost_of(sample, aimed) == pytest.approx(weight @ square + 1e-3 * (weight @ sample.switchings))
-
-
-def figures(name: str, ratio: float, **numbers: float) -> Figures:
-    ends = 0.98 * ratio, 1.02 * ratio
-    return Figures(name, 0.02 * ratio, (0.0, 0.0), ratio, ends, 0.05, 8.0, 11.0, 0.0, numbers)
-
-
-def contest(*ratios: float) -> Contest:
-    names = [PREDICTIVE, "PI"]
-    rivals = [figures(name, ratio, gain=1.0) for name, ratio in zip(names, ratios, strict=True)]
-    return Contest("a case", "at rest", "priced", 1e-4, (figures(TABLE, 1.0), *rivals))
-
-
-def test_who_is_better() -> None:
-    contests = [contest(0.9, 2.0), contest(0.96, 2.0), contest(1.01, 2.0), contest(1.1, 0.9)]
-    assert as_good(contests) == 3
-    assert better(contests) == 1  # 1.01 is within its interval
-    assert beaten(contests) == 1
 
 
 def test_a_sensor_without_readings_moves_nothing(passes: CommonPasses, loop: PeerLoop) -> None:

@@ -10,9 +10,7 @@ import pytest
 
 from plant_models import PointSensors
 from scripts.studies.point_sensors.fault_losses import fault_rows
-from scripts.studies.point_sensors.findings import PointSensorWorth
 from scripts.studies.point_sensors.layouts import equal_sections, planned
-from scripts.studies.point_sensors.rows import FaultRow, ManyRow, SensorRow
 from scripts.studies.point_sensors.sensor_table import AXLES, SensorTable, tabulated, unfinished_share
 from scripts.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
 from scripts.studies.point_sensors.told import RESISTANCES, speeds_for, squares_at, told_bound
@@ -159,46 +157,3 @@ def test_without_fault_wide_limits_change_nothing(
     assert len(names) == len(set(names)) == 1 + 6 * (DECIDING + 1) + DECIDING + 7
     dead = [row for row in rows if row.fault.endswith("dead")]
     assert max(row.ratio for row in dead) > 1.0
-
-
-# --------------------------------------------------------------------------------------------------- claims
-
-
-def sensor_row(predicted: float, ratio: float, layout: str = "planned") -> SensorRow:
-    near = (0.98, 1.02)
-    equal = (ratio, (ratio - 0.01, ratio + 0.01)) if layout == "planned" else None
-    return SensorRow("park", "first", layout, (-2.0, 5.0, 20.0), predicted, 1.0, near, 1.0, near, equal, None, 0.0,
-                     (0.0, 0.1), 2.0, 0.0, (0.0, 0.1), 0.0, (0.0, 0.1))  # fmt: skip
-
-
-def fault_row(fault: str, rms: float) -> FaultRow:
-    near = (0.9 * rms, 1.1 * rms)
-    return FaultRow("park", "first", fault, rms, near, rms, near, 1.0, near, 0.0, near, 0.0, near)
-
-
-def many_row(ratio: float) -> ManyRow:
-    return ManyRow("0.05 m/s", 31, 99, 0.25, 0.08, 1.0, 1.0, (0.9, 1.1), 1.0, (0.9, 1.1), ratio,
-                   (ratio - 0.01, ratio + 0.01))  # fmt: skip
-
-
-def worth(rows: tuple[SensorRow, ...], ratio: float) -> PointSensorWorth:
-    faulty = (fault_row("no fault", 1.0), fault_row("sensor 0 dead", 2.0), fault_row("sensor 1 dead", 3.0))
-    return PointSensorWorth(1, 200, 200, 0.25, 0.015, 7, (), rows, faulty, (many_row(0.5), many_row(ratio)), (), ())
-
-
-def test_claims_that_hold_are_no_faults() -> None:
-    assert worth((sensor_row(1.1, 0.8), sensor_row(0.9, 0.8, "equal")), 1.05).faults() == ()
-
-
-@pytest.mark.parametrize(
-    ("rows", "ratio", "sentence"),
-    [
-        ((sensor_row(1.15, 0.8),), 1.0, "predicted / simulated is 1.150"),
-        ((sensor_row(0.85, 0.8),), 1.0, "predicted / simulated is 0.850"),
-        ((sensor_row(1.0, 1.02),), 1.0, "worse than equal sections, ratio 1.020"),
-        ((), 1.2, "rms / rms of the radar is 1.200"),
-    ],
-)
-def test_a_claim_that_fails_is_a_fault(rows: tuple[SensorRow, ...], ratio: float, sentence: str) -> None:
-    (fault,) = worth(rows, ratio).faults()
-    assert sentence in fault

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,13 +17,11 @@ from scripts.studies.sensor_fault import (
     reading_times_s,
 )
 from synth.retarder.comparison.baselines import energy_rule
-from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate, trace
+from synth.simulation.closed_loop import TableController, close_loop, simulate, trace
 from synth.simulation.exit_statistics import clopper_pearson
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import RandomPasses, random_passes
 from tests.synth.case_factory import make_plant, make_table
-from tuning_tables import ControllerTable
-from tuning_tables.stage import Stage
 
 
 @pytest.fixture(scope="module")
@@ -85,19 +82,6 @@ def test_a_sensor_lost_for_good_does_not_come_back(plant: Plant, passes: RandomP
     assert back.noise_z.shape[1] == 256  # the reason for more of them
 
 
-def test_without_any_reading_the_brake_stays_open(
-    plant: Plant, controller: TableController, passes: RandomPasses
-) -> None:
-    blind = LostReadings(1.0, seed=1)(passes, plant, np.zeros(len(passes)))
-    sample = simulate(plant, controller, blind)
-    assert sample.switchings.sum() == 0
-    loop = close_loop(plant, controller.stages)
-    draws = loop.draws(passes)
-    free = plant.cut.reduced_gravity_m_s2 * 1e-3 * (8.0 - draws.resistance_n_kn)
-    coasting = np.sqrt(draws.entry_m_s**2 + 2.0 * free * plant.exit_m)
-    assert np.abs(sample.exit_speed_m_s - coasting).max() < 1e-9
-
-
 def test_a_missing_reading_does_not_spoil_the_slope_for_ever(plant_52t: Plant, passes: RandomPasses) -> None:
     loop = close_loop(plant_52t, 5)
     controller = energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.25, 0.15)
@@ -110,32 +94,6 @@ def test_a_missing_reading_does_not_spoil_the_slope_for_ever(plant_52t: Plant, p
 
 
 # ------------------------------------------------------------------------------------------- bias
-
-
-def shifted(table: ControllerTable, shift_m_s: float) -> ControllerTable:
-    """All lines moved by `shift_m_s`."""
-
-    def moved(line: tuple[float, ...] | None) -> tuple[float, ...] | None:
-        return None if line is None else (float(np.float32(line[0] + shift_m_s)), *line[1:])
-
-    stages = tuple(Stage(s.k, s.pressure_kpa, moved(s.lower), moved(s.upper)) for s in table.stages)
-    return replace(table, stages=stages)
-
-
-@pytest.mark.parametrize(("bias", "resolution"), [(0.1, 0.0), (-0.1, 0.0), (0.08, 0.04), (-0.08, 0.04)])
-def test_a_bias_is_a_shift_of_the_lines(plant: Plant, passes: RandomPasses, bias: float, resolution: float) -> None:
-    # With quantisation only a bias of whole steps is one: the sensor rounds after it.
-    plant = replace(plant, sensor=replace(plant.sensor, resolution_m_s=resolution))
-    table = make_table("test", plant, 3.0)
-    shift = np.float32(bias / plant.sensor.noise_m_s)
-    biased = replace(passes, noise_z=(passes.noise_z + shift).astype(np.float32))
-    by_sensor = simulate(plant, TableController(table), biased)
-    by_lines = simulate(plant, TableController(shifted(table, -bias)), passes)
-    same = by_sensor.exit_speed_m_s == by_lines.exit_speed_m_s
-    # Not all: a reading on the edge of a line is decided by the last bit of float32.
-    assert np.count_nonzero(~same) <= 2
-    healthy = simulate(plant, TableController(table), passes)
-    assert np.mean(healthy.exit_speed_m_s == by_sensor.exit_speed_m_s) < 0.5
 
 
 # ------------------------------------------------------------------------------------------- where they lie
@@ -167,10 +125,3 @@ def test_faults_do_not_depend_on_how_many_passes_are_drawn(plant: Plant, passes:
     for fault in (DropOut(0.5, at_random(3)), LostReadings(0.2, seed=5)):
         whole = fault(passes, plant, transit).noise_z[:50]
         assert np.array_equal(fault(few, plant, transit[:50]).noise_z, whole, equal_nan=True)
-
-
-def test_lines_hold_on_a_missing_reading_too(plant_52t: Plant, passes: RandomPasses) -> None:
-    controller = energy_rule(close_loop(plant_52t, 5), 3.0, 4, 0.8, 0.15, 0.0, 0.15)
-    assert isinstance(controller, LineController)
-    blind = LostReadings(1.0, seed=1)(passes, plant_52t, np.zeros(len(passes)))
-    assert simulate(plant_52t, controller, blind).switchings.sum() == 0

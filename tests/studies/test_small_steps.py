@@ -1,17 +1,15 @@
-"""Steps of studies that are small enough to be known: cases by name, densities, cells of the book, gauges."""
+"""Steps of studies that are small enough to be known: cases by name, the order of work side by side, criteria."""
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from scripts.studies.cases import class_cases, named_cases, of_masses
-from scripts.studies.criteria.study import BINS_M_S, criteria, density_of
+from scripts.studies.criteria.study import criteria
 from scripts.studies.side_by_side import side_by_side
 from synth.frame.input_error import InputError
 from synth.problem.criterion import SQUARED_ERROR_CRITERION
 from synth.retarder.configuration.config_file import load_config
-from tests.synth.case_factory import make_sample
 
 
 def test_cases_are_found_by_mass_and_target() -> None:
@@ -33,18 +31,6 @@ def test_a_wrong_case_is_told_with_the_masses_known(word: str) -> None:
 
 def test_work_side_by_side_keeps_its_order() -> None:
     assert side_by_side(lambda x: x * x, range(20), threads=3) == tuple(x * x for x in range(20))
-
-
-def test_the_density_of_errors_is_a_density() -> None:
-    sample = make_sample(3.0, 0.05, 1)
-    density = np.array(density_of(sample, 3.0))
-    error = sample.exit_speed_m_s - 3.0
-    inside = (error >= BINS_M_S[0]) & (error <= BINS_M_S[-1])
-    share = float(sample.weight[inside].sum() / sample.weight.sum())
-    assert float(density @ np.diff(BINS_M_S)) == pytest.approx(share)
-    assert share > 0.99
-    middle = 0.5 * (np.array(BINS_M_S[1:]) + np.array(BINS_M_S[:-1]))
-    assert float(density @ (middle * np.diff(BINS_M_S))) == pytest.approx(float(error.mean()), abs=0.006)
 
 
 def test_every_criterion_differs_from_the_default_in_one_thing() -> None:

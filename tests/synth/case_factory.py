@@ -7,18 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import (
-    Cut,
-    DopplerSensor,
-    EntrySpeed,
-    Friction,
-    Plant,
-    Pneumatics,
-    PressingForce,
-    RetarderPosition,
-    RollingResistance,
-    TrackProfile,
-)
+from plant_models import Cut, Plant, RollingResistance
 from synth.retarder.case_result import CaseResult, CaseStudy, PolicyMap
 from synth.retarder.comparison.comparison import Comparison
 from synth.retarder.comparison.measured import Measured
@@ -33,6 +22,8 @@ from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tabulate import clock_of
+from tests.synth.conftest import GONDOLA_OFFSETS_M, pilot_plant
 from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange
 from tuning_tables.stage import round_coefficients
 
@@ -47,23 +38,8 @@ NAMES_AND_SPREAD = (
 
 def make_plant(mass_t: float, stages: int) -> Plant:
     """A gondola on a two-retarder position."""
-    position = RetarderPosition(
-        name="КНП-5",
-        zones_m=((0.0, 12.475), (14.475, 26.95)),
-        stage_pressures_kpa=(0.0, 150.0, 300.0, 450.0, 600.0),
-        force=PressingForce(20.0 / 550.0, 50.0),
-        pneumatics=Pneumatics(700.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 15.0),
-        max_entry_speed_m_s=7.0,
-    )
-    return Plant(
-        position=position,
-        cut=Cut("ЛС", mass_t, (0.0, 1.85, 8.65, 10.5), stages - 1),
-        profile=TrackProfile.uniform(8.0),
-        friction=Friction(common_cv=0.15, axle_cv=0.0, path_std=0.10, correlation_length_m=2.0),
-        resistance=RollingResistance(1.5, 0.5),
-        sensor=DopplerSensor(0.05, 0.04, 0.1, 0.02),
-        entry=EntrySpeed(5.0, 6.5),
-    )
+    cut = Cut("ЛС", mass_t, GONDOLA_OFFSETS_M, stages - 1)
+    return replace(pilot_plant(mass_t), cut=cut, resistance=RollingResistance(1.5, 0.5))
 
 
 def make_case(
@@ -215,6 +191,7 @@ def make_table(label: str, plant: Plant, target: float) -> ControllerTable:
         retarder=RetarderId(position.name, position.zones_m, plant.exit_m, position.pneumatics.dead_band_kpa),
         cut=CutId(plant.cut.category, plant.cut.mass_t, plant.cut.axle_offsets_m),
         target_speed_m_s=target,
+        clock=clock_of(plant),
         degree=3,
         stages=stages,
         valid=ValidRange((0.0, plant.exit_m), (0.3, 9.0)),

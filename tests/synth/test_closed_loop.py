@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,8 @@ import pytest
 
 from plant_models import Cut, Friction, Plant, RollingResistance
 from plant_models.stage_regulator import stage_locked_actuator
+from synth.kernels.loop.closed_loop import run_passes
+from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import (
     LineController,
     TableController,
@@ -23,10 +26,9 @@ from synth.simulation.path_cells import cell_edges_m
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.switching_lines import SwitchingLines
+from tests.synth.case_factory import make_table
 from tests.synth.loop_controllers import constant_lines, energy_controller
-from tuning_tables.figures import Predicted, ValidRange
 from tuning_tables.json_file import read_json, write_json
-from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
 
@@ -135,18 +137,7 @@ def cubic_table(plant: Plant, target_m_s: float) -> ControllerTable:
         upper = round_coefficients(cubic[:, k]) if k < lines.stages - 1 else None
         lower = round_coefficients(cubic[:, k - 1] - np.array([0.15, 0, 0, 0])) if k > 0 else None
         stages.append(Stage(k, plant.position.stage_pressures_kpa[k], lower, upper))
-    return ControllerTable(
-        id="cubic",
-        created="2026-11-20T22:46:00Z",
-        generator=Generator("test", "0", "0" * 64),
-        retarder=RetarderId("pilot", plant.position.zones_m, plant.exit_m, 15.0),
-        cut=CutId(plant.cut.category, plant.cut.mass_t, plant.cut.axle_offsets_m),
-        target_speed_m_s=target_m_s,
-        degree=3,
-        stages=tuple(stages),
-        valid=ValidRange((0.0, plant.exit_m), (0.3, 9.0)),
-        predicted=Predicted(0.05, 0.0, 0.01, 4.0),
-    )
+    return replace(make_table("cubic", plant, target_m_s), stages=tuple(stages))
 
 
 def test_a_table_read_back_drives_the_loop_like_its_own_lines(
@@ -168,6 +159,17 @@ def test_a_table_read_back_drives_the_loop_like_its_own_lines(
     assert same.mean() > 0.99
     assert by_table.switchings.mean() > 1.0
     assert np.abs(by_table.exit_speed_m_s - by_lines.exit_speed_m_s).max() < 0.3
+
+
+def test_one_kernel_runs_whatever_made_the_arrays(plant_52t: Plant, passes: RandomPasses) -> None:
+    """Tables of another process, and passes that may be written to; compiling it anew takes ten seconds."""
+    table, loop = cubic_table(plant_52t, 3.0), close_loop(plant_52t, 5)
+    draws = loop.draws(passes)
+    exits = loop.run(TableController(table), draws).exit_speed_m_s
+    compiled = len(run_passes.signatures)
+    again = loop.run(TableController(pickle.loads(pickle.dumps(table))), Draws(*map(np.array, draws))).exit_speed_m_s
+    assert again.tobytes() == exits.tobytes()
+    assert len(run_passes.signatures) == compiled
 
 
 def test_controller_must_fit_the_loop(plant_52t: Plant, passes: RandomPasses) -> None:

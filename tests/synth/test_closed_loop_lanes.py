@@ -6,6 +6,7 @@ import math
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -22,9 +23,9 @@ from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines
 from tests.oracles.passes_one_by_one import events_of, one_by_one
+from tests.synth.case_factory import make_table
 from tuning_tables.estimator import Estimator
-from tuning_tables.figures import Predicted, ValidRange
-from tuning_tables.provenance import CutId, Generator, RetarderId
+from tuning_tables.figures import ValidRange
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
 
@@ -77,19 +78,8 @@ def wavy_table(plant: Plant, target_m_s: float) -> ControllerTable:
                 round_coefficients(np.array(upper)) if k < plant.top_stage else None,
             )
         )
-    return ControllerTable(
-        id="wavy",
-        created="2026-11-20T22:46:00Z",
-        generator=Generator("test", "0", "0" * 64),
-        retarder=RetarderId("pilot", plant.position.zones_m, plant.exit_m, 15.0),
-        cut=CutId(plant.cut.category, plant.cut.mass_t, plant.cut.axle_offsets_m),
-        target_speed_m_s=target_m_s,
-        degree=3,
-        stages=tuple(stages),
-        # Narrower than the position: the ends are clamped.
-        valid=ValidRange((1.0, plant.exit_m - 2.0), (0.3, 9.0)),
-        predicted=Predicted(0.05, 0.0, 0.01, 4.0),
-    )
+    narrow = ValidRange((1.0, plant.exit_m - 2.0), (0.3, 9.0))  # than the position: the ends are clamped
+    return replace(make_table("wavy", plant, target_m_s), stages=tuple(stages), valid=narrow)
 
 
 @pytest.mark.parametrize("target_m_s", [2.0, 4.0])
@@ -220,31 +210,37 @@ def test_a_radar_that_loses_readings(plant_22t: Plant, passes: RandomPasses, est
         assert np.mean(heard.transit_time_s != sample.transit_time_s) > 0.3
 
 
-def exits_of_a_few_passes() -> str:
-    """Bytes of what twelve passes of the default book do under four laws."""
+def few_exits(laws_of: Callable[[ClosedLoop], tuple[Regulator, ...]]) -> str:
+    """Bytes of what twelve passes of the default book do under each law."""
     _, plant = load_config(None).plants()[-1]  # all five stages
     loop, rng, n = close_loop(plant, plant.top_stage + 1), np.random.default_rng(5), 12
     entry_u, phase_u, resistance_u = (rng.random(n) for _ in range(3))
     path_z, noise_z = (rng.standard_normal((n, 512), dtype=np.float32) for _ in range(2))
     cut_z = rng.standard_normal(n)
     draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.arange(n), np.ones(n)))
-    table = TableController(wavy_table(plant, 3.0))
-    observing = TableController(replace(table.table, estimator=rough_estimator(plant)))
-    lines = relay(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)
-    laws: tuple[Controller, ...] = table, observing, *lines
-    return "".join(array.tobytes().hex() for law in laws for array in vars(loop.run(law, draws)).values())
+    return "".join(array.tobytes().hex() for law in laws_of(loop) for array in vars(loop.run(law, draws)).values())
 
 
-WITHOUT_COMPILER = """
-from tests.synth.test_closed_loop_lanes import exits_of_a_few_passes
-print(exits_of_a_few_passes())
-"""
+def laws_at_rest(loop: ClosedLoop) -> tuple[Regulator, ...]:
+    table = TableController(wavy_table(loop.plant, 3.0))
+    observing = TableController(replace(table.table, estimator=rough_estimator(loop.plant)))
+    return table, observing, relay(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)
 
 
-def test_the_kernels_mean_the_same_without_the_compiler() -> None:
+def without_compiler(laws: str) -> str:
+    """`few_exits` of a function of the tests of `synth`, in a process that compiles nothing."""
+    module, _, name = laws.rpartition(".")
+    program = (
+        "from tests.synth.test_closed_loop_lanes import few_exits\n"
+        f"from tests.synth.{module} import {name}\nprint(few_exits({name}))"
+    )
     plain = subprocess.run(
-        [sys.executable, "-c", WITHOUT_COMPILER], env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        [sys.executable, "-c", program], env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
         capture_output=True, text=True, timeout=120, check=False,
     )  # fmt: skip
     assert plain.returncode == 0, plain.stderr
-    assert plain.stdout.strip() == exits_of_a_few_passes()
+    return plain.stdout.strip()
+
+
+def test_the_kernels_mean_the_same_without_the_compiler() -> None:
+    assert without_compiler("test_closed_loop_lanes.laws_at_rest") == few_exits(laws_at_rest)

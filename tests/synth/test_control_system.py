@@ -18,7 +18,8 @@ from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
 from tests.effort import every
-from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange
+from tests.synth.case_factory import make_table
+from tuning_tables import ControllerTable, Stage
 
 control = pytest.importorskip("control")
 
@@ -40,24 +41,14 @@ def quiet(plant_52t: Plant) -> Plant:
 def table_for(plant: Plant) -> ControllerTable:
     """A plausible linear table for 3 m/s; a raise or a lower at every stage."""
     pressures = plant.position.stage_pressures_kpa
-    return ControllerTable(
-        id="test",
-        created="2026-11-20T22:46:00Z",
-        generator=Generator("retarder-synth", "0.1.0", "0123456789abcdef" * 4),
-        retarder=RetarderId("pilot", plant.position.zones_m, plant.exit_m, 15.0),
-        cut=CutId("medium", plant.cut.mass_t, plant.cut.axle_offsets_m),
-        target_speed_m_s=3.0,
-        degree=1,
-        stages=(
-            Stage(0, pressures[0], None, (4.5, -0.03125)),
-            Stage(1, pressures[1], (3.5, -0.015625), (5.25, -0.03125)),
-            Stage(2, pressures[2], (4.5, -0.03125), (5.75, -0.046875)),
-            Stage(3, pressures[3], (4.75, -0.046875), (6.0, -0.046875)),
-            Stage(4, pressures[4], (5.25, -0.046875), None),
-        ),
-        valid=ValidRange((0.0, plant.exit_m), (0.3, 9.0)),
-        predicted=Predicted(0.1, 0.0, 0.0, 2.0),
+    lines = (
+        Stage(0, pressures[0], None, (4.5, -0.03125)),
+        Stage(1, pressures[1], (3.5, -0.015625), (5.25, -0.03125)),
+        Stage(2, pressures[2], (4.5, -0.03125), (5.75, -0.046875)),
+        Stage(3, pressures[3], (4.75, -0.046875), (6.0, -0.046875)),
+        Stage(4, pressures[4], (5.25, -0.046875), None),
     )
+    return replace(make_table("test", plant, 3.0), degree=1, stages=lines)
 
 
 def controller_for(plant: Plant, law: str) -> Controller:

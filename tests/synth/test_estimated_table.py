@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import Friction, Plant, PressingForce
-from synth import load_problem
+from plant_models import Friction, Plant
 from synth.problem.aim import Aim
 from synth.problem.estimator_resolution import LEAST_ERROR_M_S, design_error_m_s
 from synth.problem.resolution import Resolution
@@ -19,7 +18,7 @@ from synth.retarder.estimation.estimated_table import SHIFTS, EstimatedTable, Tr
 from synth.retarder.estimation.estimator_design import estimator_of, speed_error_m_s
 from synth.retarder.estimation.tuning_days import tuning_days
 from synth.simulation.closed_loop import LineController, close_loop, simulate, trace
-from synth.simulation.exit_statistics import exit_statistics, rms_ratio
+from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import solve
@@ -162,40 +161,6 @@ def on_nodes(nodes_m: np.ndarray, lines: SwitchingLines, rows: np.ndarray) -> np
     """`rows` of lines at other nodes, infinite where they are."""
     inside = [np.interp(nodes_m, lines.nodes_m, np.nan_to_num(row, posinf=0.0, neginf=0.0)) for row in rows]
     return np.where(np.isfinite(rows[:, :1]), np.array(inside), rows[:, :1])
-
-
-@pytest.mark.long
-def test_lines_for_slow_days_stand_slow_valves(passes: RandomPasses) -> None:
-    """With valves twice as slow they are better beyond chance, and the usual day hardly pays."""
-    plants = [uncertain(load_problem("gondola-4-52t", 3.0).plant, 0.08, spread) for spread in (0.0, 0.3)]
-    made = [made_for(plant, 3.0, passes, Resolution()) for plant in plants]
-    controllers = [controller_of(each.lines, each.estimator) for each in made]
-    fresh = stratified_passes(15, 0, 4000)
-    drive = replace(plants[0].position.pneumatics, day_spread=np.log(2.0)).on_day(1.0)
-    cold = replace(plants[0], position=replace(plants[0].position, pneumatics=drive))
-    usual, slow = (
-        [exit_statistics(simulate(plant, each, fresh), 3.0) for each in controllers] for plant in (plants[0], cold)
-    )
-    assert usual[1].rms_m_s < 1.12 * usual[0].rms_m_s
-    assert slow[1].rms_ci95_m_s[1] < slow[0].rms_ci95_m_s[0]
-
-
-@pytest.mark.long
-def test_lines_for_an_uncertain_mean_keep_a_reserve(plant_of: Callable[[float], Plant], passes: RandomPasses) -> None:
-    """On a day of little friction fewer cuts leave too fast, beyond chance, and the mean day hardly pays."""
-    target = 3.0
-    plants = [uncertain(plant_of(36.0), mean_cv) for mean_cv in (0.0, 0.15)]
-    made = [made_for(plant, target, passes) for plant in plants]
-    fresh = stratified_passes(13, 0, 6000)
-    controllers = [controller_of(each.lines, each.estimator) for each in made]
-    nominal = [exit_statistics(simulate(plants[0], each, fresh), target).rms_m_s for each in controllers]
-    assert nominal[1] < 1.1 * nominal[0]
-    force = PressingForce(0.7 * 20.0 / 550.0, 50.0)
-    weak = replace(plants[0], position=replace(plants[0].position, force=force))
-    samples = [simulate(weak, each, fresh) for each in controllers]
-    fast = [sample.weight * (sample.exit_speed_m_s > target + 0.3) for sample in samples]
-    fewer = (fast[0] - fast[1]).reshape(-1, 100).mean(axis=1)  # by replicate
-    assert fewer.mean() > 4.0 * fewer.std() / np.sqrt(len(fewer))
 
 
 def test_where_the_mean_is_known_lines_are_designed_as_for_the_friction_of_a_cut(

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
 from synth.retarder import first_run
-from synth.retarder.first_run import COMMAND, compiled_beside
+from synth.retarder.first_run import compiled_beside
 
 WAITS_FOR_EVER = (sys.executable, "-c", "import time; time.sleep(600)")
 FAILS = (sys.executable, "-c", "raise SystemExit(1)")
@@ -46,12 +43,3 @@ def test_one_that_is_not_done_is_ended_and_tells_nothing(
     began = time.monotonic()
     assert len(ran(command, 0.3)) == 1
     assert time.monotonic() - began < 10.0
-
-
-@pytest.mark.long
-def test_it_leaves_what_values_a_policy_in_the_cache(tmp_path: Path) -> None:
-    place = {"RETARDER_SYNTH_CACHE": str(tmp_path)}
-    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"} | place
-    subprocess.run(COMMAND, env=environment, check=True, timeout=600)
-    kept = {path.name.split("-")[0] for path in tmp_path.rglob("*.nbi")}
-    assert {"policy_density.forward", "policy_value.backward", "commands.command_slopes"} <= kept

@@ -76,6 +76,16 @@ def test_files_without_kernels_leave_the_fingerprint_alone(checkout: Path, name:
     assert kernel_fingerprint(checkout) == before
 
 
+def test_a_system_that_does_not_name_its_processor_has_a_fingerprint(
+    checkout: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_such_file(path: Path, **_: object) -> str:
+        raise FileNotFoundError(2, "No such file or directory", str(path))
+
+    monkeypatch.setattr(Path, "read_text", no_such_file)
+    assert len(kernel_fingerprint(checkout)) == 16
+
+
 @pytest.mark.parametrize(("setting", "changes"), [("NUMBA_BOUNDSCHECK", True), ("NUMBA_NUM_THREADS", False)])
 def test_settings_that_change_the_machine_code_change_the_fingerprint(
     checkout: Path, monkeypatch: pytest.MonkeyPatch, setting: str, changes: bool

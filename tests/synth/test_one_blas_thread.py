@@ -14,20 +14,6 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from synth.solver.one_blas_thread import one_blas_thread
 
-POLISHED = """
-import importlib.util, sys
-from synth.solver.tuned_lines import tuned_lines
-from synth.solver.chain.chain import persistent_chain
-from synth.problem.aim import Aim
-from synth.problem.criterion import Criterion
-spec = importlib.util.spec_from_file_location("plants", sys.argv[1])
-plants = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(plants)
-design = persistent_chain(plants.random_plant(), plants.COARSE)
-for target_m_s in (1.5, 2.0, 2.5, 3.0):
-    print(tuned_lines(design, Aim(target_m_s, Criterion(1.0, 1e-5)), 3).best.coefficients.tobytes().hex())
-"""
-
 NOISE = """
 import importlib.util, sys
 from synth.solver.chain.chain import persistent_chain
@@ -81,14 +67,6 @@ def test_what_was_is_restored_after_a_fault() -> None:
     with pytest.raises(ZeroDivisionError), one_blas_thread():
         raise ZeroDivisionError
     assert threads() == before
-
-
-@pytest.mark.long
-def test_polished_lines_are_the_same_to_the_bit_whatever_blas_is_told() -> None:
-    one = printed(POLISHED, OPENBLAS_NUM_THREADS="1")
-    assert len(one) > 1000
-    assert printed(POLISHED, OPENBLAS_NUM_THREADS="2") == one
-    assert printed(POLISHED, OPENBLAS_NUM_THREADS="4") == one
 
 
 def test_the_noise_of_the_prediction_is_the_same_to_the_bit_by_every_kernel_of_blas() -> None:

@@ -14,13 +14,10 @@ import pytest
 
 from plant_models.library import SourcedValue
 from synth.frame.command import Verdict
-from synth.frame.exhibits import Chart, Column, Sentence, Table, exhibits_of
-from synth.frame.page.inline_svg import inline_svg, shorter
-from synth.frame.page.markup import VOID, Markup, element
-from synth.frame.page.page_table import MOST_COLUMNS, MOST_ROWS, on_screen, table_or_words
+from synth.frame.exhibits import Chart, Sentence, Table, exhibits_of
+from synth.frame.page.markup import VOID
 from synth.frame.page.told_page import page_of
 from synth.frame.picture.picture import Picture
-from synth.frame.printed_numbers import counted, percent, span
 from synth.frame.told import Told
 from synth.retarder.acceptance import judged
 from synth.retarder.case_result import CaseResult
@@ -34,18 +31,13 @@ from synth.retarder.off_nominal.condition import CONDITIONS
 from synth.retarder.shown.checks import checks
 from synth.retarder.tune import Book
 from synth.retarder.tune_command import COMMAND
+from tests.frame.test_page_parts import SVG
 from tests.synth.case_factory import make_case
 from tuning_tables import Estimator
 
 ESTIMATOR = Estimator(0.05, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 50.0, (0.0, 37.45), (0.0, 2.4), (0.0, 0.1))
 
 ROOT = Path(__file__).parents[2]
-SVG = (
-    b'<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
-    b'width="10pt" height="10pt"><defs><style>*{fill:none}</style><clipPath id="p1"><path d="M 0.123456 1"/></clipPath>'
-    b'</defs><g id="figure_1"><g clip-path="url(#p1)"><text>0.123456 &lt;id&gt;</text></g>'
-    b'<use xlink:href="#p1"/></g></svg>'
-)
 
 
 class Page(HTMLParser):
@@ -259,56 +251,6 @@ def test_limit_cycles_are_told_where_there_are_some() -> None:
         hunting_report(case.plant, case.study.table_lines)
     )
     assert any(isinstance(each, Sentence) and "does not hunt" in each.text for each in shown)
-
-
-def test_markup() -> None:
-    assert element("p", "a<b", Markup("<br>"), class_='x"y') == '<p class="x&quot;y">a&lt;b<br></p>'
-    assert element("img", alt="", src="s") == '<img src="s">'
-
-
-def test_figures() -> None:
-    assert [percent(share) for share in (0.0, 0.00012, 0.05, 0.25)] == ["0", "0.012", "5", "25.0"]
-    assert [span(values) for values in ([1.0, 2.0], [1.0, 1.001])] == ["from 1.00 to 2.00", "1.00"]
-    assert [counted(n, "case") for n in (1, 3)] == ["1 case", "3 cases"]
-
-
-def test_a_drawing_is_a_part_of_the_page_and_meets_no_other() -> None:
-    drawing = inline_svg(SVG, "a <name>", "one-")
-    assert drawing.width_pt == 10.0
-    assert drawing.markup == (
-        '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="10pt" '
-        'height="10pt" role="img" aria-label="a &lt;name&gt;"><defs><clipPath id="one-p1"><path d="M 0.12 1" />'
-        '</clipPath></defs><g><g clip-path="url(#one-p1)"><text>0.123456 &lt;id&gt;</text></g>'
-        '<use xlink:href="#one-p1" /></g></svg>'
-    )
-
-
-def test_places_are_told_to_a_hundredth_and_factors_whole() -> None:
-    assert shorter("M 0.123456 1 \nL 12.3 -4.567891\nz") == "M 0.12 1 L 12.3 -4.56 z"
-    assert shorter("translate(0 138.246) scale(0.004321 -0.004321)") == "translate(0 138.246) scale(0.004321 -0.004321)"
-
-
-def test_a_table_shows_nine_columns_and_folds_the_rest() -> None:
-    """None is lost; those that a reader can spare most go first, details always; the row's name stands in each part."""
-    columns = (
-        Column("case", "case", words=True, once=True),
-        Column("target", "target"),
-        *(Column(f"c{i}", f"figure {i}", spare=i % 3) for i in range(12)),
-        Column("detail", "a detail", detail=True),
-    )
-    first, more = on_screen(columns)
-    assert len(first) == MOST_COLUMNS
-    assert {column.key for column in more} == {"detail", "c2", "c5", "c8", "c11", "c10"}
-    assert [column for column in columns if column in (*first, *more)] == list(columns)
-    row = {column.key: i for i, column in enumerate(columns)} | {"case": "A"}
-    html = table_or_words(Table("t", "T", columns, [row]))
-    assert html.count("<table") == 2
-    assert html.count(">A</th>") == 2
-    assert all(html.count(f">figure {i}<") == 1 for i in range(12))
-    assert "6 more figures of each row" in html
-    assert on_screen(columns[:2] + columns[-1:]) == (columns[:2] + columns[-1:], ())
-    many = table_or_words(Table("t", "T", columns[:2], [row] * (MOST_ROWS + 1)))
-    assert many.startswith("<details><summary>T: 25 rows</summary>")
 
 
 def test_the_first_screen_has_tiles_and_steps_once(page: Page) -> None:

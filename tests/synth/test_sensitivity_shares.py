@@ -55,11 +55,6 @@ def test_intervals_are_no_wider_than_they_must_be() -> None:
     assert half.max() < 0.1
 
 
-def test_estimates_have_no_bias() -> None:
-    values = np.array([[share.value for share in shares_of(seed).shares] for seed in range(40)])
-    assert np.abs(values.mean(axis=0) - LINEAR).max() < 0.015
-
-
 def test_shares_of_a_sum_are_all_and_those_of_a_product_are_none() -> None:
     unit = unit_hypercube(INPUTS, 2000, 5)
     x = standard(unit)
@@ -72,12 +67,6 @@ def test_shares_of_a_sum_are_all_and_those_of_a_product_are_none() -> None:
     assert low <= 0.2 <= high
     whole = first_order(unit, linear(unit)).rest.share(0)
     assert whole.ci95[0] <= 0.0 <= whole.ci95[1]
-
-
-def test_a_bend_counts_as_well_as_a_slope() -> None:
-    unit = unit_hypercube(INPUTS, 1000, 2)
-    found = first_order(unit, (unit[:, 3] - 0.5) ** 2)
-    assert found.share(3).value == pytest.approx(1.0, abs=0.03)
 
 
 def ishigami(unit: Floats) -> Floats:
@@ -96,19 +85,6 @@ def test_estimates_are_those_of_salib(points: int) -> None:
     for ours, kept in ((found.whole, place >= 0), (found.without[4], place != 4)):
         theirs = rbd_fast.analyze(problem, unit[kept], output[kept], M=HARMONICS, num_resamples=2)
         np.testing.assert_allclose(ours, theirs["S1"], rtol=0.0, atol=1e-12)
-
-
-def test_shares_of_the_function_of_ishigami_are_those_of_its_formula() -> None:
-    """V(E(Y | x)) = (1 + 0.1 π⁴/5)²/2, V(E(Y | y)) = 49/8, V(E(Y | z)) = 0; V(Y) has 0.1² π⁸ (1/18 − 1/50) beside."""
-    of_x, of_y = 0.5 * (1.0 + 0.1 * np.pi**4 / 5.0) ** 2, 49.0 / 8.0
-    total = of_x + of_y + 0.01 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
-    true = np.array([of_x, of_y, 0.0]) / total
-    found = np.array(
-        [first_order(unit, ishigami(unit)).whole for unit in (unit_hypercube(3, 2000, s) for s in range(20))]
-    )
-    error = found.std(axis=0, ddof=1) / np.sqrt(len(found))
-    assert error.max() < 0.005
-    assert (np.abs(found.mean(axis=0) - true) < 4.0 * error + 0.002).all()  # what the harmonics leave out
 
 
 def test_noise_of_the_passes_is_told_apart() -> None:

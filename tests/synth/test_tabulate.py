@@ -103,9 +103,12 @@ def test_density_is_a_distribution(plant_52t: Plant) -> None:
     assert density.probability.sum() + density.stalled == pytest.approx(1.0, abs=1e-8)
 
 
+@pytest.mark.requirement("PRED-02")
 def test_a_stall_counts_as_an_exit_at_rest() -> None:
     """By hand: 0.1 of the cuts stand, the others leave with 1, 2 and 3 m/s."""
     density = ExitDensity(np.arange(4.0), np.array([0.0, 0.25, 0.5, 0.15]), stalled=0.1, escaped=0.0, switchings=1.0)
     exits_m_s = np.repeat([0.0, 1.0, 2.0, 3.0], [10, 25, 50, 15])
-    assert density.bias_m_s(2.0) == pytest.approx((exits_m_s - 2.0).mean())
-    assert density.rms_m_s(2.0) == pytest.approx(np.sqrt(((exits_m_s - 2.0) ** 2).mean()))
+    predicted = prediction_of(density, 2.0)
+    assert predicted.bias_m_s == pytest.approx((exits_m_s - 2.0).mean())
+    assert predicted.rms_m_s == pytest.approx(np.sqrt(((exits_m_s - 2.0) ** 2).mean()))
+    assert (predicted.p_stall, predicted.switchings) == (0.1, 1.0)

@@ -7,7 +7,6 @@ import json
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from synth.cli import main
 from tests.system.conftest import Command
@@ -100,26 +99,6 @@ def test_a_track_on_which_no_speed_is_safe_is_told_and_not_accepted(command: Com
     assert np.isnan(table.exit_speed_m_s).all()
     assert aim_exit_speed(table, 1, 200.0, 0.0) is None
     assert "Not accepted" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-
-
-REFUSED = {
-    "a missing file": ("", "gone.toml: there is no such file; write one with 'retarder-synth init aim -o gone.toml'"),
-    "no TOML": ("[aim", "this is not valid TOML"),
-    "p": ("[aim]\np_overspeed = 1.5\n", "aim.p_overspeed is 1.5; it must be from 0.005 to 0.9"),
-    "category": ('[cuts]\ncategories = ["LL"]\n', "cuts.categories[0]: weight category 'LL' is not in the library"),
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_what_can_be_refused_is_refused_before_anything_is_made(name: str, command: Command, tmp_path: Path) -> None:
-    text, said = REFUSED[name]
-    path = tmp_path / ("given.toml" if text else "gone.toml")
-    if text:
-        path.write_text(text, encoding="utf-8")
-    ran = command("aim", path, "-o", tmp_path / "out")
-    assert ran.code == 2
-    assert said in ran.sentence
-    assert not (tmp_path / "out").exists()
 
 
 def test_a_book_of_another_position_is_refused(command: Command, tuned: Path, tmp_path: Path) -> None:

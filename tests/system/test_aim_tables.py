@@ -13,13 +13,14 @@ import pytest
 from synth.retarder.forms.code_options import CODE_NAMES
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
 from tests.frame.results import results_in
+from tests.st_files import aim_st_files
 from tests.system.conftest import Command
 from tests.system.test_start_up import HEAVY, modules_after
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
-from tuning_tables.aim import AimTable, ParkPosition
+from tuning_tables.aim import ParkPosition
 from tuning_tables.aim.aim_tables import AimTables
 from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.aim.st_source import aim_export, aim_st_files
+from tuning_tables.aim.st_source import aim_export
 from tuning_tables.csv_file import to_csv
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.json_file import to_json, write_json
@@ -189,11 +190,3 @@ def test_tables_of_both_kinds_in_one_directory(command: Command, aims: Path, tmp
     assert command("export", aims, "--format", "csv", "-o", tmp_path / "csv").code == 0
     assert len(results_in(tmp_path / "csv")) == 3
     assert command("verify", aims).out.splitlines()[-1] == "accepted: 4 tables, 4 files: nothing found"
-
-
-def test_equal_tables_make_equal_files(command: Command, aims: Path, tmp_path: Path) -> None:
-    made: list[AimTable] = [category_table(1.0), measured_table()]
-    assert [to_json(table) for table in made] == [to_json(table) for table in TABLES[:2]]
-    for place in ("a", "b"):
-        assert command("export", aims, "--format", "st", "-o", tmp_path / place).code == 0
-    assert results_in(tmp_path / "a") == results_in(tmp_path / "b")

@@ -98,14 +98,6 @@ def test_they_are_better_than_the_lines_of_the_same_tune_at_rest(folder: Path, n
         assert best["table_ratio"]["high95"] < 1.0
 
 
-@pytest.mark.long
-def test_no_file_depends_on_the_number_of_threads(folder: Path) -> None:
-    tune(folder, "two", (folder / "one.toml").read_text(encoding="utf-8"), 2)
-    one, two = ({p.name: p.read_bytes() for p in (folder / name).rglob("*.json")} for name in ("one", "two"))
-    assert one == two
-    assert (folder / "one" / "book.h5").read_bytes() == (folder / "two" / "book.h5").read_bytes()
-
-
 @pytest.mark.parametrize("name", ["one", "none"])
 def test_the_independent_checker_confirms_them(folder: Path, name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", str(folder / name)]) == 0

@@ -8,10 +8,9 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -24,8 +23,6 @@ from tuning_tables import to_json
 
 EXAMPLE = ROOT / "docs" / "examples" / "bench"
 LEAST = 10
-
-Connected = Callable[[Path, int, float], Any]
 
 
 @pytest.fixture(scope="session")

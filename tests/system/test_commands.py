@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from synth.frame.results_directory import results_directory
 from synth.retarder.configuration.config_file import parse_config
 from tests.frame.results import results_in
 from tests.system.conftest import CLASS, Command, changed
@@ -113,13 +112,6 @@ def test_an_infeasible_book_is_not_accepted(command: Command, one_class: Path, t
     assert "summary.json beside the tables calls this case infeasible" in again.out
     (tmp_path / "summary.json").unlink()
     assert command("validate", tmp_path / "book.h5", "--config", hopeless, "-o", tmp_path / "again").code == 1
-
-
-def test_a_second_tune_into_the_same_directory_is_refused(command: Command, one_class: Path, tuned: Path) -> None:
-    with results_directory(tuned, "tune"):
-        ran = command("tune", one_class, "-o", tuned)
-    assert ran.code == 2
-    assert "another tune is writing there" in ran.sentence
 
 
 def test_inspect_tells_the_contents(command: Command, tuned: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 from scripts.studies.documents import KEPT
 from scripts.studies.named_study import study_named
 from scripts.studies.result import read_result, run_study
-from synth.cli.qualification.golden import OTHER_PROCESSOR
+from synth.cli.qualification.golden import ELSEWHERE
 from synth.problem.resolution import finer_for_check
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.rounded_table import with_prediction
@@ -120,4 +120,4 @@ def require_same_figures(cell: str, other: str) -> None:
     for number, before in zip(NUMBER.finditer(cell), NUMBER.finditer(other), strict=True):
         digit = 10.0 ** -len(before[1] or "")
         value, kept = (float(each[0].replace("−", "-")) for each in (number, before))
-        assert value == pytest.approx(kept, abs=1.001 * digit, rel=OTHER_PROCESSOR), (cell, other)
+        assert value == pytest.approx(kept, abs=1.001 * digit, rel=ELSEWHERE), (cell, other)

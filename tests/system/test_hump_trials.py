@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import csv
-import hashlib
 import io
 import json
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 from synth.cli import main
-from synth.frame.terminal.printed_table import PrintedTable
 from tests.frame.results import results_in
-from tests.printed_page import Page, cells_of, page_about
 from tests.system.conftest import EPOCH, Command, changed
 
 SMALL = """\
@@ -78,32 +73,12 @@ def arrays_of(directory: Path) -> Mapping[str, Any]:
         return dict(arrays)
 
 
-def test_it_prints_the_figures_of_its_summary(humped: Path, pages: list[Page]) -> None:
-    summary, page = summary_of(humped), page_about(pages, humped)
-    counts = summary["figures"]
-    assert f"trains: {counts['trains']}; cuts: {counts['cuts']}; cars: {counts['cars']}" in str(page[0])
-    means, shares, _ = (cells_of(each) for each in page if isinstance(each, PrintedTable))
-    told = {row["of all trains"]: (row["mean"], 1.0) for row in means}
-    told |= {row["of all cuts"]: (row["share, %"], 100.0) for row in shares}
-    assert len(told) == len(means) + len(shares) == len(figures_of(summary))
-    rows = {row["title"]: row for name in ("means", "shares") for row in summary["tables"][name]}
-    assert told.keys() == rows.keys()
-    for title, (text, scale) in told.items():
-        figure = rows[title].get("mean", rows[title].get("share"))
-        found = [float(word.strip("[],±").replace(",", "")) for word in text.split() if word != "below"]
-        value, low, high = (scale * figure[key] for key in ("value", "low95", "high95"))
-        half = [high] if text.startswith("below ") else [value, max(value - low, high - value)]
-        assert found == pytest.approx([value, low, high] if "[" in text else half, rel=0.006)
-
-
 def test_every_file_is_whole_and_listed(humped: Path) -> None:
     summary = summary_of(humped)
     files = set(results_in(humped))
     batches = {name for name in files if name.startswith("batches/")}
     assert len(batches) == 1
     assert files - batches - {"summary.json"} == set(summary["files"])
-    for name, digest in summary["files"].items():
-        assert hashlib.sha256((humped / name).read_bytes()).hexdigest() == digest, name
     assert {
         "trains.npz",
         "sheets/shares.csv",
@@ -115,9 +90,6 @@ def test_every_file_is_whole_and_listed(humped: Path) -> None:
         "report.html",
         "hump.html",
     } <= files
-    for plot in (humped / "plots").iterdir():
-        if plot.suffix == ".svg":
-            ElementTree.fromstring(plot.read_bytes())
     page = (humped / "report.html").read_text(encoding="utf-8")
     assert page.endswith("</html>\n")
     assert 'href="hump.html"' in page
@@ -161,34 +133,6 @@ def test_one_hump_speed_is_what_is_told(command: Command, small: Path, tmp_path:
     names = {name.partition("/")[0] for name in results_in(tmp_path / "out")}
     assert names.isdisjoint({"report.html", "hump.html"})
     assert not (tmp_path / "out" / "plots").exists()
-
-
-def test_stale_pages_and_pictures_go(command: Command, humped: Path, tmp_path: Path) -> None:
-    out = Path(shutil.copytree(humped, tmp_path / "out"))
-    (out / "plots" / "mine.png").write_bytes(b"x")
-    config = tmp_path / "plain.toml"
-    config.write_text(SMALL + "[output]\nplots = false\nreport = false\n", encoding="utf-8")
-    assert command("hump", "simulate", config, "-o", out).code == 0
-    assert [path.name for path in (out / "plots").iterdir()] == ["mine.png"]
-    assert not (out / "report.html").exists()
-    assert not (out / "hump.html").exists()
-
-
-@pytest.mark.long
-def test_its_own_inputs_repeat_every_byte_elsewhere(command: Command, humped: Path, tmp_path: Path) -> None:
-    """From what a run has left all is made anew, and no train is humped."""
-    out = Path(shutil.copytree(humped, tmp_path / "elsewhere"))
-    gone = ["report.html", "hump.html", "summary.json", "trains.npz", "sheets/shares.csv", "sheets/program.csv"]
-    for path in [*(out / "plots").iterdir(), *(out / name for name in gone)]:
-        path.unlink()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
-        ran = command("hump", "simulate", out / "inputs" / "config.toml", "-o", out)
-    assert ran.code == 0
-    assert "1 of 1 batches are there already" in ran.err
-    for path in humped.rglob("*"):
-        if path.is_file():
-            assert (out / path.relative_to(humped)).read_bytes() == path.read_bytes(), path
 
 
 def test_a_missed_limit_is_code_1_and_says_which(command: Command, tmp_path: Path) -> None:
@@ -280,7 +224,3 @@ def test_bad_input_is_one_sentence(
     assert ran.code == 2
     assert said in ran.sentence
     assert list(tmp_path.iterdir()) == []
-
-
-def test_what_another_command_has_left_is_not_written_over(command: Command, humped: Path, tmp_path: Path) -> None:
-    assert "it holds the results of 'hump simulate'" in command("aim", "-o", humped).sentence

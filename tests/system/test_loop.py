@@ -118,19 +118,6 @@ def passage_table(config_path: Path) -> PassageTable:
     )
 
 
-@pytest.mark.long
-def test_json_is_the_file_and_the_same_table_gives_the_same_bytes(
-    command: Command, tuned: Path, two_classes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    table = tuned / "tables" / f"{TABLE}.json"
-    first = command("loop", table, "-o", tmp_path / "one", "--config", two_classes, "--json")
-    assert first.code == 0
-    assert json.loads(first.out) == json.loads((tmp_path / "one" / "summary.json").read_bytes())
-    assert command("loop", table, "-o", tmp_path / "two", "--config", two_classes).code == 0
-    assert results_in(tmp_path / "one") == results_in(tmp_path / "two")
-
-
 def test_responses_that_do_not_agree_give_1(
     command: Command, tuned: Path, two_classes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -9,6 +9,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -76,7 +77,7 @@ def import_seen(name, globals=None, locals=None, fromlist=(), level=0):
 
 def open_seen(file, *arguments, **options):
     caller = sys._getframe(1).f_globals.get("__name__", "").partition(".")[0]
-    if caller in OWN + ("pathlib",) and str(file).startswith("/proc/"):
+    if caller in OWN + ("pathlib",) and str(file).startswith("/proc/") and str(file) != "/proc/cpuinfo":
         raise FileNotFoundError(2, "No such file or directory", str(file))
     return opened(file, *arguments, **options)
 
@@ -84,9 +85,23 @@ def open_seen(file, *arguments, **options):
 builtins.__import__ = import_seen
 builtins.open = io.open = open_seen
 """
-"""Comes before all else in each process of the program, those that it starts too."""
+"""Comes before all else in each process of the program, those that it starts too. It shows the name of the processor:
+without it all kernels would be compiled once more, for a processor without a name."""
 
 PROGRAM = "from synth.cli import script; script()"
+
+COMMANDS = """
+import contextlib, io, json, sys
+from synth.cli import main
+
+told = []
+for words in json.loads(sys.argv[1]):
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        code = main(words)
+    assert code == 0, (words, code)
+    told.append(out.getvalue())
+print(json.dumps(told))
+"""
 
 WITH_LEAST = pytest.mark.parametrize("elsewhere", ["windows"], indirect=True)
 """For whole runs: Windows has nothing that macOS lacks, and no code asks which of both it is on."""
@@ -115,6 +130,13 @@ class Elsewhere:
         assert ran.returncode == 0, ran.stderr
         return ran.stdout
 
+    def run_each(self, *commands: Sequence[str]) -> list[str]:
+        """What each of these prints, given in one process; all must end well."""
+        ran = self.python(COMMANDS, json.dumps(commands))
+        assert ran.returncode == 0, ran.stderr
+        told: list[str] = json.loads(ran.stdout)
+        return told
+
 
 @pytest.fixture(scope="module", params=list(SYSTEMS))
 def elsewhere(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Elsewhere:
@@ -135,22 +157,12 @@ def test_nothing_is_seen(elsewhere: Elsewhere) -> None:
     assert (ran.stdout, ran.stderr) == (told, "")
 
 
-HELP = """
-import contextlib, io, json, sys
-from synth.cli import main
-
-for words in json.loads(sys.argv[1]):
-    with contextlib.redirect_stdout(io.StringIO()) as told:
-        code = main([*words, "--help"])
-    assert code == 0 and "Usage" in told.getvalue(), words
-"""
-
-
 def test_every_command_helps(elsewhere: Elsewhere) -> None:
-    words = [[*guide.words.split(), name] for guide in GUIDES.values() for names in guide.sections.values()
+    words = [[*guide.words.split(), name, "--help"] for guide in GUIDES.values() for names in guide.sections.values()
              for name in names]  # fmt: skip
-    ran = elsewhere.python(HELP, json.dumps(words))
+    ran = elsewhere.python(COMMANDS, json.dumps(words))
     assert (ran.returncode, ran.stderr) == (0, "")
+    assert all("Usage" in told for told in json.loads(ran.stdout))
 
 
 def test_windows_lacks_all_that_macos_lacks() -> None:
@@ -162,10 +174,13 @@ def test_tables_are_made_and_checked(elsewhere: Elsewhere) -> None:
     """Several workers, and pictures by several processes; then two runs into one directory."""
     (elsewhere.folder / "one.toml").write_text(CLASS)
     elsewhere.run("tune", "one.toml", "-o", "tuned", "--workers", 2)
-    logged = ("--config", "one.toml", "--log", "log.h5", "--log-passes", 100)
-    assert json.loads(elsewhere.run("validate", "tuned", *logged, "-o", "validated", "--json"))["accepted"] is True
-    assert json.loads(elsewhere.run("verify", "tuned", "--json"))["confirmed"] is True
-    assert "its CRC-32 is right" in elsewhere.run("inspect", "tuned")
+    logged = "--config one.toml --log log.h5 --log-passes 100"
+    validated, verified, inspected = elsewhere.run_each(
+        f"validate tuned {logged} -o validated --json".split(), ["verify", "tuned", "--json"], ["inspect", "tuned"]
+    )
+    assert json.loads(validated)["accepted"] is True
+    assert json.loads(verified)["confirmed"] is True
+    assert "its CRC-32 is right" in inspected
     held = elsewhere.python(
         "from pathlib import Path\nfrom synth.frame.held_directory import held\nfrom synth.cli import main\n"
         "with held(Path('tuned')):\n    raise SystemExit(main(['tune', 'one.toml', '-o', 'tuned']))"

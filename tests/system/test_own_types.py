@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +14,6 @@ from scripts.studies.in_the_loop.agreement import ask, differences, follow
 from scripts.studies.in_the_loop.controller_process import build_controller
 from synth.cli import main
 from tests.controller_code.conftest import tool as tool
-from tests.synth.test_own_types import FAULTS, USED, own
 from tests.system.conftest import EPOCH, Command
 from tuning_tables import TableBook, read_book
 
@@ -120,27 +118,8 @@ def test_the_tables_validate_against_the_configuration_with_own_types(
 
 def test_compiled_c_decides_and_chooses_as_python(book: TableBook, tmp_path: Path, tool: Callable[[str], str]) -> None:
     tool("gcc")
-    questions = ask(book, 50_000, 2_000, 20261122)
+    questions = ask(book, 10_000, 2_000, 20261122)
     assert differences(build_controller(book, tmp_path), questions, follow(book, 1_000, 20261122)).none
-
-
-def test_structured_text_is_exported(example: Path, command: Command, tmp_path: Path) -> None:
-    ran = command("export", example / "out" / "book.h5", "--format", "st", "-o", tmp_path / "st")
-    assert ran.code == 0
-    text = (tmp_path / "st" / "retarder_table.st").read_text(encoding="utf-8")
-    assert "us-group-1" in text
-    assert "US_L" in text
-
-
-def test_a_faulty_type_file_ends_a_tune_with_one_line_and_code_2(tmp_path: Path, command: Command) -> None:
-    kind, key, line, _ = FAULTS["unknown key"]
-    path = own(tmp_path / "my", kind, "mine", **{key: line})
-    config = tmp_path / "my.toml"
-    config.write_text(f'library = ["my/"]\n{USED[kind.folder]}', encoding="utf-8")
-    ran = command("tune", config, "-o", tmp_path / "out")
-    assert (ran.code, ran.out) == (2, "")
-    assert re.match(rf"{re.escape(str(path))}(, line \d+)?: ", ran.sentence)
-    assert not (tmp_path / "out").exists()
 
 
 def test_init_prints_every_kind_of_type(command: Command, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from tests.controller_code.passage_tables import passage_book, passage_table
 from tests.controller_code.sample_book import sample_book
 from tests.effort import every
 from tests.frame.results import results_in
+from tests.st_files import passage_st_files
 from tests.system.conftest import Command
 from tests.system.test_start_up import HEAVY, modules_after
 from tuning_tables import RetarderId, write_book
@@ -21,7 +22,7 @@ from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.json_file import to_json, write_json
 from tuning_tables.passages.c_source import passage_c_files
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_export, passage_st_files
+from tuning_tables.passages.st_source import passage_export
 from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.self_test_size import SMALL
 

@@ -20,8 +20,9 @@ from typing import Any
 import pytest
 
 from synth.cli import main
+from synth.frame.exhibits import Column, Table
 from synth.frame.terminal.printed_page import Verdict, page_lines
-from synth.frame.terminal.printed_table import Column, PrintedTable, table_lines
+from synth.frame.terminal.printed_table import PrintedTable, table_lines
 from synth.frame.terminal.printed_words import wrapped
 from tests.printed_page import (
     WIDTHS,
@@ -35,23 +36,26 @@ from tests.printed_page import (
 )
 from tests.system.conftest import Command
 
-Row = tuple[str, str, str | None]
-
+COLUMNS = (
+    Column("case", "case", words=True, once=True),
+    Column("rms", "rms", "m/s"),
+    Column("within", "99\u00a0of\u00a0100 within\u00a0±", "m/s", spare=2),
+    Column("saturated", "brake saturated in 10\u00a0000", spare=1),
+    Column("verdict", "what it comes to", words=True),
+)
+KEPT = {"verdict": "the limits are kept, as the file states; " * 2}
 TABLE = PrintedTable(
-    (
-        Column[Row]("case", lambda row: row[0], words=True, once=True),
-        Column[Row]("rms, m/s", lambda row: row[1]),
-        Column[Row]("99\u00a0of\u00a0100 within\u00a0±, m/s", lambda row: row[2], spare=2),
-        Column[Row]("brake saturated in 10\u00a0000", lambda row: row[1][:4], spare=1),
-        Column[Row]("what it comes to", lambda row: "the limits are kept, as the file states; " * 2, words=True),
-    ),
-    (
-        ("gondola-4-22t", "0.0256 ±0.0011", "0.1234 ±0.0100"),
-        ("gondola-4-22t", "0.0333 ±0.0012", None),
-        ("gondola-4-85t", "–", "0.2222 ±0.0200"),
+    Table(
+        "cases",
+        "A title that is longer than the narrowest of the terminals, which has sixty characters",
+        COLUMNS,
+        (
+            {"case": "gondola-4-22t", "rms": "0.0256 ±0.0011", "within": "0.1234 ±0.0100", "saturated": "0.02", **KEPT},
+            {"case": "gondola-4-22t", "rms": "0.0333 ±0.0012", "within": None, "saturated": "0.03", **KEPT},
+            {"case": "gondola-4-85t", "rms": "–", "within": "0.2222 ±0.0200", "saturated": "–", **KEPT},
+        ),
     ),
     "summary.json",
-    "A title that is longer than the narrowest of the terminals, which has sixty characters",
 )
 
 
@@ -79,7 +83,7 @@ def test_a_case_is_named_once_and_none_is_told_by_a_dash() -> None:
     lines = table_lines(TABLE, None)
     assert [line.split()[0] for line in lines[-3:]] == ["gondola-4-22t", "0.0333", "gondola-4-85t"]
     assert "  –  " in lines[-2]
-    assert table_lines(PrintedTable(TABLE.columns, (), ""), None)[-1].strip("─ ") == ""
+    assert table_lines(PrintedTable(Table("none", "", COLUMNS, ()), ""), None)[-1].strip("─ ") == ""
 
 
 def test_only_a_word_longer_than_a_line_is_broken_and_behind_a_sign() -> None:
@@ -146,21 +150,6 @@ def test_a_tune_prints_the_figures_of_its_summary(one_class: Path, tmp_path: Pat
     require_column(told, "regret", [of(row, "regret", 2) for row in rows])
     require_column(told, "best baseline, m/s", [of(row, "best_baseline_m_s", 4) for row in rows])
     require_column(told, "which", [row["best_baseline"] for row in rows])
-
-
-@pytest.mark.parametrize("name", ["book.h5", "tables/gondola-4-22t-to-1.5-m-s.json"])
-def test_validate_prints_the_figures_of_its_summary(
-    tuned: Path, pages: list[Page], two_classes: Path, tmp_path: Path, name: str
-) -> None:
-    page = printed(pages, "validate", tuned / name, "--config", two_classes, "--seed", "7", "-o", tmp_path)
-    summary, told = json.loads((tmp_path / "summary.json").read_bytes()), table_of(page)
-    rows = summary["tables"]["tables"]
-    require_column(told, "table", [row["id"] for row in rows])
-    require_figures(told, rows)
-    require_column(told, "the file states, m/s", [of(row, "stated_rms_m_s", 4) for row in rows])
-    require_column(told, "predicted rms, m/s", [f"{row['predicted_rms_m_s']:.4f}" for row in rows])
-    seed = f"{rows[0]['rms_m_s']['n']} stratified passes of each table, seed {summary['figures']['seed']}."
-    assert any(str(each).startswith(seed) for each in page)
 
 
 def test_inspect_prints_the_lines_of_its_json(tuned: Path, command: Command, pages: list[Page]) -> None:

@@ -13,6 +13,7 @@ from tuning_tables import (
     Estimator,
     Generator,
     Predicted,
+    RegulatorClock,
     RetarderId,
     Stage,
     Validated,
@@ -31,6 +32,7 @@ def table() -> ControllerTable:
         retarder=RetarderId("Talbremse Süd", ((0.0, 12.475), (14.475, 26.95)), 37.45, 15.0),
         cut=CutId("medium", 22.0, (0.0, 1.85, 8.65, 10.5)),
         target_speed_m_s=4.0,
+        clock=RegulatorClock(sample_period_s=0.1, computing_delay_s=0.02),
         degree=3,
         stages=(
             Stage(0, 0.0, None, round_coefficients([6.1, -0.05, 1e-3, -3.3e-5])),

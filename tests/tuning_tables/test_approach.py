@@ -1,14 +1,11 @@
 """Tables that act before the entrance: what they must be, what they may command there, and who reads them."""
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 import pytest
 
-from tests.tuning_tables.every_kind import document_of
 from tuning_tables import (
     Approach,
     ControllerTable,
@@ -17,10 +14,6 @@ from tuning_tables import (
     ValidRange,
     decide_for,
     decide_many,
-    from_json,
-    read_book,
-    to_json,
-    write_book,
 )
 from tuning_tables.active_table import active, between, interpolable
 
@@ -97,28 +90,6 @@ def test_the_estimator_of_an_approach_begins_with_it(approached_table: Controlle
 def test_a_wrong_approach_is_refused(length_m: float, stage: Any) -> None:
     with pytest.raises(InvalidTable, match="approach"):
         Approach(length_m, stage)
-
-
-def test_an_approach_survives_every_file(
-    approached_table: ControllerTable, table: ControllerTable, tmp_path: Path
-) -> None:
-    estimated = replace(with_estimator(approached_table, -4.0, 0.0, 12.0), id="estimated", approach=Approach(4.0, 3))
-    expected = {"length_m": 4.0, "entrance_stage": 1, "interlock": "position_clear"}
-    assert document_of(approached_table)["approach"] == expected
-    assert document_of(table)["approach"] is None
-    assert [from_json(to_json(each)) for each in (approached_table, estimated)] == [approached_table, estimated]
-    for tables in ((approached_table,), (table, approached_table), (table, approached_table, estimated)):
-        write_book(tables, tmp_path / "book.h5")
-        assert read_book(tmp_path / "book.h5") == tables
-        with h5py.File(tmp_path / "book.h5") as file:
-            assert ("break" in file) == (estimated in tables)
-            assert file["approach"][:].tolist() == [int(each.approach is not None) for each in tables]
-            stages = [0 if each.approach is None else each.approach.entrance_stage for each in tables]
-            assert file["approach_entrance_stage"][:].tolist() == stages
-    write_book((table,), tmp_path / "book.h5")
-    with h5py.File(tmp_path / "book.h5") as file:
-        assert file["approach"][:].tolist() == [0]
-        assert "approach_length_m" not in file
 
 
 def test_lines_are_taken_between_equal_approaches_only(approached_table: ControllerTable) -> None:

@@ -43,22 +43,6 @@ def test_an_interrupted_writer_leaves_the_old_file(tmp_path: Path, fault: type[B
     assert os.listdir(tmp_path) == ["table.json"]
 
 
-@pytest.mark.parametrize("step", ["replace", "fsync"])
-def test_a_failing_disk_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str) -> None:
-    path = tmp_path / "table.json"
-    path.write_bytes(b"old")
-
-    def fail(*_: object) -> None:
-        raise OSError("no space left on device")
-
-    with monkeypatch.context() as patched:
-        patched.setattr(os, step, fail)
-        with pytest.raises(OSError, match="no space"):
-            write_atomically(path, b"new")
-    assert path.read_bytes() == b"old"
-    assert os.listdir(tmp_path) == ["table.json"]
-
-
 @pytest.mark.requirement("FILE-08")
 def test_content_is_on_the_disk_before_the_name_and_the_name_before_the_return(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

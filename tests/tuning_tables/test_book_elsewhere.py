@@ -16,30 +16,12 @@ from tuning_tables import ControllerTable, decide_many, write_book
 if TYPE_CHECKING:
     import xarray
 
-WITHOUT_THE_PROJECT = """
-import sys
-sys.modules["tuning_tables"] = None
-import h5py
-with h5py.File(sys.argv[1], "r") as book:
-    lines = book["stage_upper"]
-    axes = [dimension[0].name[1:] for dimension in lines.dims]
-    row = book["id"].asstr()[:].tolist().index("linear")
-    speed = sum(c * 4.0**i for i, c in enumerate(lines[row, 0][: book["degree"][row] + 1]))
-    print(axes, lines.attrs["units"], book["retarder_name"].asstr()[0], speed)
-"""
-
 
 @pytest.fixture
 def book(table: ControllerTable, linear_table: ControllerTable, tmp_path: Path) -> Path:
     path = tmp_path / "book.h5"
     write_book([table, linear_table], path)
     return path
-
-
-def test_bare_h5py_reads_a_line(book: Path) -> None:
-    command = [sys.executable, "-c", WITHOUT_THE_PROJECT, str(book)]
-    ended = subprocess.run(command, capture_output=True, text=True, check=True, cwd=book.parent)
-    assert ended.stdout == "['table', 'stage', 'power'] m/s per m^power Talbremse Süd 5.0\n"
 
 
 WITH_SLOPES = """
@@ -132,16 +114,6 @@ def test_what_a_table_does_not_have_is_nan_or_0(dataset: xarray.Dataset) -> None
     assert linear.stage_upper.isel(stage=0).notnull().values.tolist() == [True, True, False, False]
     assert linear.validated_passes == 0
     assert (int(linear.validated), int(linear.approach), int(linear.estimator)) == (0, 0, 0)
-
-
-def test_a_decision_with_xarray_is_the_decision_of_the_rule(
-    dataset: xarray.Dataset, linear_table: ControllerTable
-) -> None:
-    linear = dataset.isel(table=1)
-    upper = linear.stage_upper.isel(stage=0, power=slice(0, int(linear.degree) + 1))
-    speeds = np.linspace(3.0, 7.0, 401).astype(np.float32)
-    raises = speeds > float((upper * np.float32(4.0) ** upper.power).sum())
-    assert np.array_equal(raises, decide_many(linear_table, 0, 4.0, speeds) == 1)
 
 
 def test_xarray_can_write_it_on(dataset: xarray.Dataset, tmp_path: Path) -> None:

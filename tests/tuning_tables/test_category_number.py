@@ -17,6 +17,7 @@ from synth.checker.book_reading import read_documents
 from synth.checker.category_number import YARD
 from synth.checker.source import SHAPES
 from synth.checker.table_reading import read_table
+from tests.st_files import st_files
 from tuning_tables import (
     ControllerTable,
     CutId,
@@ -32,7 +33,6 @@ from tuning_tables import (
 from tuning_tables.c_source import c_files
 from tuning_tables.canonical import canonical_json, document_checksum
 from tuning_tables.category_number import KNOWN_NUMBERS
-from tuning_tables.st_source import st_files
 from tuning_tables.table_book import TableBook
 
 UNNUMBERED = Path(__file__).parent / "st" / "default_book"

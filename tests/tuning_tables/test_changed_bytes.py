@@ -13,7 +13,7 @@ from tests.tuning_tables.every_kind import (
     smallest_points,
     smallest_surfaces,
 )
-from tuning_tables import ControllerTable, TableError, from_json, to_json
+from tuning_tables import TableError, from_json, to_json
 from tuning_tables.canonical import canonical_json
 from tuning_tables.table_kinds import KINDS, AnyTable
 
@@ -104,21 +104,6 @@ def one_byte_off(content: bytes) -> Iterator[bytes]:
 def test_no_lost_doubled_transposed_or_flipped_byte_gets_through(layout: Layout, made: Callable[[], AnyTable]) -> None:
     content = layout(made())
     assert to_json(from_json(content, type(made()))) == to_json(made())
-    tried, read = survivors(content, one_byte_off(content))
-    assert tried > 10.5 * (len(content) // PLACES)
-    assert read == []
-
-
-@pytest.mark.requirement("FILE-01")
-@pytest.mark.parametrize(
-    ("layout", "name"), [(export_layout, "table"), (canonical_layout, "table"), (export_layout, "surface_table")]
-)
-def test_no_changed_byte_of_a_usual_table_gets_through(
-    layout: Layout, name: str, request: pytest.FixtureRequest
-) -> None:
-    table: ControllerTable = request.getfixturevalue(name)
-    content = layout(table)
-    assert from_json(content) == table
     tried, read = survivors(content, one_byte_off(content))
     assert tried > 10.5 * (len(content) // PLACES)
     assert read == []

@@ -50,11 +50,10 @@ from tuning_tables import (
 from tuning_tables.aim import AimTable
 from tuning_tables.canonical import canonical_json
 from tuning_tables.declared.members import members_of
-from tuning_tables.document import HEAD
-from tuning_tables.json_file import read_stage_table
+from tuning_tables.document import HEAD, to_document
 from tuning_tables.table_kinds import KINDS, AnyTable, kind_of
 
-WRONG: list[object] = [None, True, "4", "", [], {}, [None], -1, 0.5]
+WRONG: list[object] = [None, True, "", "4", -1, {}, [None], [], 0.5]
 VALIDATORS = {kind: jsonschema.Draft202012Validator(table_schema(kind)) for kind in KINDS}
 
 
@@ -144,6 +143,7 @@ def test_every_key_is_required_and_no_other_is_known(sample: AnyTable) -> None:
 @pytest.mark.requirement("FILE-03")
 @pytest.mark.parametrize("wrong", every(2, WRONG), ids=repr)
 def test_no_value_of_another_type_gets_through(sample: AnyTable, wrong: object) -> None:
+    """What the reader takes, the schema takes too."""
     document = document_of(sample)
     refused = 0
     for path in places(document):
@@ -151,7 +151,8 @@ def test_no_value_of_another_type_gets_through(sample: AnyTable, wrong: object) 
         content = canonical_json(changed) if path == ("crc32",) else sealed(changed)
         try:
             # Some numbers may be others, and some members may be null: then they must have arrived as they are.
-            assert document_of(read_back(content, sample)) == json.loads(content), path
+            told = json.loads(content)
+            assert to_document(read_back(content, sample), told["exported_by"]) == told, path
         except TableError:
             refused += 1
         else:
@@ -195,20 +196,6 @@ def test_a_zero_has_no_sign(sample: AnyTable) -> None:
     assert tried >= 10
 
 
-@pytest.mark.parametrize("wrong", every(2, [None, True, "", [], -1, {}]), ids=repr)
-def test_what_the_schema_refuses_the_reader_refuses_too(sample: AnyTable, wrong: object) -> None:
-    document, refused = document_of(sample), 0
-    for path in places(document):
-        if path[0] in (*HEAD, "crc32"):
-            continue
-        changed = altered(document, path, wrong)
-        if not conforms(changed):
-            refused += 1
-            with pytest.raises(DamagedTable):
-                read_back(sealed(changed), sample)
-    assert refused >= 20
-
-
 @pytest.mark.requirement("FILE-04")
 @pytest.mark.parametrize(
     ("change", "error", "words"),
@@ -243,7 +230,7 @@ def test_who_needs_another_kind_is_told_so(tmp_path: Path) -> None:
         from_json(to_json(lines), PassageTable, source="t.json")
     write_json(aim, tmp_path / "aim.json")
     with pytest.raises(OtherKind, match=r"its kind is aim .* whose kind is lines or passages"):
-        read_stage_table(tmp_path / "aim.json")
+        read_json(tmp_path / "aim.json", ControllerTable, PassageTable)
     assert isinstance(read_table(tmp_path / "aim.json"), AimTable)
 
 

@@ -37,7 +37,6 @@ from tuning_tables.table_kinds import StageTable
 
 DTYPES = ("<f4", "<f8", ">f8", "<i4", "<i8", "|u1", "S70", "object", "reference")
 NAN, INF = float("nan"), float("inf")
-Index = int | tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -283,10 +282,10 @@ def test_every_axis_is_numbered_from_0(book: Forgery) -> None:
         ("config_sha256", "", DamagedTable),
         ("config_sha256", "0" * 63, DamagedTable),
         ("config_sha256", 0, DamagedTable),
-        ("tool_version", None, DamagedTable),
-        ("tool_version", "", DamagedTable),
-        ("tool_version", "two\nlines", DamagedTable),
-        ("tool_version", 0.1, DamagedTable),
+        ("exported_by", None, DamagedTable),
+        ("exported_by", "", DamagedTable),
+        ("exported_by", "two\nlines", DamagedTable),
+        ("exported_by", 0.1, DamagedTable),
         ("surplus", 1, DamagedTable),
         ("surplus" * 1000, 1, DamagedTable),
     ],

@@ -205,11 +205,11 @@ def alias(file: h5py.File, name: str, folder: Path) -> None:
 
 
 def reference_attribute(file: h5py.File, folder: Path) -> None:
-    file.attrs["tool_version"] = file["cut_mass_t"].ref
+    file.attrs["exported_by"] = file["cut_mass_t"].ref
 
 
 def long_attribute(file: h5py.File, folder: Path) -> None:
-    file.attrs.create("tool_version", ["x" * 1000] * 5000)
+    file.attrs.create("exported_by", ["x" * 1000] * 5000)
 
 
 def surplus(file: h5py.File, folder: Path) -> None:

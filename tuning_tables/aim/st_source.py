@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from tuning_tables.aim.aim_tables import AimTables
 from tuning_tables.controller_code.aim_code import aim_code
 from tuning_tables.controller_code.st_export import st_export
 from tuning_tables.export_prefix import AIM, RETARDER, ExportPrefix
 from tuning_tables.language.st_unit import Export
-from tuning_tables.plc_forms.iec import part_files
 from tuning_tables.self_test_size import FULL, SelfTestSize
 
 
@@ -19,13 +16,3 @@ def aim_export(aims: AimTables, prefix: ExportPrefix = RETARDER, self_test: Self
     There are 490 tables at most, two for each number of a category.
     """
     return st_export(aim_code(aims, self_test), prefix.of_kind(AIM))
-
-
-def aim_st_files(
-    aims: AimTables, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL
-) -> Mapping[str, bytes]:
-    """The files of the export by name, ASCII with LF: the tables with their blocks, and the self-test.
-
-    Equal sets give equal bytes.
-    """
-    return part_files(aim_export(aims, prefix, self_test))

@@ -18,6 +18,7 @@ from tuning_tables.controller_code.c_choice import (
     tables_of,
 )
 from tuning_tables.controller_code.code import ControllerCode, HeldTable, Rule, crc32_of, words_of
+from tuning_tables.exporter import generated
 from tuning_tables.language.c99 import CNames, c_function, c_prototype
 from tuning_tables.language.c99_data import c_comment, c_constants, c_content, c_type
 from tuning_tables.language.tree import Program
@@ -137,10 +138,7 @@ def tag_name(code: ControllerCode) -> str:
 
 def head_comment(code: ControllerCode) -> list[str]:
     """The comment at the head of the header."""
-    first = (
-        f"{code.title} Generated: do not edit, export again. This text may be used, changed and passed on without any "
-        "condition."
-    )
+    first = f"{code.title} {generated()} This text may be used, changed and passed on without any condition."
     paragraphs = [first, None, *code.head]
     lines: list[str] = []
     for paragraph in paragraphs:
@@ -193,7 +191,7 @@ def c_source(code: ControllerCode) -> str:
     words = code.table.words() + 1
     return "\n".join(
         [
-            *c_comment(f"{code.title} Generated: do not edit, export again. See retarder_{code.stem}.h."),
+            *c_comment(f"{code.title} {generated()} See retarder_{code.stem}.h."),
             f'#include "retarder_{code.stem}.h"',
             "",
             "#include <float.h>",

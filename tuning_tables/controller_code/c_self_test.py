@@ -19,6 +19,7 @@ from tuning_tables.controller_code.c_code import (
 )
 from tuning_tables.controller_code.c_odd_test import odd_is_right
 from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
+from tuning_tables.exporter import generated
 from tuning_tables.language.c99 import wrapped
 from tuning_tables.language.c99_data import c_comment
 from tuning_tables.language.records import Kind
@@ -55,9 +56,9 @@ def c_test_header(code: ControllerCode) -> str:
     return "\n".join(
         [
             *c_comment(
-                f"Self-test of retarder_{code.stem}.c. Generated: do not edit, export again. Proves on the processor "
-                "at hand, with the compiler and switches at hand, that tables and rules are as exported: arithmetic of "
-                f"the checksum, checksums of all tables, {asked}."
+                f"Self-test of retarder_{code.stem}.c. {generated()} Proves on the processor at hand, with the "
+                "compiler and switches at hand, that tables and rules are as exported: arithmetic of the checksum, "
+                f"checksums of all tables, {asked}."
             ),
             GUARD.format(macro=f"{macro}_H").replace("#include <stdint.h>", f'#include "retarder_{code.stem}.h"'),
             *(
@@ -84,7 +85,7 @@ def c_test_source(code: ControllerCode) -> str:
     checks = [line for place, each in enumerate(code.questions) for line in asking(code, place, each)]
     return "\n".join(
         [
-            f"/* Self-test of retarder_{code.stem}.c. Generated: do not edit, export again. See retarder_{stem}.h. */",
+            f"/* Self-test of retarder_{code.stem}.c. {generated()} See retarder_{stem}.h. */",
             f'#include "retarder_{stem}.h"',
             "",
             *same_export(code),

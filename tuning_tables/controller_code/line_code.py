@@ -118,6 +118,8 @@ def held_values(book: TableBook, number: int, record: SizedRecord, lines: Active
         axles=len(source.cut.axle_offsets_m),
         family_no=book.families[number],
         mass_t=np.float32(source.cut.mass_t),
+        sample_period_s=np.float32(source.clock.sample_period_s),
+        computing_delay_s=np.float32(source.clock.computing_delay_s),
     )
     return values_of(held, record)
 
@@ -182,4 +184,5 @@ def commands(book: TableBook, record: SizedRecord) -> Iterator[Commanded]:
 def origin_lines(book: TableBook) -> Iterator[str]:
     """What the book is for and where it comes from, in ASCII."""
     yield f"retarder   {comment_text(book.tables[0].retarder.name)}"
+    yield f"clock      {book.tables[0].clock}"
     yield from made_by(book.tables)

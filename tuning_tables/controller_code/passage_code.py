@@ -128,4 +128,5 @@ def origin_lines(book: PassageBook) -> Iterator[str]:
     places = ", ".join(f"{place:g}" for place in first.sensors.path_m)
     yield f"retarder   {comment_text(first.retarder.name)}"
     yield f"sensors    0 to {len(first.sensors.path_m) - 1}, middle of their bases at {places} m from the entrance"
+    yield f"clock      {first.sensors.clock}"
     yield from made_by(book.tables)

@@ -13,6 +13,7 @@ import numpy as np
 
 from tuning_tables.category_names import comment_text
 from tuning_tables.controller_code.code import ControllerCode
+from tuning_tables.exporter import generated
 from tuning_tables.language.records import Kind, Member, st_name
 from tuning_tables.language.st_data import of_tables
 from tuning_tables.language.st_unit import Block, Declared, Unit, Variable, local, retold, st_structure
@@ -134,7 +135,7 @@ def head(code: ControllerCode) -> tuple[str, ...]:
     categories[:0] = ["categories, whose numbers are the same in every export:"] if categories else []
     listed = [line for text in blocks for line in textwrap.wrap(text, WIDTH - 5, subsequent_indent="    ")]
     first = (
-        f"{code.title} IEC 61131-3 Structured Text. Generated: do not edit, export again. This text may be used, "
+        f"{code.title} IEC 61131-3 Structured Text. {generated()} This text may be used, "
         "changed and passed on without any condition."
     )
     paragraphs = [

@@ -28,6 +28,7 @@ from tuning_tables.controller_code.st_test_block import (
     test_block,
     test_name,
 )
+from tuning_tables.exporter import generated
 from tuning_tables.language.records import Kind, st_name
 from tuning_tables.language.st_unit import Block, Declared, Variable
 from tuning_tables.language.structured_text import broken
@@ -35,7 +36,7 @@ from tuning_tables.language.tree import Parameter
 from tuning_tables.st_literals import LONGEST_ARRAY, bool_array, int_array, is_portable, real_array
 
 HEAD: Final = (
-    "Self-test of {tables}, for the controller that is to run it. Generated: do not edit, export again.",
+    "Self-test of {tables}, for the controller that is to run it. {generated}",
     "Call one instance of {block} once a cycle until Done; Failed must be 0. It compares every constant with a second "
     "copy, and the answers of the blocks with those of the reference implementation. Questions that are not finite or "
     "denormal are left out, because they have no portable literal. REAL numbers are compared for equality on purpose: "
@@ -231,7 +232,8 @@ def run_all(code: ControllerCode, blocks: list[TestBlock]) -> Block:
 
 def self_test_head(code: ControllerCode) -> tuple[str, ...]:
     """The lines of the comment at the beginning of the self-test."""
-    told = (text.format(tables=f"retarder_{code.stem}", block=self_test_name(code)) for text in HEAD)
+    names = {"tables": f"retarder_{code.stem}", "block": self_test_name(code), "generated": generated()}
+    told = (text.format_map(names) for text in HEAD)
     return tuple(line for text in told for line in ("", *textwrap.wrap(text, WIDTH - 5)))[1:]
 
 

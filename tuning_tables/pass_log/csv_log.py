@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import codecs
 import csv
+import io
 import os
 import re
 from collections.abc import Iterator
@@ -182,8 +183,8 @@ def _places(source: str, line: str, row: int, mapping: LogMapping) -> dict[str, 
 def _cells(line: str, mapping: LogMapping) -> list[str]:
     try:
         return next(csv.reader([line], delimiter=mapping.delimiter), [])
-    except csv.Error:
-        return []
+    except csv.Error:  # a cell too long for it
+        return line.split(mapping.delimiter)
 
 
 def _parsed(
@@ -203,7 +204,7 @@ def _parsed(
         except (ValueError, OverflowError) as fault:
             _name_fault(source, body, begin, first_number, places, mapping)
             raise InvalidLog(f"{source}: not readable as CSV ({excerpt(str(fault), 200)}); write it anew.") from fault
-        if len(block) != len(lines):
+        if len(block) != len(body[begin : begin + BLOCK_ROWS]):
             _name_fault(source, body, begin, first_number, places, mapping)
             raise InvalidLog(f"{source}: a cell goes over the end of its line; write the log anew.")
         for name in texts:
@@ -217,6 +218,8 @@ def _parsed(
 
 def _filled(lines: list[str], delimiter: str) -> list[str]:
     """The lines with `nan` in empty cells: numpy knows no empty number."""
+    if any('"' in line for line in lines):
+        return _filled_quoted(lines, delimiter)
     joined = "\n".join(("", *lines, ""))
     if delimiter + " " in joined or "\n " in joined:  # perhaps cells of spaces: the slow way finds them
         cell = re.escape(delimiter)
@@ -227,6 +230,18 @@ def _filled(lines: list[str], delimiter: str) -> list[str]:
     for gap in [*gaps, *gaps]:  # twice: of three delimiters in a row, one pass sees the first two
         joined = joined.replace(gap, f"{gap[0]}nan{gap[1]}")
     return joined[1:-1].split("\n")
+
+
+def _filled_quoted(lines: list[str], delimiter: str) -> list[str]:
+    """The same where cells stand in quotes, which may hold a delimiter, or nothing."""
+    filled = io.StringIO()
+    writer = csv.writer(filled, delimiter=delimiter, lineterminator="\n")
+    try:
+        for cells in csv.reader(lines, delimiter=delimiter):
+            writer.writerow([cell if cell.strip() else "nan" for cell in cells])
+    except csv.Error:  # numpy tells that a line is none
+        return lines
+    return filled.getvalue()[:-1].split("\n")
 
 
 def _require_texts(source: str, name: str, texts: TextRuns, first_number: int) -> None:
@@ -271,7 +286,7 @@ def _row_fault(cells: list[str], places: dict[str, int], mapping: LogMapping) ->
     """The first column that is at fault in a row, and what is wrong there; None where nothing is."""
     for name, place in places.items():
         if place >= len(cells):
-            return name, f"the row has only {len(cells)} cells; write the whole row"
+            return name, f"the row ends after {len(cells)} of its cells; write the whole row"
         if name in TEXTS and not cells[place].strip():
             return name, "the cell is empty; fill it"
         if name not in TEXTS and NUMBER.fullmatch(cells[place]) is None:

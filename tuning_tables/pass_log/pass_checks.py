@@ -225,7 +225,7 @@ CHECKS: Final[tuple[Check, ...]] = (
      lambda s, row: f"is {s['stopped_by_hand'][row]:g}; it must be 0 or 1"),
     *(steady(name) for name in CONSTANT),
     ("category", category_changes, lambda _, __: "changes within the pass; it must be one category"),
-    ("cut_id", too_short, lambda s, row: f"stands in {np.diff(s.first_row)[s.pass_of_row[row]]} rows only; a pass has "
-     f"{FEWEST_ROWS} or more"),
+    ("cut_id", too_short, lambda s, row: f"stands in too few rows: {np.diff(s.first_row)[s.pass_of_row[row]]}; a "
+     f"pass has {FEWEST_ROWS} or more"),
 )  # fmt: skip
 """In the order in which they are told; values that are not there come before all others."""

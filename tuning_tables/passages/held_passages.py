@@ -29,7 +29,7 @@ def held_passages(
     entrance_stage: int = 0,
     before_entrance: int = 0,
 ) -> HeldPassages:
-    """The table of these parts; arrays become read-only. What tells tables from each other is 0.
+    """The table of these parts; arrays become read-only. What no rule looks at is 0.
 
     switching_m_s (M, K + 1, K); path_m, sensor, deciding (T,) as `PassageTable` has them of all passages heard. An
     infinite switching speed becomes the largest number of its sign: no credible reading is beyond either.
@@ -47,6 +47,8 @@ def held_passages(
         mass_t=np.float32(0.0),
         target_m_s=np.float32(0.0),
         base_m=np.float32(base_m),
+        scan_period_s=np.float32(0.0),
+        computing_delay_s=np.float32(0.0),
         **numbers,
         path_m=read_only(path_m, np.float32),
         sensor=read_only(sensor, np.int64),
@@ -65,4 +67,6 @@ def held_by(table: PassageTable) -> HeldPassages:
         initial_stage=table.initial_stage,
         mass_t=np.float32(table.cut.mass_t),
         target_m_s=np.float32(table.target_speed_m_s),
+        scan_period_s=np.float32(table.sensors.scan_period_s),
+        computing_delay_s=np.float32(table.sensors.computing_delay_s),
     )  # fmt: skip

@@ -7,6 +7,7 @@ from enum import Enum
 from itertools import pairwise
 from typing import Annotated, Final
 
+from tuning_tables.clock import DELAY_RANGE_S, in_words
 from tuning_tables.declared.members import require_declared
 from tuning_tables.declared.numbers import Number, Row
 from tuning_tables.declared.texts import Word
@@ -21,7 +22,6 @@ PLACE_RANGE_M: Final = (-100.0, 500.0)
 BASE_RANGE_M: Final = (0.05, 1.0)
 TOLERANCE_RANGE: Final = (0.0, 0.2)
 TIMER_RANGE_S: Final = (0.0, 0.05)
-DELAY_RANGE_S: Final = (0.0, 2.0)
 SCAN_RANGE_S: Final = (0.001, 0.5)
 
 
@@ -97,6 +97,11 @@ class SensorLayout:
                     f"sensors.path_m[{index}] is {after!r}, but it must be at least {SHORTEST_SECTION_M} m, and more "
                     f"than sensors.base_m, {self.base_m!r}, behind the sensor before, {before!r}."
                 )
+
+    @property
+    def clock(self) -> str:
+        """The clock of the regulator in words."""
+        return in_words("a step", self.scan_period_s, self.computing_delay_s)
 
     def heard(self, axle_offsets_m: tuple[float, ...]) -> tuple[Met, ...]:
         """Every passage of an axle over a sensor, in the order of the path, then of the sensors: each gives pulses."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import prod
 from typing import Final
 
@@ -13,7 +12,6 @@ from tuning_tables.errors import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.language.st_unit import Export
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.plc_forms.iec import part_files
 from tuning_tables.self_test_size import FULL, SelfTestSize
 
 TABLE_FILE: Final = "retarder_passages.st"
@@ -29,16 +27,6 @@ def passage_export(book: PassageBook, prefix: ExportPrefix = RETARDER, self_test
     Raises `InvalidTable` for a category without number, and for what 16 bits do not count.
     """
     return st_export(_exportable(book, self_test), prefix)
-
-
-def passage_st_files(
-    book: PassageBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL
-) -> Mapping[str, bytes]:
-    """The files by name, ASCII with LF: the tables with their blocks, and the self-test. Equal books, equal bytes.
-
-    Raises as `passage_export`.
-    """
-    return part_files(passage_export(book, prefix, self_test))
 
 
 def _exportable(book: PassageBook, self_test: SelfTestSize) -> ControllerCode:

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
+from tuning_tables.exporter import EXPORTER, exporting_version
 from tuning_tables.language.records import Kind
 from tuning_tables.language.st_layout import statements
 from tuning_tables.language.st_unit import ArrayOf, Block, Export, Structure, Variable, VariableType, units_of
@@ -27,7 +28,7 @@ def plcopen_files(export: Export) -> Mapping[str, bytes]:
     lines = [
         '<?xml version="1.0" encoding="utf-8"?>',
         f"<project xmlns={quoteattr(NAMESPACE)} xmlns:xhtml={quoteattr(XHTML)}>",
-        '    <fileHeader companyName="retarder-synth" productName="retarder-synth" productVersion="1"'
+        f'    <fileHeader companyName="{EXPORTER}" productName="{EXPORTER}" productVersion="{exporting_version()}"'
         f' creationDateTime="{NO_DAY}"/>',
         f"    <contentHeader name={quoteattr(stem)}>",
         f"        <Comment>{escape(comment(export))}</Comment>",

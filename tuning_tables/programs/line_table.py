@@ -34,6 +34,8 @@ class LineTable(NamedTuple):
     path_min_m: Annotated[np.float32, real("the path is clamped into this range, m")]
     path_max_m: Annotated[np.float32, real("m")]
     approach_m: Annotated[np.float32, real("acts from so far before the entrance, m; 0: from the entrance on")]
+    sample_period_s: Annotated[np.float32, real("from sample to sample, s; with another the table is not valid")]
+    computing_delay_s: Annotated[np.float32, real("from the sample to the command on the wires of the valves, s")]
     touch_kpa: Annotated[np.float32, real("pressure above which cylinders brake, kPa; 0 without estimator")]
     has_line: Annotated[Whole, whole("1 where the stage has a lower, an upper line", "stages", 2)]
     coefficient: Annotated[

@@ -33,6 +33,8 @@ class HeldPassages(NamedTuple):
     mass_t: Annotated[np.float32, real("of the cut, t")]
     target_m_s: Annotated[np.float32, real("exit speed aimed at, m/s")]
     base_m: Annotated[np.float32, real("distance of the two coils of a sensor, m")]
+    scan_period_s: Annotated[np.float32, real("step of the clock, s; with another the table is not valid")]
+    computing_delay_s: Annotated[np.float32, real("from the second pulse to the command on the wires, s")]
     least_m_s: Annotated[np.float32, real("least credible speed, m/s")]
     greatest_m_s: Annotated[np.float32, real("greatest credible speed, m/s")]
     acceleration_m_s2: Annotated[np.float32, real("greatest of a cut, m/s2")]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from scripts.studies.aimed_braking.doubled_accuracy import Doubled
 from scripts.studies.aimed_braking.measuring import Measured
 from scripts.studies.aimed_braking.prototypes import Beside
-from scripts.studies.aimed_braking.published_figures import Curves, Line, OverSpeeds
+from scripts.studies.aimed_braking.published_figures import Line, OverSpeeds
 from scripts.studies.aimed_braking.sensitivity import Moved, Sensitivity
 from scripts.studies.aiming.trial import Draws, Outcome, Value
 from scripts.studies.markdown_table import ABSENT, MarkdownTable, around, plus_minus, table
@@ -30,7 +30,6 @@ class AimedBraking(Findings):
     draws: Draws
     p_overspeed: float
     last_m: float
-    curves: Curves
     over_speeds: tuple[OverSpeeds, ...]
     by_category: tuple[Line, ...]
     refined: tuple[Line, ...]
@@ -100,7 +99,7 @@ class AimedBraking(Findings):
         d = self.draws
         return (
             f"{d.replicates} times {d.design} cuts to choose commands on and {d.report} others to judge them on, seed "
-            f"{d.seed}; figure 1: {len(self.curves.speed_m_s)} rolls",
+            f"{d.seed}",
         )
 
     def faults(self) -> tuple[str, ...]:

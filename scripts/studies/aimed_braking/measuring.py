@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from scripts.studies.aimed_braking.anemometer import ByReadingAndWind, WindByAnemometer
 from scripts.studies.aiming.hump import POINTS, weight_category, with_bends
 from scripts.studies.aiming.places import FreeDistance
+from scripts.studies.aiming.readings import LightnessByWeigher, ResistanceByRadar
 from scripts.studies.aiming.recorded_cuts import NearestRecord
 from scripts.studies.aiming.regression import ByRegression
 from scripts.studies.aiming.trial import Cuts, Draws, Outcome, outcomes, samples
 from scripts.studies.side_by_side import side_by_side
 from synth.aim.knowledge import ByCategory, ByReading, Knowledge
 from synth.aim.position_models import NormalPosition
-from synth.aim.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
+from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene
 
 Floats = NDArray[np.float64]

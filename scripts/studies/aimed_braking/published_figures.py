@@ -1,4 +1,4 @@
-"""Kozachenko's figures anew: curves, over-speed and gap over speed, one over the other, gap over distance."""
+"""Kozachenko's figures anew: over-speed and gap over speed, one over the other, gap over distance."""
 
 from __future__ import annotations
 
@@ -13,17 +13,6 @@ from scripts.studies.aiming.trial import Cuts, Draws, Outcome, Value, tried, val
 from synth.aim.knowledge import ByCategory, Knowledge
 from synth.aim.position_models import NormalPosition
 from synth.aim.scene import AimScene
-
-BETWEEN_STATIONS_M = 10.0
-
-
-@dataclass(frozen=True)
-class Curves:
-    """Single rolls from the park position: places from the crest, m, and speed and time at each, (rolls, places)."""
-
-    stations_m: tuple[float, ...]
-    speed_m_s: tuple[tuple[float, ...], ...]
-    time_s: tuple[tuple[float | None, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -51,27 +40,6 @@ class Line:
     name: str
     metres: tuple[float, ...]
     outcomes: tuple[Outcome | None, ...]
-
-
-def curves(
-    scene: AimScene,
-    category: WeightCategory,
-    command_m_s: float,
-    to_m: float,
-    rolls: int,
-    exit_std_m_s: float,
-    seed: int,
-) -> Curves:
-    """Figure 1: `rolls` single cars that are commanded `command_m_s`."""
-    cuts = scene.draw(category, 1, seed, 0, rolls)
-    exits = NormalPosition(exit_std_m_s, only_brakes=False).exits(cuts).at(np.full(rolls, command_m_s))
-    stations = np.arange(np.ceil(cuts.release_m.max()), to_m + 0.5 * BETWEEN_STATIONS_M, BETWEEN_STATIONS_M)
-    rolled = cuts.rolling.roll_on(cuts.release_m, exits, np.broadcast_to(stations, (rolls, len(stations))))
-    return Curves(
-        tuple(map(float, stations)),
-        tuple(tuple(round(float(v), 3) for v in row) for row in rolled.speed_m_s),
-        tuple(tuple(round(float(t), 2) if np.isfinite(t) else None for t in row) for row in rolled.time_s),
-    )
 
 
 def over_speeds(

@@ -12,10 +12,11 @@ from scripts.studies.aimed_braking.doubled_accuracy import doubled_accuracy
 from scripts.studies.aimed_braking.findings import AimedBraking, Norm
 from scripts.studies.aimed_braking.measuring import WAYS, measured
 from scripts.studies.aimed_braking.prototypes import BEHIND_POSITION, FROM_CREST, beside
-from scripts.studies.aimed_braking.published_figures import Line, by_category, curves, line, over_speeds
+from scripts.studies.aimed_braking.published_figures import Line, by_category, line, over_speeds
 from scripts.studies.aimed_braking.sensitivity import INPUTS, sensitivities
 from scripts.studies.aiming.hump import POINTS, large_hump, weight_category
 from scripts.studies.aiming.norm_distance import norm_distance
+from scripts.studies.aiming.readings import LightnessByWeigher
 from scripts.studies.aiming.recorded_cuts import NearestRecord
 from scripts.studies.aiming.regression import ByRegression
 from scripts.studies.aiming.trial import Cuts, Draws, value_of
@@ -23,7 +24,7 @@ from scripts.studies.options import option
 from scripts.studies.study import Method, Tell
 from synth.aim.knowledge import ByCategory, ByReading, Knowledge
 from synth.aim.position_models import NormalPosition
-from synth.aim.readings import LightnessByWeigher, ResistanceByTwoSpeeds
+from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene
 
 EXACT_WEIGHT = 1e-4
@@ -49,7 +50,6 @@ class Options:
     inputs: int = option(len(INPUTS), "how many assumed inputs are changed", (0, len(INPUTS)))
     prototype_rows: int = option(9, "rows of the prototype's tables", (1, 9))
     ways: int = option(len(WAYS), "ways to measure", (1, len(WAYS)))
-    rolls: int = option(300, "of figure 1", (2, 10_000))
     replicates: int = option(8, "independent replicates", (2, 1000))
     design: int = option(6000, "cuts of a replicate that commands are chosen on", (200, 10**6))
     report: int = option(6000, "cuts of a replicate that commands are judged on", (200, 10**6))
@@ -65,7 +65,6 @@ def run(options: Options, tell: Tell) -> AimedBraking:
     scene, draws = large_hump(), Draws(options.replicates, options.design, options.report, options.seed)
     light, heavy = (weight_category(scene, name) for name in ("L", "T"))
     p, std = options.p_overspeed, options.exit_std_m_s
-    one = curves(scene, light, 3.5, 500.0, options.rolls, std, options.seed)
     over = tuple(
         over_speeds(scene, category, metres, SPEEDS_M_S, std, draws)
         for category in (light, heavy)
@@ -96,7 +95,7 @@ def run(options: Options, tell: Tell) -> AimedBraking:
     ways = tuple(measured(scene, behind, p, draws, WAYS[: options.ways]))
     tell("ways to measure")
     return AimedBraking(
-        draws, p, options.last_m, one, over, categories, refined, accuracy, cars, norms, moved, doubled,
+        draws, p, options.last_m, over, categories, refined, accuracy, cars, norms, moved, doubled,
         from_crest, from_exit, behind, ways,
     )  # fmt: skip
 
@@ -144,7 +143,7 @@ def norm_rows(scene: AimScene, options: Options, draws: Draws) -> tuple[Norm, ..
 
 METHOD = Method(
     Options,
-    Options(metres=(400.0, 500.0), last_m=600.0, records=50, cars=(1, 2), inputs=1, prototype_rows=1, ways=5, rolls=10,
+    Options(metres=(400.0, 500.0), last_m=600.0, records=50, cars=(1, 2), inputs=1, prototype_rows=1, ways=5,
             replicates=2, design=400, report=300),
     AimedBraking,
     run,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 from scripts.studies.control_computer.assumed_yard import YARD
 from scripts.studies.control_computer.hump_runs import Humped, first_trains
@@ -15,11 +15,9 @@ from scripts.studies.humping.runs import Group
 from scripts.studies.humping.table_positions import table_positions
 from scripts.studies.markdown_table import MarkdownTable, table
 from scripts.studies.study import Tell
-from synth.computer.economics.hump_day_change import HumpDayChange, change_of_trains, figures_of_trains
-from synth.computer.economics.hump_day_figures import NAMES
+from synth.computer.economics.hump_day_change import change_of_trains, figures_of_trains
 from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.train_figures import share
 from synth.hump.trains.trial import HumpTrial
 
 LEAST_S = {"today": 2.6, "asked": 0.3, "new": 0.3, "tables": 0.3}
@@ -31,36 +29,24 @@ WIDER_RANGE = (f"highest_m_s = {HIGHEST_M_S}", f"highest_m_s = {HIGHEST_M_S}", "
 
 
 @dataclass(frozen=True)
-class RateEstimates:
-    """The figures of `HumpRates`, each with its 95 % interval and what it was counted from."""
-
-    cars_per_h: Interval
-    catch_ups: Interval
-    misrouted: Interval
-    on_track: Interval
-    over_speeds_to_1_5: Interval
-    over_speeds_to_2: Interval
-    over_speeds_above_2: Interval
-    gap_m: Interval
-
-
-@dataclass(frozen=True)
 class Variant:
-    """One control of the hump; `exit_std_m_s` of all positions (where tables run: that for which exits are chosen)."""
+    """One control of the hump; `exit_std_m_s` of all positions (where tables run: that for which exits are chosen);
+    `rates` by the names of `HumpRates`."""
 
     name: str
     control: str
     exit_std_m_s: float
     least_s: float
     trains: int
-    rates: RateEstimates
+    rates: dict[str, Interval]
 
 
 @dataclass(frozen=True)
 class Beside:
-    """A variant less today on the same trains, and what it brings the assumed yard (today less it)."""
+    """A variant less today on the same trains, by the names of `HumpRates`, and what it brings the assumed yard (today
+    less it)."""
 
-    change: HumpDayChange
+    change: dict[str, Interval]
     benefits: tuple[Benefit, ...]
 
 
@@ -86,13 +72,13 @@ class BenefitOfControl:
                     ("control", *(v.control for v in rates)),
                     ("least interval, s", *(f"{v.least_s:g}" for v in rates)),
                     ("trains", *(str(v.trains) for v in rates)),
-                    *((WORDS[field], *(shown(field, getattr(v.rates, field)) for v in rates)) for field in WORDS),
+                    *((WORDS[field], *(shown(field, v.rates[field]) for v in rates)) for field in WORDS),
                 ),
             ),
             "changes": table(
                 "the same less today, paired by train",
                 ("figure", *others),
-                ((WORDS[field], *(shown(field, getattr(c.change, field)) for c in changes)) for field in WORDS),
+                ((WORDS[field], *(shown(field, c.change[field]) for c in changes)) for field in WORDS),
             ),
             "benefits": table(
                 "less than today in the assumed yard, with bootstrap intervals over the trains",
@@ -104,9 +90,9 @@ class BenefitOfControl:
     def faults(self) -> tuple[str, ...]:
         """A more exact control must not hump fewer cars an hour beyond the interval."""
         return tuple(
-            f"benefit: {LABELS[name]} humps fewer cars an hour than today, {rounded(each.change.cars_per_h)}"
+            f"benefit: {LABELS[name]} humps fewer cars an hour than today, {rounded(each.change['cars_per_h'])}"
             for name, each in self.beside_today.items()
-            if each.change.cars_per_h.high95 < 0.0
+            if each.change["cars_per_h"].high95 < 0.0
         )
 
 
@@ -177,15 +163,5 @@ def benefit_of(humped: Mapping[str, Humped], names: tuple[str, ...], replicates:
 
 def variant(name: str, found: TrainOutcomes) -> Variant:
     """Its figures."""
-    told = figures_of_trains(name, found)
-    p, low, high, _ = share(found.judged.astype(float), found.cuts.astype(float))
-    rates = {field: getattr(told, field) for field in NAMES}
-    rates["on_track"] = Interval(p, low, high, int(found.cuts.sum()))
     control = "open loop" if name == "today" else "feedback"
-    return Variant(name, control, STDS_M_S[name], LEAST_S[name], len(found), RateEstimates(**plain(rates)))
-
-
-def plain(rates: Mapping[str, Interval]) -> dict[str, Interval]:
-    """The same of plain numbers."""
-    assert {field.name for field in fields(RateEstimates)} == set(rates)
-    return {name: Interval(float(e.value), float(e.low95), float(e.high95), int(e.n)) for name, e in rates.items()}
+    return Variant(name, control, STDS_M_S[name], LEAST_S[name], len(found), figures_of_trains(found))

@@ -9,8 +9,6 @@ from scripts.studies.control_computer.benefit import BenefitOfControl
 from scripts.studies.control_computer.controllers import Controllers
 from scripts.studies.control_computer.failures import Failures
 from scripts.studies.control_computer.published import Published
-from scripts.studies.control_computer.queues import Queues
-from scripts.studies.control_computer.reliability import Reliability
 from scripts.studies.markdown_table import MarkdownTable
 from scripts.studies.study import Findings
 
@@ -19,25 +17,20 @@ from scripts.studies.study import Findings
 class ControlComputer(Findings):
     """All parts."""
 
-    queues: Queues
     published: Published
-    reliability: Reliability
     failures: Failures
     benefit: BenefitOfControl
     controllers: Controllers
 
     def tables(self) -> Mapping[str, MarkdownTable]:
         """Those of all parts; see the titles."""
-        parts = (self.queues, self.published, self.reliability, self.failures, self.benefit, self.controllers)
+        parts = (self.published, self.failures, self.benefit, self.controllers)
         return {name: each for part in parts for name, each in part.tables().items()}
 
     def faults(self) -> tuple[str, ...]:
-        """A formula outside its simulation, and every claim of the parts that does not hold."""
-        compared = (*self.queues.comparisons, *self.reliability.comparisons)
+        """Every claim of the parts that does not hold."""
         return (
-            *(each.sentence for each in compared if each.outside),
             *self.published.speeds.faults(),
-            *self.reliability.faults(),
             *self.failures.faults(),
             *self.benefit.faults(),
             *self.controllers.faults(),

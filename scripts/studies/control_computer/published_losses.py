@@ -10,10 +10,9 @@ from dataclasses import dataclass
 
 from synth.computer.economics.pay_back import pay_back, yearly_effect
 from synth.computer.reliability.duplex import Duplex, single_availability
-from synth.computer.reliability.failure_losses import HourPrices, yearly_loss
+from synth.computer.reliability.failure_losses import HOURS_PER_YEAR, HourPrices, yearly_loss
 from synth.computer.reliability.four_states import FourStates, StateShares
-from synth.computer.reliability.maintenance_interval import CheckedComputer, UsefulHours
-from synth.computer.reliability.rates import HOURS_PER_YEAR
+from synth.computer.reliability.maintenance_interval import CheckedComputer
 
 UNNOTICED_K_RUB_PER_H = 5.0
 FAILURE_PER_H, INTERVAL_H = 0.0024, 2.5
@@ -89,6 +88,6 @@ def check_worth_h(interval_h: float) -> float:
 
     def too_long(worth_h: float) -> float:
         computer = CheckedComputer(FAILURE_PER_H, worth_h, UNNOTICED_K_RUB_PER_H, UNNOTICED_K_RUB_PER_H)
-        return UsefulHours().best_interval_h(computer) - interval_h
+        return computer.best_useful_h - interval_h
 
     return float(brentq(too_long, 1e-6, 1.0, xtol=1e-12))

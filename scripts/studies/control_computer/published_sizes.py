@@ -17,10 +17,13 @@ from synth.computer.sizing.memory_need import (
     ControllerCounts,
     Memory,
     MemoryTable,
+    Stored,
     controller_memory,
-    source_memory,
 )
-from synth.computer.sizing.word_length import SOURCE_WORD_BITS, common_word_bits, hump_quantities
+from synth.computer.sizing.word_length import Quantity, common_word_bits, digits, hump_quantities
+
+SOURCE_WORD_BITS = 16
+"""What [hump-computer-1970s] chooses."""
 
 CUTS = 60
 """Of the longest train, assumed."""
@@ -60,7 +63,7 @@ class MemoryRow:
 
 @dataclass(frozen=True)
 class PublishedSizes:
-    """All of them. `fixed_words`, `working_words`: of the published table; KiB of our controller on the large hump."""
+    """All of them. `fixed_words`, `working_words`: of the published table."""
 
     quantities: tuple[QuantityBits, ...]
     word_bits: int
@@ -69,7 +72,6 @@ class PublishedSizes:
     fixed_words: int
     working_words: int
     our_memory: tuple[MemoryRow, ...]
-    our_kib: tuple[float, float]
 
     def tables(self) -> dict[str, MarkdownTable]:
         """`bits`, `channels`, `memory`."""
@@ -98,14 +100,41 @@ def published_sizes() -> PublishedSizes:
     """All parts."""
     published, ours = source_memory(), our_memory("large")
     return PublishedSizes(
-        quantities=tuple(QuantityBits(q.name, q.bits, q.bits_of_source) for q in hump_quantities()),
+        quantities=tuple(QuantityBits(q.name, q.bits, bits_of_source(q)) for q in hump_quantities()),
         word_bits=common_word_bits(hump_quantities()),
         channels=(hump_channels("", 0, 0, source_channels()), *map(channels_of, hump_names())),
         published_memory=memory_rows(published),
         fixed_words=published.words(Memory.FIXED, 17),
         working_words=published.words(Memory.WORKING, 53),
         our_memory=memory_rows(ours),
-        our_kib=(ours.kibibytes(Memory.FIXED), ours.kibibytes(Memory.WORKING)),
+    )
+
+
+def bits_of_source(quantity: Quantity) -> int:
+    """R = log2((greatest − least + 1)/step), rounded up, as [hump-computer-1970s] prints it.
+
+    The 1 is one unit there, not one step, so the result depends on the unit. For a range of whole steps it is never
+    too few; for steps below 1 it can be more than is needed, most where the range is small.
+    """
+    return max(1, digits((quantity.greatest - quantity.least + 1.0) / quantity.step))
+
+
+def source_memory() -> MemoryTable:
+    """The table of [hump-computer-1970s], chapter 3, for a hump of 141 objects (twice as many working cells).
+
+    The bits of the initial data cannot be read in the copy ("~J"). They are records of cuts, which the same source
+    makes 53 bits long, the width of the row below; so 53 is assumed. It asks for 2 000 words of either memory in the
+    end: 1 800 words of 17 bits, and 1 438 words by number, which are 3 052 of 16 bits.
+    """
+    source = "[hump-computer-1970s], chapter 3, table 1"
+    return MemoryTable(
+        (
+            Stored("programs", 1400, 17, Memory.FIXED, source),
+            Stored("constants", 400, 16, Memory.FIXED, source),
+            Stored("initial data", 256, 53, Memory.WORKING, f"{source}; bits not readable, 53 assumed"),
+            Stored("working cells of programs", 900, 16, Memory.WORKING, source),
+            Stored("working cells of objects", 282, 53, Memory.WORKING, source),
+        )
     )
 
 

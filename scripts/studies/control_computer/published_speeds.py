@@ -5,16 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import count
 
-from scripts.studies.control_computer.queues import LAWS, NAMES
 from scripts.studies.markdown_table import MarkdownTable, table
-from synth.computer.sizing.cyclic_service import Cycle, cyclic_speed, operations_for_use, used_share
+from synth.computer.sizing.cyclic_service import Cycle, cyclic_speed, used_share
 from synth.computer.sizing.demand_service import Discipline, mean_waits
 from synth.computer.sizing.needed_speed import AllowedWait, largest_tail, longest_mean_s, needed_speed
-from synth.computer.sizing.service_law import Constant, Erlang, ServiceLaw
+from synth.computer.sizing.service_law import Constant, Erlang, Exponential, Hyperexponential, ServiceLaw
 from synth.computer.sizing.task import Task, TaskMix
 from synth.computer.sizing.waiting_tail import start_tail
 from synth.frame.settings.changed import changed
 
+LAWS: dict[str, ServiceLaw] = {
+    "constant": Constant(1.0),
+    "Erlang, 2 stages": Erlang(1.0, 2),
+    "exponential": Exponential(1.0),
+    "hyperexponential, c² = 3": Hyperexponential(1.0, 3.0),
+}
+"""Of one operation."""
+
+NAMES = {Discipline.FIRST_COME: "first come", Discipline.RELATIVE: "relative", Discipline.ABSOLUTE: "absolute"}
 RATE_PER_S = 0.825
 CYCLE = Cycle()
 """(1 − δ)/(1 + α) = 0.5, however it is divided."""
@@ -143,6 +151,17 @@ def cyclic_use(control: str) -> CyclicUse:
     less, more = (operations_for_use(use, speed, RATE_PER_S, CYCLE, False) for use in USES)
     share = used_share(one_task(Constant(FAST_OPERATIONS)), speed, CYCLE, checks_count=True)
     return CyclicUse(control, speed, share, (low, high), (less, more))
+
+
+def operations_for_use(share: float, speed_op_s: float, rate_per_s: float, cycle: Cycle, checks_count: bool) -> float:
+    """The mean number of operations a request that gives `share`: `used_share` solved for L.
+
+    It shows that three figures of [hump-computer-1970s] are of different mixes of tasks. At 20 000 op/s (open loop) a
+    use of 7 to 8 % and 0.825 requests a second give L from 850 to 1 940; a wait below 0.01 s at 1 500 op/s allows 219
+    at most. At 10⁶ op/s (feedback) they give 42 000 to 97 000; the same work has 8 000 in the text.
+    """
+    operations = share * speed_op_s / rate_per_s
+    return operations * cycle.useful_share if checks_count else operations
 
 
 def one_task(law: ServiceLaw) -> TaskMix:

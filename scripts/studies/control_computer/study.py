@@ -1,4 +1,4 @@
-"""The control computer: formulas beside simulation, published figures beside ours, failures, benefit, controllers."""
+"""The control computer: published figures beside ours, failures, benefit, controllers."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from scripts.studies.control_computer.failures import failure_trials
 from scripts.studies.control_computer.findings import ControlComputer
 from scripts.studies.control_computer.hump_runs import measured
 from scripts.studies.control_computer.published import published
-from scripts.studies.control_computer.queues import queues
-from scripts.studies.control_computer.reliability import reliability
 from scripts.studies.options import option
 from scripts.studies.study import Method, Tell
 
@@ -20,9 +18,6 @@ from scripts.studies.study import Method, Tell
 class Options:
     """How much is simulated."""
 
-    requests: int = option(1_000_000, "requests kept of every simulated queue", (1000, 10**8))
-    coverage_runs: int = option(2000, "simulations of M/M/1 that intervals are judged by, at each load", (2, 10**6))
-    lives: int = option(2_000_000, "simulated cycles of a chain and periods of a duplex", (1000, 10**8))
     failure_trains: int = option(300, "trains with every failure", (2, 10**6))
     trains: int = option(300, "trains of every control of the hump", (2, 10**6))
     table_trains: int = option(200, "trains where positions run tables; 0: no tables are tuned", (0, 10**6))
@@ -35,9 +30,7 @@ class Options:
 
 def run(options: Options, tell: Tell) -> ControlComputer:
     """All parts."""
-    of_queues = queues(options.requests, options.coverage_runs, options.workers, options.seed, tell)
     of_source = published(tell)
-    of_lives = reliability(options.lives, options.seed, tell)
     failed = failure_trials(options.cuts)
     table_trains = min(options.table_trains, options.trains)
     variants = benefit_groups(options.seed, options.cuts, options.design_cuts, table_trains > 0, tell)
@@ -49,9 +42,7 @@ def run(options: Options, tell: Tell) -> ControlComputer:
         tell,
     )
     return ControlComputer(
-        queues=of_queues,
         published=of_source,
-        reliability=of_lives,
         failures=failed.found(humped),
         benefit=benefit_of(humped, tuple(variants), options.replicates, options.seed),
         controllers=controllers(),
@@ -61,7 +52,7 @@ def run(options: Options, tell: Tell) -> ControlComputer:
 METHOD = Method(
     Options,
     Options(
-        requests=3000, coverage_runs=2, lives=1000, failure_trains=2, trains=2, table_trains=0, cuts=6, design_cuts=200,
+        failure_trains=2, trains=2, table_trains=0, cuts=6, design_cuts=200,
         replicates=100, workers=1,
     ),
     ControlComputer,

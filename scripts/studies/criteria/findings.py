@@ -29,7 +29,7 @@ class Measured:
 class CriterionRow:
     """One criterion of one case. `ratio`: rms / rms by the default, paired; `worst_factor`: of friction, with its rms.
 
-    `density`: probability by bin of the error, 1/(m/s); `finding`: what the requirement took, in a sentence.
+    `finding`: what the requirement took, in a sentence.
     """
 
     case: str
@@ -40,7 +40,6 @@ class CriterionRow:
     worst_factor: float
     worst_rms_m_s: float
     worst_ci95_m_s: Interval
-    density: tuple[float, ...]
     finding: str | None
 
 
@@ -55,16 +54,12 @@ class PriceRow:
 
 @dataclass(frozen=True)
 class Criteria(Findings):
-    """All criteria and prices of all cases.
-
-    `margins_m_s`: those of `Measured.over`; `bins_m_s`: edges of the densities.
-    """
+    """All criteria and prices of all cases. `margins_m_s`: those of `Measured.over`."""
 
     config_sha256: str
     seed: int
     passes: int
     margins_m_s: tuple[float, ...]
-    bins_m_s: tuple[float, ...]
     criteria: tuple[CriterionRow, ...]
     prices: tuple[PriceRow, ...]
 

@@ -11,8 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from scripts.studies.cases import Case, named_cases
 from scripts.studies.criteria.findings import Criteria, CriterionRow, Measured, PriceRow
 from scripts.studies.entrance import from_the_entrance
@@ -40,7 +38,6 @@ from tuning_tables import ControllerTable
 
 RANGE = FrictionRange(0.7, 1.3)
 MARGINS_M_S = (0.05, 0.1, 0.3)
-BINS_M_S = tuple(round(-0.2 + 0.01 * i, 2) for i in range(41))
 
 FRESH = 7919
 """Added to the configured seed: other passes than those of the book and of the baselines' tuning."""
@@ -131,7 +128,7 @@ def run(options: Options, tell: Tell) -> Criteria:
     found = side_by_side(rows_of, named_cases(config, options.cases))
     rows = tuple(row for each, _ in found for row in each)
     prices = tuple(row for _, each in found for row in each)
-    return Criteria(config.sha256, seed, options.passes, MARGINS_M_S, BINS_M_S, rows, prices)
+    return Criteria(config.sha256, seed, options.passes, MARGINS_M_S, rows, prices)
 
 
 def bench_of(case: Case, config: ResolvedConfig, passes: RandomPasses) -> Bench:
@@ -154,7 +151,7 @@ def criterion_rows(bench: Bench, solutions: dict[str, Solution], factors: int) -
         rows.append(
             CriterionRow(
                 bench.case.name, name, bench.measured(table, sample), ratio, ratio_ci95,
-                *bench.worst(table, factors), density_of(sample, bench.case.target_m_s), finding,
+                *bench.worst(table, factors), finding,
             )
         )  # fmt: skip
     return rows
@@ -167,13 +164,6 @@ def price_rows(bench: Bench, tolerances: tuple[float, ...], solutions: Sequence[
         table, _ = bench.table(solution)
         rows.append(PriceRow(bench.case.name, tolerance, bench.measured(table, bench.sample(table))))
     return rows
-
-
-def density_of(sample: ExitSample, target_m_s: float) -> tuple[float, ...]:
-    """Share of all cuts whose error falls into each bin, over the bin's width; what lies outside is left out."""
-    share, _ = np.histogram(sample.exit_speed_m_s - target_m_s, BINS_M_S, weights=sample.weight)
-    density = share / sample.weight.sum() / np.diff(BINS_M_S)
-    return tuple(density.tolist())
 
 
 METHOD = Method(Options, Options(cases=("52:3",), passes=800, tolerances_m2_s2=(0.0,), factors=2), Criteria, run)

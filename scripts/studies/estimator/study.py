@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING
 
 from scripts.studies.cases import Case, class_cases
 from scripts.studies.estimator.pair import FRESH, Compared, nominal, without_price
@@ -28,9 +27,6 @@ from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.told_lines import Effort
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 FINE_STEP_M_S = 0.02
 """Speed step of the reference."""
@@ -133,14 +129,6 @@ def told_rms_m_s(case: Case, config: ResolvedConfig, passes: RandomPasses, effor
     finer = replace(config.resolution, speed_step_m_s=min(config.resolution.speed_step_m_s, FINE_STEP_M_S))
     found = told_friction(persistent_chain(case.plant, finer), case.target_m_s, config.fit.degree, effort)
     return exit_statistics(simulate_told(case.plant, found, passes), case.target_m_s).rms_m_s
-
-
-def figures(found: Gains) -> Mapping[str, Figure]:
-    """The ratios with their intervals."""
-    from scripts.studies.estimator.picture import picture
-
-    shown = {row.case: {"as it is": row.figures} for row in found.rows}
-    return {"": picture("What the estimator gains", shown)}
 
 
 METHOD = Method(

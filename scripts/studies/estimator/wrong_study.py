@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,9 +20,6 @@ from synth.problem.problem import Problem
 from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import simulate
 from synth.simulation.stratified_passes import stratified_passes
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -118,13 +114,6 @@ def run(options: Options, tell: Tell) -> Misled:
 
     rows = side_by_side(row_of, class_cases(config, options.masses_t, options.targets_m_s))
     return Misled(config.sha256, seed, options.passes, rows)
-
-
-def figures(found: Misled) -> Mapping[str, Figure]:
-    """The ratios, wherever the estimator is wrong."""
-    from scripts.studies.estimator.picture import picture
-
-    return {"": picture("What the estimator costs where it is wrong", {c.case: c.by_wrong for c in found.cases})}
 
 
 METHOD = Method(Options, Options(masses_t=(52.0,), targets_m_s=(3.0,), passes=400), Misled, run)

@@ -47,10 +47,6 @@ class Book:
         """The classes with their tables, as they are read back."""
         return self.read_back(self.config(estimator=False))
 
-    def priced_tables(self, time_price_m2_s3: float) -> tuple[TableClass, ...]:
-        """The same with tables for which a second has this price."""
-        return self.read_back(self.config(estimator=False, criterion=f"time_price_m2_s3 = {time_price_m2_s3}\n"))
-
     def estimating_tables(self) -> tuple[TableClass, ...]:
         """The same with tables that are designed for an estimator of speed and friction."""
         return self.read_back(self.config(estimator=True))

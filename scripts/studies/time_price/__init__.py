@@ -1,1 +1,1 @@
-"""What a price of a second in the position costs in accuracy, and what it brings a whole hump."""
+"""What a price of a second in the position costs in accuracy."""

@@ -1,6 +1,6 @@
-"""Accuracy against time in the position, for several prices of a second; and what one of them brings a whole hump.
+"""Accuracy against time in the position, for several prices of a second.
 
-Every table is that of a tune, simulated on the same passes; every hump variant humps the same trains.
+Every table is that of a tune, simulated on the same passes.
 """
 
 from __future__ import annotations
@@ -8,13 +8,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from scripts.studies.humping.exits import exits_table
-from scripts.studies.humping.pair_tables import curve_table, gains_table
 from scripts.studies.markdown_table import MarkdownTable, plus_minus, table
 from scripts.studies.options import option
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Findings, Method, Tell
-from scripts.studies.time_price.humped import Humped, humped
 from scripts.studies.tuned_table import CREATED
 from synth.problem.aim import Aim
 from synth.retarder.class_setup import ClassSetup, Origin, class_setup
@@ -39,35 +36,20 @@ class Options:
 
     passes: int = option(20_000, "fresh passes of each table", (200, 10**6))
     cases: int = option(len(CUTS), "how many of the cuts", (1, len(CUTS)))
-    trains: int = option(1000, "trains of every variant of the hump; 0: none", (0, 10**6))
-    cuts: int = option(40, "cuts of a train", (2, 999))
-    price_m2_s3: float = option(1e-4, "what a second costs the tables of the hump, m²/s³", (0.0, 1.0))
-    least_s: tuple[float, ...] = option(
-        (1.4, 1.0, 0.6, 0.3, 0.0, -0.4), "least intervals of the programs of hump speeds, falling", (-10.0, 10.0)
-    )
-    limits: tuple[float, ...] = option((0.001, 0.005), "shares of catch-ups that may not be passed", (1e-5, 0.5))
-    workers: int = option(2, "processes; they change no result", (1, 1000))
-    seed: int = option(17, "of the trains", (0, 10**9))
 
 
 @dataclass(frozen=True)
 class TimePrice(Findings):
-    """The fronts of all cases; `hump`: None where no train was humped."""
+    """The fronts of all cases."""
 
     config_sha256: str
     seed: int
     passes: int
     fronts: tuple[ParetoFront, ...]
-    hump: Humped | None
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`fronts`: a row for each case and price; `gains`, `exits`, `hump NUMBER`: of the hump."""
-        found = {"fronts": fronts_table(self.fronts)}
-        if self.hump is not None:
-            found["gains"] = gains_table("what the price brings the hump, on the same trains", self.hump.gains)
-            found["exits"] = exits_table(self.hump.exits)
-            found |= {f"hump {number}": curve_table(each) for number, each in enumerate(self.hump.curves, start=1)}
-        return found
+        """`fronts`: a row for each case and price."""
+        return {"fronts": fronts_table(self.fronts)}
 
     def sentences(self) -> tuple[str, ...]:
         """What is nearly free, and how much was simulated."""
@@ -96,7 +78,7 @@ def fronts_table(fronts: tuple[ParetoFront, ...]) -> MarkdownTable:
 
 
 def run(options: Options, tell: Tell) -> TimePrice:
-    """The cases, then the hump."""
+    """All cases."""
     config = configured(options.cases)
     seed = config.validation.seed + FRESH
     fresh = stratified_passes(seed, 0, options.passes)
@@ -108,14 +90,7 @@ def run(options: Options, tell: Tell) -> TimePrice:
         tell(found.name)
         return found
 
-    fronts = side_by_side(front, setups)
-    hump = None
-    if options.trains:
-        hump = humped(
-            options.seed, options.trains, options.cuts, options.price_m2_s3, options.least_s, options.limits,
-            options.workers, tell,
-        )  # fmt: skip
-    return TimePrice(config.sha256, seed, options.passes, tuple(fronts), hump)
+    return TimePrice(config.sha256, seed, options.passes, side_by_side(front, setups))
 
 
 def configured(cases: int) -> ResolvedConfig:
@@ -124,4 +99,4 @@ def configured(cases: int) -> ResolvedConfig:
     return parse_config(f"[targets]\nexit_speeds_m_s = [{TARGET_M_S}]\n{cuts}", "study time-price")
 
 
-METHOD = Method(Options, Options(passes=200, cases=1, trains=0), TimePrice, run)
+METHOD = Method(Options, Options(passes=200, cases=1), TimePrice, run)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scripts.studies.aiming.aimed_cuts import rolled_cuts
 from scripts.studies.aiming.hump import POINTS, weight_category, with_bends
 from scripts.studies.aiming.places import FreeDistance
+from scripts.studies.aiming.readings import LightnessByWeigher, ResistanceByRadar
 from scripts.studies.aiming.recorded_cuts import NearestRecord
 from scripts.studies.aiming.regression import ByRegression
 from scripts.studies.aiming.trial import Cuts, Draws, judged
@@ -18,7 +19,7 @@ from scripts.studies.side_by_side import side_by_side
 from scripts.studies.yard_chain.park_book import ParkBook, park_book
 from synth.aim.knowledge import ByCategory, ByReading, Knowledge
 from synth.aim.position_models import NormalPosition, PositionModel
-from synth.aim.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
+from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene, SceneCuts
 
 Floats = NDArray[np.float64]

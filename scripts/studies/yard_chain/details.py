@@ -9,13 +9,14 @@ import numpy as np
 
 from scripts.studies.aiming.hump import POINTS
 from scripts.studies.aiming.places import FreeDistance
+from scripts.studies.aiming.readings import ResistanceByRadar
 from scripts.studies.aiming.recorded_cuts import NearestRecord
 from scripts.studies.aiming.trial import Cuts, Draws, Outcome, judged, outcomes, tried
 from scripts.studies.yard_chain.chain import Kind
 from scripts.studies.yard_chain.faults import HandBraked, WithMissing
 from synth.aim.knowledge import ByCategory, ByReading, Knowledge
 from synth.aim.position_models import NormalPosition, PositionModel
-from synth.aim.readings import ResistanceByRadar, ResistanceByTwoSpeeds
+from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene
 
 EXIT_STD_M_S = 0.03

@@ -1,4 +1,4 @@
-"""The pictures of the study `yard-chain`."""
+"""The picture of the study `yard-chain`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 
 from synth.frame.picture.house_style import (
     BLUE,
-    LINE_COLOURS,
     ORANGE,
     SKY,
     VERMILLION,
@@ -22,7 +21,7 @@ from synth.frame.picture.house_style import (
 
 if TYPE_CHECKING:
     from scripts.studies.aiming.trial import Value
-    from scripts.studies.yard_chain.findings import Chain, YardChain
+    from scripts.studies.yard_chain.findings import YardChain
 
 
 def practices(found: YardChain) -> Figure:
@@ -55,37 +54,6 @@ def bar(axes: Axes, y: float, value: Value | None, colour: str, height: float, l
     axes.barh(y, value.value, height, color=colour, xerr=half, capsize=2, label=label or None)
 
 
-def chain(found: YardChain) -> Figure:
-    """Gap by position for the kinds of knowledge, light and heavy single cars, at the middle free distance."""
-    place_of = len(found.metres) // 2
-    kinds = [each for each in found.chains if each.cuts in ("light, 1 car", "heavy, 1 car")]
-    figure = new_figure(12.0, 5.4, f"Gap a car {found.metres[place_of]:g} m behind the position",
-                        f"single cars, share {found.p_overspeed:g} of over-speeds; bars: 95 % intervals")  # fmt: skip
-    place(figure, left=1.7, right=0.3, bottom=0.95, top=0.85, w=0.1)
-    panels = figure.subplots(1, len(kinds), sharey=True)
-    for axes, each in zip(panels, kinds, strict=True):
-        dress(axes, each.cuts, "gap a car, m", "")
-        of_kind(axes, each, place_of)
-        axes.set_xlim(left=0.0)
-    panels[0].invert_yaxis()
-    legend_below(figure, panels[0].get_legend_handles_labels()[0], 4)
-    return figure
-
-
-def of_kind(axes: Axes, each: Chain, place_of: int) -> None:
-    """A group of bars a kind of knowledge, a bar a position."""
-    shown = [p for p in each.positions if p in ("ideal", "σ 0.4", "energy rule", "our tables, estimator")]
-    height = 0.8 / len(shown)
-    for k, position in enumerate(shown):
-        column = each.positions.index(position)
-        for i, row in enumerate(each.outcomes):
-            outcome = row[column][place_of]
-            if outcome is not None:
-                y = i + height * (k - 0.5 * (len(shown) - 1))
-                bar(axes, y, outcome.gap_m, LINE_COLOURS[k], height, position if i == 0 else "")
-    axes.set_yticks(range(len(each.knowledge)), each.knowledge, fontsize=8)
-
-
 def figures(found: YardChain) -> Mapping[str, Figure]:
-    """All pictures."""
-    return {"practices": practices(found), "positions": chain(found)}
+    """The one picture."""
+    return {"practices": practices(found)}

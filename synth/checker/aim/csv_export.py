@@ -9,8 +9,7 @@ from typing import Any, Final
 from synth.checker.aim.reading import FIGURES, Aim
 from synth.checker.aim.rule import exit_speed
 from synth.checker.aim.sense import at
-from synth.checker.canonical import canonical_form, crc32
-from synth.checker.csv_export import Rows, rows_of, same
+from synth.checker.csv_export import Rows, checksum_of, rows_of, same, with_exporter
 from synth.checker.finding import DamagedError, shown
 from synth.checker.float32 import bits, from_bits, rounded
 from synth.checker.source_file import rows_below
@@ -24,11 +23,11 @@ GOLDEN_HEAD: Final = [
 
 def differences(rows: Rows, aim: Aim) -> Iterator[str]:
     """Each row that is not what the table says."""
-    document = {**aim.document, "reported": {"passes": aim.document["reported"]["passes"]}}
+    whole = with_exporter(aim.document, rows)
+    document = {**whole, "reported": {"passes": aim.document["reported"]["passes"]}}
     del document["exit_speed_m_s"]
     wanted: dict[tuple[str, str], list[Any]] = dict(rows_of(document, ""))
-    checksum = crc32(canonical_form(dict(aim.document)).encode("utf-8"))
-    wanted["text", "crc32"] = [f"{checksum:08x}"]
+    wanted["text", "crc32"] = [checksum_of(whole)]
     wanted["names", "node"] = list(COLUMNS)
     for number, place in enumerate(aim.places()):
         c, d, r = place

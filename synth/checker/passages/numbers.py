@@ -36,6 +36,8 @@ def held(table: PassageTable, tables: Sequence[PassageTable]) -> Numbers:
         "masst": [table.mass_t],
         "targetms": [table.target_m_s],
         "basem": [table.base_m],
+        "scanperiods": [table.scan_period_s],
+        "computingdelays": [table.computing_delay_s],
         "leastms": [least],
         "greatestms": [greatest],
         "accelerationms2": [plausible["acceleration_m_s2"]],

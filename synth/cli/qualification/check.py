@@ -4,6 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Final
+
+from synth.frame.terminal.telling import printable
+from tuning_tables.excerpt import excerpt
+
+LONGEST: Final = 1000
+"""Characters of what was found: compilers may say anything."""
 
 
 class Outcome(Enum):
@@ -31,7 +38,8 @@ class Check:
 
 def checked(what: str, how: str, found: str, limit: str, holds: bool) -> Check:
     """A check that was made."""
-    return Check(what, how, found, limit, Outcome.PASSED if holds else Outcome.FAILED)
+    told = excerpt(printable(found), LONGEST)
+    return Check(what, how, told, limit, Outcome.PASSED if holds else Outcome.FAILED)
 
 
 def not_checked(what: str, how: str, reason: str, limit: str, remedy: str = "") -> Check:

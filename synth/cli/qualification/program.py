@@ -18,6 +18,10 @@ EPOCH: Final = "1700000000"
 """The creation date of all files that are made, in seconds since 1970, so that equal tables are equal files."""
 
 LONGEST_S: Final = 3600.0
+"""Of a run of the program itself; the kernels may have to be compiled."""
+
+BUILD_S: Final = 300.0
+"""Of all others, as a compiler: one that waits for something would wait for ever."""
 
 
 @dataclass(frozen=True)
@@ -43,19 +47,23 @@ class Ran:
         return f"exit code {self.code}{f': {lines[-1]}' if lines else ''}"
 
 
-def process(words: list[str], folder: Path, surroundings: Mapping[str, str] | None = None) -> Ran:
-    """Run `words` in `folder`; what does not start, or does not end, has the exit code -1."""
+def process(
+    words: list[str], folder: Path, surroundings: Mapping[str, str] | None = None, longest_s: float = BUILD_S
+) -> Ran:
+    """Run `words` in `folder`; what does not start, or has not ended after `longest_s`, has the exit code -1."""
     environment = {**os.environ, **(surroundings or {})}
     try:
         ran = subprocess.run(
             words, cwd=folder, env=environment, capture_output=True, text=True, errors="replace",
-            stdin=subprocess.DEVNULL, timeout=LONGEST_S, check=False,
+            stdin=subprocess.DEVNULL, timeout=longest_s, check=False,
         )  # fmt: skip
-    except (OSError, subprocess.TimeoutExpired) as fault:
+    except subprocess.TimeoutExpired:
+        return Ran(-1, "", f"{words[0]} has not ended after {longest_s:g} s")
+    except OSError as fault:
         return Ran(-1, "", str(fault))
     return Ran(ran.returncode, ran.stdout, ran.stderr)
 
 
 def program(line: str, folder: Path, surroundings: Mapping[str, str] | None = None) -> Ran:
     """Run `retarder-synth` with the words of `line` in `folder`."""
-    return process([*ENTRY, *line.split()], folder, {"SOURCE_DATE_EPOCH": EPOCH, **(surroundings or {})})
+    return process([*ENTRY, *line.split()], folder, {"SOURCE_DATE_EPOCH": EPOCH, **(surroundings or {})}, LONGEST_S)

@@ -19,7 +19,7 @@ KINDS: Final = (ESTIMATED, MEASURED)
 """With and without an estimator: without one the prediction is exact, and shares nothing with the simulation."""
 
 PLAIN: Final = "plain"
-LEFT_OUT: Final = ("created", "crc32", "generator")
+LEFT_OUT: Final = ("created", "crc32", "exported_by", "generator")
 NO_PICTURES: Final = "[output]\nplots = false\nreport = false\n"
 
 

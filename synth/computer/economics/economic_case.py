@@ -55,7 +55,7 @@ class EconomicResult:
     @property
     def internal_rate(self) -> InternalRate:
         """The internal rate of return of `money`; sought when it is asked for, as draws do not ask."""
-        return internal_rate(self.money.flows)
+        return internal_rate(self.money)
 
     def figures(self) -> dict[str, float]:
         """The results by name; a time that never comes is infinite, so it can be ranked among draws."""

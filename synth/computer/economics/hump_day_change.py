@@ -1,8 +1,13 @@
-"""How the figures of a hump differ between two variants, paired by train where both humped the same trains."""
+"""The figures of humped trains with their intervals, and how they differ between two variants.
+
+Figures and differences are by the names of `HumpRates`. Differences are paired by train where both variants humped the
+same trains.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,38 +15,29 @@ from numpy.typing import NDArray
 
 from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
-from synth.computer.economics.hump_day_figures import NAMES, HumpDayFigures
 from synth.computer.economics.hump_rates import RATES, HumpChange, HumpRates
 from synth.computer.economics.uncertainty.ranges import Range, range_of
 from synth.frame.interval import Interval
+from synth.frame.settings.changed import made
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.shift_sums import longer_shifts, shift_sums
-from synth.hump.trains.train_figures import FEWEST_TRAINS, train_figures
+from synth.hump.trains.train_figures import FEWEST_TRAINS, share, train_figures
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 SECONDS_PER_H = 3600.0
 
-
-@dataclass(frozen=True)
-class HumpDayChange:
-    """Each figure of `HumpRates` less that of today, with its 95 % interval; `paired`: by train."""
-
-    paired: bool
-    cars_per_h: Interval
-    catch_ups: Interval
-    misrouted: Interval
-    on_track: Interval
-    over_speeds_to_1_5: Interval
-    over_speeds_to_2: Interval
-    over_speeds_above_2: Interval
-    gap_m: Interval
-
-    @property
-    def change(self) -> HumpChange:
-        """The differences without their intervals."""
-        return HumpChange(**{name: getattr(self, name).value for name in RATES})
+NAMES = {
+    "cars_per_h": "cars_per_hour",
+    "catch_ups": "catch_ups",
+    "misrouted": "misrouted",
+    "over_speeds_to_1_5": "overspeed_slight",
+    "over_speeds_to_2": "overspeed_rough",
+    "over_speeds_above_2": "overspeed_harmful",
+    "gap_m": "gap_per_cut",
+}
+"""Our figures, and what `hump simulate` calls them in `summary.json`; it does not tell `on_track`."""
 
 
 @frozen_arrays
@@ -76,18 +72,27 @@ def train_sums(found: TrainOutcomes, shift: Ints | None = None) -> TrainSums:
     return TrainSums(*summed)
 
 
-def figures_of_trains(name: str, found: TrainOutcomes) -> HumpDayFigures:
+def figures_of_trains(found: TrainOutcomes) -> dict[str, Interval]:
     """The figures of trains that were humped, with the intervals that `train_figures` gives them."""
+    require(len(found) >= FEWEST_TRAINS, f"a hump variant has {len(found)} trains; an interval takes two")
     told = {figure.name: figure for figure in train_figures(found)}
-    require(len(found) >= FEWEST_TRAINS, f"the hump variant {name!r} has {len(found)} trains; an interval takes two")
-    made = {}
-    for ours, theirs in NAMES.items():
-        figure = told[theirs]
-        made[ours] = Interval(figure.value, figure.low95, figure.high95, figure.n)
-    return HumpDayFigures(name=name, on_track=float(found.judged.sum() / found.cuts.sum()), **made)
+    figures = {ours: told[theirs] for ours, theirs in NAMES.items()}
+    intervals = {name: Interval(each.value, each.low95, each.high95, each.n) for name, each in figures.items()}
+    p, low, high, _ = share(found.judged.astype(float), found.cuts.astype(float))
+    return {**intervals, "on_track": Interval(p, low, high, int(found.cuts.sum()))}
 
 
-def change_of_trains(today: TrainOutcomes, new: TrainOutcomes) -> HumpDayChange:
+def rates_of(figures: Mapping[str, Interval]) -> HumpRates:
+    """The figures without their intervals; `PlantError` for one outside its range."""
+    return made(HumpRates, **{name: figures[name].value for name in RATES})
+
+
+def change_of(differences: Mapping[str, Interval]) -> HumpChange:
+    """The differences without their intervals."""
+    return HumpChange(**{name: differences[name].value for name in RATES})
+
+
+def change_of_trains(today: TrainOutcomes, new: TrainOutcomes) -> dict[str, Interval]:
     """New less today where both humped the same trains, in the same order (`PlantError` otherwise).
 
     Ratios of sums over trains, linearised: residual of train k = (h'_k − r'b'_k)/b̄' − (h_k − r·b_k)/b̄; its standard
@@ -102,8 +107,8 @@ def change_of_trains(today: TrainOutcomes, new: TrainOutcomes) -> HumpDayChange:
         value += sign * ratio
         residual += sign * (sums.hits - ratio[:, None] * sums.base) / sums.base.mean(axis=1)[:, None]
     half = student_975(trains - 1) * residual.std(axis=1, ddof=1) / math.sqrt(trains)
-    made = [Interval(float(v), float(v - h), float(v + h), trains) for v, h in zip(value, half, strict=True)]
-    return HumpDayChange(True, *made)
+    found = [Interval(float(v), float(v - h), float(v + h), trains) for v, h in zip(value, half, strict=True)]
+    return dict(zip(RATES, found, strict=True))
 
 
 def same_trains(today: TrainOutcomes, new: TrainOutcomes) -> tuple[TrainSums, TrainSums]:
@@ -117,22 +122,19 @@ def same_trains(today: TrainOutcomes, new: TrainOutcomes) -> tuple[TrainSums, Tr
     return train_sums(today, shift), train_sums(new, shift)
 
 
-def change_of_figures(today: HumpDayFigures, new: HumpDayFigures) -> HumpDayChange:
+def change_of_figures(today: Mapping[str, Interval], new: Mapping[str, Interval]) -> dict[str, Interval]:
     """New less today from two sets of figures, as if their trains had nothing in common.
 
     The halves of both intervals are added as squares, each towards its end. With common trains the interval
     is wider than it need be, as long as what is good for a train in one variant is good for it in the other.
     """
-    made = {name: unpaired(getattr(today, name), getattr(new, name)) for name in NAMES}
-    step = new.on_track - today.on_track
-    trains = min(today.cars_per_h.n, new.cars_per_h.n)
-    return HumpDayChange(paired=False, on_track=Interval(step, step, step, trains), **made)
+    return {name: unpaired(today[name], new[name]) for name in RATES}
 
 
-def ranges_of_change(found: HumpDayChange) -> dict[str, Range]:
+def ranges_of_change(differences: Mapping[str, Interval]) -> dict[str, Range]:
     """The differences as inputs of an `EconomicCase` by name, each within its interval and independent of the
     others."""
-    return {f"change.{name}": range_of(getattr(found, name)) for name in RATES}
+    return {f"change.{name}": range_of(differences[name]) for name in RATES}
 
 
 def unpaired(today: Interval, new: Interval) -> Interval:

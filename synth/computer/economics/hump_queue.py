@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from plant_models.errors import PlantError, require, require_between
+from plant_models.errors import PlantError
 
 
 @dataclass(frozen=True)
@@ -16,8 +16,7 @@ class HumpQueue:
     `trains_per_h`: mean rate. `arrival_scv`: squared coefficient of variation (variance / mean²) of the times between
     trains. `service_h`, `service_scv`: mean and squared coefficient of variation of the time for which a train takes a
     lead. All times are independent. A wait grows as 1/(1 − ρ): where the load is uncertain and may come near 1, the
-    wait has quantiles but no mean. `PlantError` for a value outside its range, and where more comes than the leads can
-    hump.
+    wait has quantiles but no mean. `PlantError` where more comes than the leads can hump.
     """
 
     trains_per_h: float
@@ -27,11 +26,6 @@ class HumpQueue:
     leads: int = 1
 
     def __post_init__(self) -> None:
-        require_between("trains_per_h", self.trains_per_h, 0.0, 1e4)
-        require_between("arrival_scv", self.arrival_scv, 0.0, 1e3)
-        require_between("service_h", self.service_h, 0.0, 1e3)
-        require_between("service_scv", self.service_scv, 0.0, 1e3)
-        require(self.leads >= 1, f"leads is {self.leads!r}; a hump has 1 lead or more")
         if self.load >= 1.0:
             raise PlantError(overload_sentence(self))
 

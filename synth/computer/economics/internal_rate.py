@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
-from plant_models.errors import require
+from synth.computer.economics.present_value import Investment
 
 WIDEST = 700.0
 """ln(1 + r) is sought within ± this; beyond it 1 + r is no double."""
@@ -17,45 +16,25 @@ WIDEST = 700.0
 
 @dataclass(frozen=True)
 class InternalRate:
-    """`per_year`: the rate at which the flows are worth nothing, None where no single one is told; `statement`: why.
-
-    `most`: how many rates are possible at most, by the rule of Descartes.
-    """
+    """`per_year`: the rate at which the flows are worth nothing, None where there is none; `statement`: in words."""
 
     per_year: float | None
-    most: int
     statement: str
 
 
-def internal_rate(flows: Sequence[float]) -> InternalRate:
-    """IRR of `flows` at the start and at the end of each year, any rate above −1; `PlantError` for no number.
+def internal_rate(investment: Investment) -> InternalRate:
+    """IRR of what is spent and of the income of each year, any rate above −1.
 
-    Flows are a polynomial in 1/(1 + r). Where they change their sign once, it has one positive root. Where they change
-    it more often, it may have several and none of them is told, but for one case: sums of the flows up to each year
-    that change sign once, and end positive, leave one rate above 0 (Norstrøm 1972).
+    Where money goes both ways its worth has one root, by the rule of Descartes: the flows change their sign once.
     """
-    require(all(math.isfinite(flow) for flow in flows), "the flows of money must be finite numbers")
-    changes = sign_changes(flows)
-    if changes == 0:
-        return InternalRate(None, 0, "There is no internal rate: money goes one way only.")
-    if changes == 1:
-        rate = root(flows, -WIDEST)
-        return InternalRate(rate, 1, f"The internal rate is {rate:.4g} a year.")
-    sums = np.cumsum(flows)
-    if flows[0] < 0.0 and sign_changes(sums.tolist()) == 1 and sums[-1] > 0.0:
-        rate = root(flows, 0.0)
-        return InternalRate(rate, changes, f"The internal rate is {rate:.4g} a year, the only one above 0.")
-    return InternalRate(None, changes, f"There may be up to {changes} internal rates; none of them is told.")
+    if investment.spent * investment.income_per_year <= 0.0:
+        return InternalRate(None, "There is no internal rate: money goes one way only.")
+    rate = root(investment.flows)
+    return InternalRate(rate, f"The internal rate is {rate:.4g} a year.")
 
 
-def sign_changes(flows: Sequence[float]) -> int:
-    """How often the sign changes from one flow to the next; zeros are left out."""
-    signs = [flow > 0.0 for flow in flows if flow != 0.0]
-    return sum(one != other for one, other in pairwise(signs))
-
-
-def root(flows: Sequence[float], lowest: float) -> float:
-    """The one rate whose ln(1 + r) is above `lowest`.
+def root(flows: Sequence[float]) -> float:
+    """The rate at which `flows` at the start and at the end of each year are worth nothing.
 
     Sought in x = ln(1 + r), from where the last flow decides to where the first one does. A worth is scaled by its
     largest discount, so nothing overflows.
@@ -69,5 +48,5 @@ def root(flows: Sequence[float], lowest: float) -> float:
         exponent = -years * x
         return float((held * np.exp(exponent - exponent.max())).sum())
 
-    found = brentq(worth, lowest, WIDEST, xtol=1e-14, rtol=8.9e-16)
+    found = brentq(worth, -WIDEST, WIDEST, xtol=1e-14, rtol=8.9e-16)
     return math.expm1(float(found))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from plant_models.errors import require_between
 from synth.frame.printed_numbers import amount
 
 TRAPEZNIKOV_INTEREST_PER_YEAR = 0.25
@@ -19,7 +18,6 @@ def yearly_effect(
     Eн, the normative efficiency (0.12 to 0.15 a year), turns released capital into yearly worth. Sг: what the new
     system costs a year, its losses by failures included.
     """
-    require_between("normative_efficiency_per_year", normative_efficiency_per_year, 0.0, 1.0)
     return savings_per_year + normative_efficiency_per_year * released_capital - running_cost_per_year
 
 
@@ -44,9 +42,6 @@ def pay_back(
     It exists for B > E·ΔA only. Print of the source: ΔA = (ΔE + ΔK·Eн − Sг)·T/(1 + 0.25·T), the same solved for ΔA; it
     has the right dimension if 0.25 is per year. Without an investment (ΔA ≤ 0) it pays at once, unless B < 0.
     """
-    require_between("investment", investment, -1e15, 1e15)
-    require_between("effect_per_year", effect_per_year, -1e15, 1e15)
-    require_between("interest_per_year", interest_per_year, 0.0, 10.0)
     if investment <= 0.0:
         return without_investment(investment, effect_per_year)
     needed = interest_per_year * investment

@@ -7,8 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from synth.computer.reliability.duplex import single_availability
-from synth.computer.reliability.maintenance_interval import CalendarHours
-from synth.computer.reliability.rates import HOURS_PER_YEAR
+from synth.computer.reliability.failure_losses import HOURS_PER_YEAR
 from synth.computer.resolved_computer import ResolvedComputer
 from synth.frame.picture.house_style import (
     BLUE,
@@ -55,7 +54,7 @@ def upkeep_interval(config: ResolvedComputer) -> Figure:
         Line2D([], [], color=BLUE, linestyle="--", linewidth=1.6, label="two, checked one after the other"),
         Line2D([], [], color=GREY, linewidth=1.0, label=f"configured: {upkeep.check_interval_h:g} h"),
     ]
-    best = None if upkeep.checked is None else CalendarHours().best_interval_h(upkeep.checked)
+    best = None if upkeep.checked is None else upkeep.checked.best_calendar_h
     if best is not None and x[0] <= best <= x[-1]:
         least = float(single_loss(config, np.array([best]))[0])
         of_loss.plot([best], [least], "o", color=VERMILLION, markersize=6)

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require
-from synth.computer.reliability.rates import require_not_negative, require_positive
 
 Floats = NDArray[np.float64]
 
@@ -29,10 +28,6 @@ class Duplex:
     failure_per_h: float
     check_h: float
 
-    def __post_init__(self) -> None:
-        require_positive("duplex: failure_per_h", self.failure_per_h)
-        require_not_negative("duplex: check_h", self.check_h)
-
     def availability(self, period_h: Floats | float) -> Floats:
         """Kг(x): the mean share of a period x in which the hump has a ready computer; x ≥ τк.
 
@@ -44,11 +39,6 @@ class Duplex:
         from scipy.special import exprel
 
         period = np.asarray(period_h, dtype=np.float64)
-        shortest = float(period.min(initial=np.inf))
-        require(
-            shortest >= self.check_h and shortest > 0.0,
-            f"duplex: a period of {shortest:g} h; it must be above 0 and no shorter than check_h, {self.check_h:g} h",
-        )
         rate, together = self.failure_per_h, period - self.check_h
         # exprel(−y) = (1 − e^{−y})/y
         both = together * (2.0 * exprel(-rate * together) - exprel(-2.0 * rate * together))
@@ -63,7 +53,6 @@ class Duplex:
         """
         from scipy.optimize import brentq
 
-        require(0.0 < required < 1.0, f"duplex: a required availability of {required!r}; it must lie between 0 and 1")
         require(
             self.failure_per_h * self.check_h <= LONGEST_CHECK,
             f"duplex: check_h is {self.check_h:g} h; no longest period is looked for with checks of more than "
@@ -84,6 +73,5 @@ class Duplex:
 
 def single_availability(failure_per_h: float, check_h: float, period_h: Floats | float) -> Floats:
     """(1 − e^{−λ(x−τк)})/(λx): the same of one computer alone, which is not there while it is checked."""
-    require_positive("single computer: failure_per_h", failure_per_h)
     period = np.asarray(period_h, dtype=np.float64)
     return np.asarray(-np.expm1(-failure_per_h * (period - check_h)) / (failure_per_h * period))

@@ -8,9 +8,6 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.errors import require
-from synth.computer.reliability.rates import require_not_negative, require_positive
-
 Floats = NDArray[np.float64]
 
 
@@ -42,20 +39,6 @@ class FourStates:
     repair_per_h: float
     failed_check_to: State = State.MAINTENANCE
 
-    def __post_init__(self) -> None:
-        for key in ("failure_per_h", "maintenance_per_h", "repair_per_h"):
-            require_positive(f"four states: {key}", getattr(self, key))
-        for key in ("detection_per_h", "check_per_h"):
-            require_not_negative(f"four states: {key}", getattr(self, key))
-        require(
-            self.detection_per_h + self.check_per_h > 0.0,
-            "four states: detection_per_h and check_per_h are both 0; one must be positive, else no failure is noticed",
-        )
-        require(
-            self.failed_check_to in (State.MAINTENANCE, State.REPAIR),
-            f"four states: failed_check_to is {self.failed_check_to.name}; it must be MAINTENANCE or REPAIR",
-        )
-
     def generator_per_h(self) -> Floats:
         """The generator Q (4, 4): Q[i, j] is the rate from state i to state j, and every row sums to 0."""
         q = np.zeros((4, 4))
@@ -86,7 +69,6 @@ class FourStates:
         """Probabilities (n, 4) of the states `hours` (n,) after the computer was in `start`: the row of e^{Qt}."""
         from scipy.linalg import expm
 
-        require(bool(np.all(np.asarray(hours) >= 0.0)), "four states: hours of a transient must not be negative")
         return np.asarray(expm(self.generator_per_h() * np.asarray(hours)[:, None, None])[:, start, :])
 
 
@@ -98,13 +80,6 @@ class StateShares:
     failed_unnoticed: float
     maintenance: float
     repair: float
-
-    def __post_init__(self) -> None:
-        total = 0.0
-        for key, share in vars(self).items():
-            require(0.0 <= share <= 1.0, f"state shares: {key} is {share!r}; it must be from 0 to 1")
-            total += share
-        require(abs(total - 1.0) < 1e-9, f"state shares: they sum to {total!r}; the sum must be 1")
 
     @property
     def availability(self) -> float:

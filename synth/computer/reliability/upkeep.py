@@ -10,9 +10,8 @@ from plant_models.errors import require
 from plant_models.library.sourced_value import JUDGEMENT
 from synth.computer.origins import MONEY
 from synth.computer.reliability.duplex import Duplex
-from synth.computer.reliability.failure_losses import HourPrices, YearlyLoss, yearly_loss
+from synth.computer.reliability.failure_losses import HOURS_PER_YEAR, HourPrices, YearlyLoss, yearly_loss
 from synth.computer.reliability.four_states import FourStates, State
-from synth.computer.reliability.rates import HOURS_PER_YEAR
 from synth.frame.settings.section import Section, choice, setting
 
 if TYPE_CHECKING:
@@ -64,7 +63,6 @@ class Upkeep(Section):
             f"check_interval_h is {self.check_interval_h:g} h; it must not be shorter than the check, "
             f"{self.check_h:g} h",
         )
-        self.chain, self.duplex, self.prices  # noqa: B018  # their own ranges are checked where they are made
         return self
 
     @property

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from plant_models.errors import require
-
 
 @dataclass(frozen=True)
 class CallCosts:
@@ -13,7 +11,7 @@ class CallCosts:
 
     `observe`: a step of the estimator. `decide`: a decision at rest. `select`: the table of a cut. `aim`: the exit
     speed from an aim table, 0 where there are none. `intact`: the checksum of one table, None if there is none in that
-    language; it is for the start only. Raises `PlantError`.
+    language; it is for the start only.
     """
 
     observe: int
@@ -22,17 +20,6 @@ class CallCosts:
     aim: int
     intact: int | None
     source: str
-
-    def __post_init__(self) -> None:
-        counts = {"observe": self.observe, "decide": self.decide, "select": self.select, "aim": self.aim}
-        if self.intact is not None:
-            counts["intact"] = self.intact
-        for name, value in counts.items():
-            require(
-                isinstance(value, int) and value >= 0,
-                f"call costs: {name} is {value!r}; it must be a whole number from 0 on",
-            )
-        require(self.observe + self.decide > 0, "call costs: observe and decide are 0; a sample must cost something")
 
     @property
     def sample(self) -> int:

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from plant_models.errors import require
 from plant_models.library.sourced_value import JUDGEMENT
-from synth.computer.sizing.periodic_task import PeriodicTask
-from synth.computer.sizing.response_time import exact_load, responses
+from synth.computer.sizing.response_time import PeriodicTask, exact_load, longest_responses_s
 from synth.computer.sizing.trackside_controllers import TracksideController
 from synth.frame.settings.section import Section, setting
 
@@ -45,14 +43,9 @@ class Carried:
         return self.times.answer_s - self.answer_s
 
     @property
-    def table_margin_s(self) -> float:
-        """What is left to the deadline of a table; negative if it can be missed."""
-        return self.times.table_s - self.table_s
-
-    @property
     def in_time(self) -> bool:
         """Whether no deadline is ever missed."""
-        return self.answer_margin_s >= 0.0 and self.table_margin_s >= 0.0
+        return self.answer_s <= self.times.answer_s and self.table_s <= self.times.table_s
 
 
 def carried(controller: TracksideController, times: PositionTimes, positions: int) -> Carried:
@@ -62,10 +55,6 @@ def carried(controller: TracksideController, times: PositionTimes, positions: in
     one after the other, so together they are one task with the work of all, whose response is that of the last. The
     choice for one position is not interrupted, since a sample must not see half a table: it blocks.
     """
-    require(
-        isinstance(positions, int) and 1 <= positions <= MOST_POSITIONS,
-        f"positions is {positions!r}; it must be a whole number from 1 to {MOST_POSITIONS}",
-    )
     if controller.scan is not None:
         work_s = positions * (controller.sample_s + controller.cut_s)
         longest_s = controller.scan.longest_response_s(work_s)
@@ -74,8 +63,8 @@ def carried(controller: TracksideController, times: PositionTimes, positions: in
     used = exact_load((samples, cuts))
     if used >= 1:
         return Carried(positions, times, math.inf, math.inf, float(used))
-    answer, table = responses((samples, cuts))
-    return Carried(positions, times, answer.longest_s, table.longest_s, float(used))
+    answer_s, table_s = longest_responses_s((samples, cuts))
+    return Carried(positions, times, answer_s, table_s, float(used))
 
 
 def most_positions(controller: TracksideController, times: PositionTimes) -> int:
@@ -105,7 +94,6 @@ def _tasks(controller: TracksideController, times: PositionTimes, positions: int
         name="samples",
         period_s=times.sample_s,
         work_s=positions * controller.sample_s,
-        deadline_s=times.answer_s,
         priority=1,
         jitter_s=latency_s,
         blocking_s=controller.cut_s,
@@ -114,7 +102,6 @@ def _tasks(controller: TracksideController, times: PositionTimes, positions: int
         name="cuts",
         period_s=times.cut_s,
         work_s=positions * controller.cut_s,
-        deadline_s=times.table_s,
         priority=2,
         jitter_s=latency_s,
     )

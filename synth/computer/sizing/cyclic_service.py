@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
-from plant_models.errors import require, require_between
 from synth.computer.origins import SPEED
-from synth.computer.sizing.task import TaskMix, require_speed
+from synth.computer.sizing.task import TaskMix
 from synth.frame.settings.section import Section, setting
 
 
@@ -48,23 +45,5 @@ def used_share(mix: TaskMix, speed_op_s: float, cycle: Cycle, checks_count: bool
 
     The rest of a cycle confirms what is known. [hump-computer-1970s] tells 7 to 8 %, not whether checks count.
     """
-    require_speed(speed_op_s)
     work = mix.operations_per_s / speed_op_s
     return work / cycle.useful_share if checks_count else work
-
-
-def operations_for_use(share: float, speed_op_s: float, rate_per_s: float, cycle: Cycle, checks_count: bool) -> float:
-    """The mean number of operations a request that gives `share`: `used_share` solved for L.
-
-    It shows that three figures of [hump-computer-1970s] are of different mixes of tasks. At 20 000 op/s (open loop) a
-    use of 7 to 8 % and 0.825 requests a second give L from 850 to 1 940; a wait below 0.01 s at 1 500 op/s allows 219
-    at most. At 10⁶ op/s (feedback) they give 42 000 to 97 000; the same work has 8 000 in the text.
-    """
-    require_between("share", share, 0.0, 1.0)
-    require_speed(speed_op_s)
-    require(
-        math.isfinite(rate_per_s) and rate_per_s > 0.0,
-        f"rate_per_s is {rate_per_s!r}; it must be a finite number above 0",
-    )
-    operations = share * speed_op_s / rate_per_s
-    return operations * cycle.useful_share if checks_count else operations

@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
-from plant_models.errors import require
 from plant_models.hump import HumpGraph
 
 
 @dataclass(frozen=True)
 class Channels:
-    """Numbers of digital and analog inputs and outputs; they add up, and are multiplied. Raises `PlantError`."""
+    """Numbers of digital and analog inputs and outputs; they add up, and are multiplied."""
 
     digital_in: int = 0
     analog_in: int = 0
     digital_out: int = 0
     analog_out: int = 0
-
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            require(
-                isinstance(value, int) and value >= 0,
-                f"channels: {field.name} is {value!r}; it must be a whole number from 0 on",
-            )
 
     def __add__(self, other: Channels) -> Channels:
         return Channels(

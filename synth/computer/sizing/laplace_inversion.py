@@ -9,7 +9,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from plant_models.errors import require
 from synth.computer.sizing.service_law import Complexes
 
 DAMPING = 23.0
@@ -39,7 +38,6 @@ def inverted(transform: Callable[[Complexes], Complexes], time_s: float, toleran
     small change alone says little. Elsewhere it converges much faster. In 3 000 random questions to M/D/1, half of
     them beside a kink, the error that is told was never exceeded; it was at most 1e-5.
     """
-    require(math.isfinite(time_s) and time_s > 0.0, f"time_s is {time_s!r}; it must be a finite number above 0")
     terms = FEWEST_TERMS
     sums = [_euler_sum(transform, time_s, terms)]
     while True:

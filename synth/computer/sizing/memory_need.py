@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from plant_models.errors import require
-
 
 class Memory(Enum):
     """Where something is kept."""
@@ -17,7 +15,7 @@ class Memory(Enum):
 
 @dataclass(frozen=True)
 class Stored:
-    """`count` entries of `bits` each, kept in `memory`; where from, in words. Raises `PlantError`."""
+    """`count` entries of `bits` each, kept in `memory`; where from, in words."""
 
     name: str
     count: int
@@ -25,19 +23,8 @@ class Stored:
     memory: Memory
     source: str
 
-    def __post_init__(self) -> None:
-        for name, value, least in (("count", self.count, 0), ("bits", self.bits, 1)):
-            require(
-                isinstance(value, int) and value >= least,
-                f"{self.name}: {name} is {value!r}; it must be a whole number from {least} on",
-            )
-
     def words(self, word_bits: int) -> int:
         """Words of `word_bits` that it takes; every entry begins with a new word."""
-        require(
-            isinstance(word_bits, int) and word_bits >= 1,
-            f"word_bits is {word_bits!r}; it must be a whole number from 1 on",
-        )
         return self.count * -(-self.bits // word_bits)
 
     @property
@@ -59,25 +46,6 @@ class MemoryTable:
     def kibibytes(self, memory: Memory) -> float:
         """Of 1024 bytes, in `memory`, without gaps."""
         return sum(row.total_bits for row in self.rows if row.memory is memory) / 8192.0
-
-
-def source_memory() -> MemoryTable:
-    """The table of [hump-computer-1970s], chapter 3, for a hump of 141 objects (twice as many working cells).
-
-    The bits of the initial data cannot be read in the copy ("~J"). They are records of cuts, which the same source
-    makes 53 bits long, the width of the row below; so 53 is assumed. It asks for 2 000 words of either memory in the
-    end: 1 800 words of 17 bits, and 1 438 words by number, which are 3 052 of 16 bits.
-    """
-    source = "[hump-computer-1970s], chapter 3, table 1"
-    return MemoryTable(
-        (
-            Stored("programs", 1400, 17, Memory.FIXED, source),
-            Stored("constants", 400, 16, Memory.FIXED, source),
-            Stored("initial data", 256, 53, Memory.WORKING, f"{source}; bits not readable, 53 assumed"),
-            Stored("working cells of programs", 900, 16, Memory.WORKING, source),
-            Stored("working cells of objects", 282, 53, Memory.WORKING, source),
-        )
-    )
 
 
 @dataclass(frozen=True)
@@ -103,7 +71,7 @@ class ControllerCounts:
 
 
 def controller_memory(counts: ControllerCounts) -> MemoryTable:
-    """The memory of our controller. `PlantError` if a count is below 0 or no whole number.
+    """The memory of our controller.
 
     The route table tells the position of each switch for each track; the route store, the track of each cut.
     """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Generator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 
 from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
-from synth.computer.sizing.batch_means import sampled_mean
 from synth.computer.sizing.demand_service import Discipline
 from synth.computer.sizing.service_law import Floats
 from synth.computer.sizing.task import Stream, require_not_overloaded
@@ -24,6 +24,9 @@ CUT_SHARE = 0.05
 """Of the requests, at the begin (the queue starts empty) and at the end (it runs empty)."""
 
 MOST_REQUESTS = 1 << 40
+
+BATCHES = 30
+CONFIDENCE = 0.95
 
 
 @frozen_arrays
@@ -107,10 +110,6 @@ def simulated_waits(
 
 def drawn_requests(streams: tuple[Stream, ...], count: int, rng: np.random.Generator) -> Requests:
     """`count` requests of all streams: one Poisson stream of the total rate, divided among the tasks by chance."""
-    require(
-        isinstance(count, int) and 1 <= count < MOST_REQUESTS,
-        f"requests is {count!r}; it must be a whole number from 1 on",
-    )
     rates = np.array([stream.rate_per_s for stream in streams])
     arrival_s = np.cumsum(rng.exponential(1.0 / rates.sum(), count))
     which = rng.choice(len(streams), count, p=rates / rates.sum())
@@ -167,3 +166,29 @@ def _ranks(requests: Requests, streams: tuple[Stream, ...], discipline: Discipli
         return [int(turn) for turn in turns]
     priorities = np.array([stream.priority for stream in streams])[requests.stream]
     return [int(priority) * MOST_REQUESTS + int(turn) for priority, turn in zip(priorities, turns, strict=True)]
+
+
+def sampled_mean(values: Floats, batches: int = BATCHES) -> Interval:
+    """The mean of a stationary sequence (n,), in the order of time; n at least 2 · `batches`.
+
+    The sequence is cut into `batches` of equal length. Means of batches that are much longer than the values depend on
+    each other are nearly independent and normal, so Student's interval of them holds. With short batches it is too
+    narrow. Of 2 000 runs of M/M/1 with 50 000 requests each it held the true mean wait in 95.9, 95.4, 93.4
+    and 89.7 % (± 0.9 to 1.3) at ρ = 0.3, 0.5, 0.8 and 0.9: the busier the queue, the longer a run must be.
+    """
+    require(
+        len(values) >= 2 * batches,
+        f"{len(values)} values were simulated; {batches} batches need at least {2 * batches}: simulate more",
+    )
+    length = len(values) // batches
+    means = values[: length * batches].reshape(batches, length).mean(axis=1)
+    half_width = student_quantile(batches - 1) * float(np.std(means, ddof=1)) / math.sqrt(batches)
+    mean = float(np.mean(means))
+    return Interval(mean, mean - half_width, mean + half_width, length * batches)
+
+
+def student_quantile(freedom: int) -> float:
+    """Of the two-sided 95 % interval."""
+    from scipy.stats import t
+
+    return float(t.ppf(0.5 + 0.5 * CONFIDENCE, freedom))

@@ -1,4 +1,4 @@
-"""Periodic tasks under fixed priorities, with preemption: the longest response of each, and whether deadlines hold."""
+"""Periodic tasks under fixed priorities, with preemption: the longest response of each."""
 
 from __future__ import annotations
 
@@ -6,64 +6,36 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 
-from plant_models.errors import require
-from synth.computer.sizing.periodic_task import PeriodicTask
-
 
 @dataclass(frozen=True)
-class Response:
-    """The longest time from when a job of `task` should come to its end, s."""
+class PeriodicTask:
+    """Jobs at least `period_s` apart, each with `work_s` of processor time at most.
 
-    task: PeriodicTask
-    longest_s: float
+    A job may be let in up to `jitter_s` late; the response counts from when it should have been. Tasks of lower
+    priority, or disabled interrupts, hold it up by `blocking_s` at most. `priority`: 1 is the most urgent. All
+    times are worst cases.
+    """
 
-    @property
-    def margin_s(self) -> float:
-        """What is left to the deadline; negative if it can be missed."""
-        return self.task.deadline_s - self.longest_s
-
-    @property
-    def in_time(self) -> bool:
-        """Whether no job ever misses its deadline."""
-        return self.longest_s <= self.task.deadline_s
-
-    @property
-    def sentence(self) -> str:
-        """The verdict, in words."""
-        times = f"{self.task.name}: at most {self.longest_s:.6g} s, deadline {self.task.deadline_s:.6g} s"
-        if self.in_time:
-            return f"{times}: kept, with {self.margin_s:.6g} s to spare"
-        return f"{times}: can be missed by {-self.margin_s:.6g} s"
+    name: str
+    period_s: float
+    work_s: float
+    priority: int
+    jitter_s: float = 0.0
+    blocking_s: float = 0.0
 
 
-def responses(tasks: tuple[PeriodicTask, ...]) -> tuple[Response, ...]:
-    """The longest response of each task, in the order of `tasks`; tasks of equal priority count as ahead of each other.
+def longest_responses_s(tasks: tuple[PeriodicTask, ...]) -> tuple[float, ...]:
+    """The longest time of each task from when a job should come to its end, s; equal priorities wait for each other.
 
     The times are taken as the decimals that they print as, and computed with exactly, so no rounding moves a job
-    across a release. `PlantError` if the processor has too little time for all jobs.
+    across a release. `exact_load` must be below 1, or 1 where there is neither jitter nor blocking.
     """
-    require(len(tasks) > 0, "response times: there is no task; there must be at least one")
-    load = exact_load(tasks)
-    require(
-        load <= 1,
-        f"the processor is overloaded: its tasks take {float(load):.6g} of its time, "
-        f"{100.0 * float(load - 1):.4g} % more than there is",
-    )
-    require(
-        load < 1 or not _held_up(tasks),
-        "the processor has no time left: its tasks take all of it, so jitter or blocking is never made up for",
-    )
-    return tuple(Response(task, float(_longest(task, tasks))) for task in tasks)
+    return tuple(float(_longest(task, tasks)) for task in tasks)
 
 
 def exact_load(tasks: tuple[PeriodicTask, ...]) -> Fraction:
     """The share of the processor's time that all jobs take."""
     return sum((exact(task.work_s) / exact(task.period_s) for task in tasks), Fraction(0))
-
-
-def _held_up(tasks: tuple[PeriodicTask, ...]) -> bool:
-    """Whether any has jitter or blocking."""
-    return any(task.jitter_s > 0.0 or task.blocking_s > 0.0 for task in tasks)
 
 
 def exact(value: float) -> Fraction:

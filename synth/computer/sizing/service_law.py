@@ -42,9 +42,6 @@ class Constant:
 
     mean: float
 
-    def __post_init__(self) -> None:
-        require_mean(self.mean)
-
     @property
     def second_moment(self) -> float:
         """mean²."""
@@ -70,13 +67,6 @@ class Erlang:
     mean: float
     stages: int
 
-    def __post_init__(self) -> None:
-        require_mean(self.mean)
-        require(
-            isinstance(self.stages, int) and 1 <= self.stages <= 1_000_000,
-            f"service law: stages is {self.stages!r}; it must be a whole number from 1 to 1000000",
-        )
-
     @property
     def second_moment(self) -> float:
         """mean² · (1 + 1 / stages)."""
@@ -100,9 +90,6 @@ class Exponential:
     """Exponential, of this mean: squared coefficient of variation 1."""
 
     mean: float
-
-    def __post_init__(self) -> None:
-        require_mean(self.mean)
 
     @property
     def second_moment(self) -> float:
@@ -135,7 +122,6 @@ class Hyperexponential:
     squared_cv: float
 
     def __post_init__(self) -> None:
-        require_mean(self.mean)
         require(
             math.isfinite(self.squared_cv) and self.squared_cv > 1.0,
             f"service law: squared_cv is {self.squared_cv!r}; a hyperexponential law needs a finite number above 1",
@@ -169,8 +155,3 @@ class Hyperexponential:
     def scaled(self, factor: float) -> Hyperexponential:
         """The same `squared_cv`, `factor` times the mean."""
         return Hyperexponential(factor * self.mean, self.squared_cv)
-
-
-def require_mean(mean: float) -> None:
-    """Raise `PlantError` unless a law can have this mean."""
-    require(math.isfinite(mean) and mean > 0.0, f"service law: mean is {mean!r}; it must be a finite number above 0")

@@ -15,7 +15,6 @@ class Task:
     """Requests come as a Poisson stream of `rate_per_s`; each asks for a random number of `operations`.
 
     `priority`: 1 is the most urgent. `deadline_s`: how long after its request it should be done, None if nobody asks.
-    Raises `PlantError`.
     """
 
     name: str
@@ -23,20 +22,6 @@ class Task:
     operations: ServiceLaw
     priority: int = 1
     deadline_s: float | None = None
-
-    def __post_init__(self) -> None:
-        require(
-            math.isfinite(self.rate_per_s) and self.rate_per_s > 0.0,
-            f"task {self.name}: rate_per_s is {self.rate_per_s!r}; it must be a finite number above 0",
-        )
-        require(
-            isinstance(self.priority, int) and self.priority >= 1,
-            f"task {self.name}: priority is {self.priority!r}; it must be a whole number from 1, the most urgent, on",
-        )
-        require(
-            self.deadline_s is None or (math.isfinite(self.deadline_s) and self.deadline_s > 0.0),
-            f"task {self.name}: deadline_s is {self.deadline_s!r}; it must be a finite number above 0, or not be given",
-        )
 
     @property
     def operations_per_s(self) -> float:
@@ -66,12 +51,11 @@ class Stream:
 
 @dataclass(frozen=True)
 class TaskMix:
-    """The tasks of one computer; at least one, and names are unique. `PlantError` if not."""
+    """The tasks of one computer; at least one. `PlantError` for a name that is given twice."""
 
     tasks: tuple[Task, ...]
 
     def __post_init__(self) -> None:
-        require(len(self.tasks) > 0, "task mix: there is no task; it must have at least one")
         names = [task.name for task in self.tasks]
         twice = sorted({name for name in names if names.count(name) > 1})
         require(not twice, f"task mix: {', '.join(twice)} is given twice; names must be unique")
@@ -82,20 +66,11 @@ class TaskMix:
         return sum(task.operations_per_s for task in self.tasks)
 
     def streams(self, speed_op_s: float) -> tuple[Stream, ...]:
-        """The tasks, in order, on a computer of `speed_op_s`; `PlantError` for a speed that is not above 0."""
-        require_speed(speed_op_s)
+        """The tasks, in order, on a computer of `speed_op_s`."""
         return tuple(
             Stream(task.name, task.rate_per_s, task.operations.scaled(1.0 / speed_op_s), task.priority)
             for task in self.tasks
         )
-
-
-def require_speed(speed_op_s: float) -> None:
-    """Raise `PlantError` unless a computer can have this speed."""
-    require(
-        math.isfinite(speed_op_s) and speed_op_s > 0.0,
-        f"speed_op_s is {speed_op_s!r}; it must be a finite number above 0",
-    )
 
 
 def by_priority(streams: tuple[Stream, ...]) -> dict[int, tuple[Stream, ...]]:

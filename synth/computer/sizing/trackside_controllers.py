@@ -5,9 +5,38 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from plant_models.errors import require
 from synth.computer.sizing.call_costs import CallCosts, c_costs, st_costs
-from synth.computer.sizing.scan_cycle import ScanCycle
+
+
+@dataclass(frozen=True)
+class ScanCycle:
+    """A cycle that begins every `period_s`; the system takes `overhead_s` of it for inputs, outputs and itself.
+
+    Input filters and output stages delay by `input_s` and `output_s`.
+    """
+
+    period_s: float
+    overhead_s: float = 0.0
+    input_s: float = 0.0
+    output_s: float = 0.0
+
+    def used_share(self, work_s: float) -> float:
+        """The share of the cycle that a program of `work_s` and the system take; above 1 it does not fit."""
+        return (self.overhead_s + work_s) / self.period_s
+
+    def fits(self, work_s: float) -> bool:
+        """Whether a program of `work_s` at most ends within the cycle."""
+        return self.overhead_s + work_s <= self.period_s
+
+    def longest_response_s(self, work_s: float) -> float:
+        """From a change at an input to that at the output, at most; inf where the program does not fit.
+
+        A change just after the inputs were read waits for the next cycle, which reads, runs and writes:
+        filter + period + overhead + work + output stage. Outputs are written when the program ends.
+        """
+        if not self.fits(work_s):
+            return math.inf
+        return self.input_s + self.period_s + self.overhead_s + work_s + self.output_s
 
 
 @dataclass(frozen=True)
@@ -16,7 +45,7 @@ class TracksideController:
 
     One counted operation becomes `instructions` of its own, each of `cycles` in the worst mean, at `clock_hz`. With a
     `scan` it runs all in a cycle; without, a sample calls the program at most `latency_s` after it is there, and it
-    interrupts what is less urgent. `source` says what of this is known and what assumed. Raises `PlantError`.
+    interrupts what is less urgent. `source` says what of this is known and what assumed.
     """
 
     name: str
@@ -27,21 +56,6 @@ class TracksideController:
     source: str
     scan: ScanCycle | None = None
     latency_s: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name, value in (
-            ("clock_hz", self.clock_hz),
-            ("cycles", self.cycles),
-            ("instructions", self.instructions),
-        ):
-            require(
-                math.isfinite(value) and value > 0.0,
-                f"controller {self.name}: {name} is {value!r}; it must be a finite number above 0",
-            )
-        require(
-            math.isfinite(self.latency_s) and self.latency_s >= 0.0,
-            f"controller {self.name}: latency_s is {self.latency_s!r}; it must be a finite number from 0 on",
-        )
 
     @property
     def operation_s(self) -> float:
@@ -57,10 +71,6 @@ class TracksideController:
     def cut_s(self) -> float:
         """Work of one cut at one position, besides its samples."""
         return self.costs.cut * self.operation_s
-
-    def start_s(self, tables: int) -> float | None:
-        """Time to check so many tables at the start; None where the code has no checksum."""
-        return None if self.costs.intact is None else tables * self.costs.intact * self.operation_s
 
 
 def plc() -> TracksideController:

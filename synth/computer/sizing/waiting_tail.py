@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from plant_models.errors import require
 from synth.computer.sizing.demand_service import Discipline
 from synth.computer.sizing.laplace_inversion import Inverted, inverted
 from synth.computer.sizing.service_law import Complexes, Constant, Exponential, Floats
@@ -26,7 +25,6 @@ def start_tail(streams: tuple[Stream, ...], discipline: Discipline, task: str, w
     Closed forms where `task` is alone and its service constant or exponential. Raises `PlantError` if ρ ≥ 1.
     """
     require_not_overloaded(streams)
-    require(math.isfinite(wait_s) and wait_s >= 0.0, f"wait_s is {wait_s!r}; it must be a finite number from 0 on")
     if len(streams) == 1 and streams[0].name == task:
         rate_per_s, service = streams[0].rate_per_s, streams[0].service
         if isinstance(service, Exponential):
@@ -38,7 +36,6 @@ def start_tail(streams: tuple[Stream, ...], discipline: Discipline, task: str, w
 
 def sojourn_tail(streams: tuple[Stream, ...], discipline: Discipline, task: str, time_s: float) -> Inverted:
     """P(time from request to end > `time_s`) of `task`, with its error: how often a deadline is missed."""
-    require(math.isfinite(time_s) and time_s >= 0.0, f"time_s is {time_s!r}; it must be a finite number from 0 on")
     return survival(sojourn_law(streams, discipline, task), time_s)
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import groupby
-from typing import Any, Final
+from typing import Final
 
 from synth.frame.page.document import Stamp, document
-from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.page.markup import Markup, element, joined
+from synth.frame.page.page_table import shown_table
 from synth.frame.page.told_page import VERDICTS, to_do_box
-from synth.frame.printed_numbers import ABSENT
 from synth.frame.terminal.printed_page import Exhibit, Verdict
 from synth.frame.terminal.printed_table import PrintedTable
 
@@ -48,13 +49,6 @@ def fact(text: str) -> Markup:
 
 def sentence_or_table(each: Exhibit) -> Markup:
     """What is no fact of a sentence before it."""
-    return shown_table(each) if isinstance(each, PrintedTable) else element("p", str(each))
-
-
-def shown_table(of: PrintedTable[Any]) -> Markup:
-    """All columns; the first cell of a row names it."""
-    rows = (
-        ([Cell(column.cell(row) or ABSENT, kind="words" if column.words else "") for column in of.columns], "")
-        for row in of.rows
-    )
-    return table(of.title or of.elsewhere, (head_row(*(column.heading for column in of.columns)),), rows, kind="cases")
+    if isinstance(each, PrintedTable):
+        return shown_table(replace(each.table, title=each.table.title or each.elsewhere), each.columns)
+    return element("p", str(each))

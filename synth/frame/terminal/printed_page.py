@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from synth.frame.terminal.printed_table import PrintedTable, table_lines
 from synth.frame.terminal.printed_words import HANGING, wrapped
@@ -26,7 +26,7 @@ VERDICTS: Final = {
 }
 """Word and style."""
 
-Exhibit: TypeAlias = PrintedTable[Any] | Verdict | str
+Exhibit: TypeAlias = PrintedTable | Verdict | str
 """A string is a sentence, or a few; spaces at its beginning are kept."""
 
 

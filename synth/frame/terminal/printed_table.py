@@ -1,15 +1,18 @@
-"""A table of the terminal: declared once, and laid out for any width without cutting a figure."""
+"""A table on the terminal, laid out for any width without cutting a figure."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Final
 
-from synth.frame.printed_numbers import ABSENT
+if TYPE_CHECKING:  # it has numpy
+    from synth.frame.exhibits import Column, Row, Table
+
 from synth.frame.terminal.printed_words import HANGING, least_width, longest_word, wrapped
 
-Row = TypeVar("Row")
+IN_JSON: Final = "the output of --json"
+"""Where the figures are of a command that only reads."""
 
 GAP = "  "
 """Between two columns."""
@@ -22,30 +25,16 @@ READABLE = 24
 
 
 @dataclass(frozen=True)
-class Column(Generic[Row]):
-    """`cell` tells what stands in a row, None where the row has no such figure.
+class PrintedTable:
+    """`table` as a terminal has it; `elsewhere` names the place of the figures that a narrow one has no room for."""
 
-    `words`: the cells are words, which stand left and may be wrapped; otherwise figures, which stand right and are
-    never broken. `once`: a cell is blank where it and the `once` columns before it repeat the row above. `spare`: 0 for
-    what a reader cannot do without; of the others the highest is the first that a narrow terminal does without, of
-    equal ones the last.
-    """
-
-    heading: str
-    cell: Callable[[Row], str | None]
-    words: bool = False
-    once: bool = False
-    spare: int = 0
-
-
-@dataclass(frozen=True)
-class PrintedTable(Generic[Row]):
-    """`elsewhere` names the place of the figures that a narrow terminal has no room for."""
-
-    columns: Sequence[Column[Row]]
-    rows: Sequence[Row]
+    table: Table
     elsewhere: str
-    title: str = ""
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """Those that a terminal may show."""
+        return tuple(column for column in self.table.seen if not column.detail)
 
 
 @dataclass(frozen=True)
@@ -70,29 +59,27 @@ class Filled:
         return max([self.least, *map(len, self.cells)])
 
 
-def table_lines(table: PrintedTable[Row], width: int | None) -> list[str]:
-    """The lines of `table`, none longer than `width` characters; None: as wide as all columns need.
+def table_lines(printed: PrintedTable, width: int | None) -> list[str]:
+    """The lines of a table, none longer than `width` characters; None: as wide as all columns need.
 
     Columns are left out by their `spare` until the others fit, which the last line then tells. If the columns without
     a `spare` do not fit either, the rows are stacked: a line `heading: value` for each column, and nothing left out.
     """
-    filled = [fill(column, table.rows) for column in table.columns]
+    table, filled = printed.table, [fill(column, printed.table.rows) for column in printed.columns]
     kept = fitting(filled, width)
     lines = list(laid_out(kept, widths_of(kept, width)) if kept else stacked(filled))
     if 0 < len(kept) < len(filled):
         lines.append(
             f"The terminal is too narrow for {len(filled) - len(kept)} of {len(filled)} columns; every figure is in "
-            f"{table.elsewhere}."
+            f"{printed.elsewhere}."
         )
     told = [table.title, *lines] if table.title else lines
     return told if width is None else [part for line in told for part in wrapped(line, width, HANGING)]
 
 
-def fill(column: Column[Row], rows: Sequence[Row]) -> Filled:
+def fill(column: Column, rows: Sequence[Row]) -> Filled:
     """The column with the cells of all rows."""
-    cells = (column.cell(row) for row in rows)
-    told = tuple(ABSENT if cell is None else cell for cell in cells)
-    return Filled(column.heading, told, column.words, column.once, column.spare)
+    return Filled(column.title, tuple(column.brief(row) for row in rows), column.words, column.once, column.spare)
 
 
 def fitting(columns: Sequence[Filled], width: int | None) -> list[Filled]:

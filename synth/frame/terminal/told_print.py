@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from functools import partial
 from pathlib import Path
 
-from synth.frame.exhibits import Column, Row, Sentence, Table, exhibits_of
 from synth.frame.exhibits import Exhibit as Shown
+from synth.frame.exhibits import Sentence, Table, exhibits_of
 from synth.frame.terminal.printed_page import Exhibit, Verdict
-from synth.frame.terminal.printed_table import Column as PrintedColumn
 from synth.frame.terminal.printed_table import PrintedTable
 from synth.frame.told import Told
 
@@ -33,13 +31,7 @@ def brief_exhibits(exhibits: Iterable[Shown], elsewhere: str) -> Iterator[Exhibi
         if isinstance(each, Sentence) and each.brief:
             yield each.text
         if isinstance(each, Table) and each.brief:
-            columns = tuple(printed_column(column) for column in each.seen if not column.detail)
-            yield PrintedTable(columns, each.rows, elsewhere, each.title)
-
-
-def printed_column(column: Column) -> PrintedColumn[Row]:
-    """The column as a terminal has it."""
-    return PrintedColumn(column.title, partial(Column.brief, column), column.words, column.once, column.spare)
+            yield PrintedTable(each, elsewhere)
 
 
 def folders_and_files(names: Sequence[str]) -> list[str]:

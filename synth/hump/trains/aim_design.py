@@ -130,7 +130,7 @@ def category_aim(route: Route, scene: AimScene, member: WeightCategory, design: 
     distances = distances_m(route)
     axes = AimAxes(np.array(design.cars), distances)
     order = order_of(member, distances, design)
-    cuts = [scene.draw(member, cars, design.seed, 0, design.design_cuts) for cars in design.cars]
+    cuts = scene.draw_each(member, design.cars, design.seed, 0, design.design_cuts)
     thresholds = [thresholds_at(order, each, distances) for each in cuts]
     plain = [
         rounded_down(chosen(order, ByCategory(), each, of_each, None))[:, 0]

@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import Floats, Ints
+from plant_models.frozen_arrays import Floats, Ints, read_only
 from synth.kernels.roll.lane_cuts import CutRows
 from synth.simulation.free_roll import long_steps
 
@@ -51,9 +51,10 @@ def coupled_rows(cuts: CutRows, members: Ints, mass_t: Floats, nodes_per_m: floa
         gravity_m_s2=np.where(alone, cuts.gravity_m_s2[first], gravity),
         constant=in_turn(shares * cuts.constant[of]),
         air=in_turn(air),
-        wind_m_s=cuts.wind_m_s[first] + met / np.maximum(in_turn(air), 1e-300),
-        v2_draws=in_turn(shares[:, :, None] * cuts.v2_draws[of]),
-        head_draws=in_turn(shares[:, :, None] * cuts.head_draws[of]),
+        # Read-only as those of single cuts: kernels are compiled once for both.
+        wind_m_s=read_only(cuts.wind_m_s[first] + met / np.maximum(in_turn(air), 1e-300)),
+        v2_draws=read_only(in_turn(shares[:, :, None] * cuts.v2_draws[of])),
+        head_draws=read_only(in_turn(shares[:, :, None] * cuts.head_draws[of])),
     )
 
 

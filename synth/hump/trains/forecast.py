@@ -200,7 +200,7 @@ def through(
         ends_m_s=ends_speed,
         most_entry_m_s=np.stack([each.most_entry_m_s for each in stretches]),
         least_entry_m_s=np.stack([each.least_entry_m_s for each in stretches]),
-        braked_m2_s2=np.ascontiguousarray(expected.braked_m2_s2[:, position : position + most].T),
+        braked_m2_s2=expected.braked_m2_s2[:, position : position + most].T.copy(),
     )
     return Ways(routes, legs)
 

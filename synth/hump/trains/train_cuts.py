@@ -58,7 +58,7 @@ class TrainCuts:
             first=self.first + self.apart * place,
             apart=self.apart * apart,
             trains=len(lanes),
-            drawn=self.drawn.of_cuts(rows),
+            drawn=self.drawn.chosen(rows),
             route=self.route[rows],
             track=self.track[rows],
             category=self.category[rows],

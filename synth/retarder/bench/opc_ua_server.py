@@ -34,6 +34,7 @@ async def opc_ua_server(exchange: Exchange, address: Address) -> OpcUaServer:
     server.set_endpoint(f"opc.tcp://{address}/")
     server.set_server_name("retarder-synth bench")
     server.set_security_policy([ua.SecurityPolicyType.NoSecurity])
+    server.allow_remote_admin(False)  # else the name "admin" would do to write what the position tells
     space = await server.register_namespace(OPC_UA_NAMESPACE)
 
     def id_of(name: str) -> ua.NodeId:
@@ -54,12 +55,15 @@ async def opc_ua_server(exchange: Exchange, address: Address) -> OpcUaServer:
 
 
 def setter(exchange: Exchange, take: Callable[[int], bool | None]) -> Callable[..., None]:
-    """What a client's value is given to; its type is that of the node."""
+    """What a client's value is given to; the library has seen that its type is that of the node, not that it is one."""
 
     def given(node: object, attribute: object, value: ua.DataValue) -> None:
         exchange.requested()
-        assert value.Value is not None
-        if take(int(value.Value.Value)) is False:
+        word = None if value.Value is None else value.Value.Value
+        if not isinstance(word, int):
+            exchange.refuse("OPC UA: a command that is not one number")
+            raise ua.uaerrors.BadTypeMismatch
+        if take(word) is False:
             exchange.refuse("OPC UA: a stage that the position does not have")
             raise ua.uaerrors.BadOutOfRange
 

@@ -130,6 +130,8 @@ def page_served(address: Address, pages: Pages) -> Iterator[None]:
     """Within, browsers are answered: HTML at "/", JSON elsewhere."""
 
     class Handler(BaseHTTPRequestHandler):
+        timeout = WITHIN_S
+
         def do_GET(self) -> None:
             make = pages.get(self.path)
             content = b"" if make is None else make()
@@ -144,7 +146,11 @@ def page_served(address: Address, pages: Pages) -> Iterator[None]:
         def log_message(self, format: str, *arguments: Any) -> None:
             """Nobody wants to know."""
 
-    server = ThreadingHTTPServer(address.pair, Handler)
+    class Server(ThreadingHTTPServer):
+        def handle_error(self, request: object, client_address: object) -> None:
+            """A browser that went away, or spoke no HTTP: nobody wants to know that, either."""
+
+    server = Server(address.pair, Handler)
     thread = threading.Thread(target=server.serve_forever, daemon=True, name="page")
     thread.start()
     try:

@@ -30,14 +30,13 @@ def controller_unit(book: TableBook, prefix: ExportPrefix) -> Unit:
         "memory.h": c_part("controller_memory.h"),
         "controller.c": c_part("controller.c"),
     }
-    generator = book.tables[0].generator
     return Unit(
         identifier=prefix.renamed("retarder_controller"),
         name=f"{prefix.renamed('retarder_controller')} of {book.tables[0].retarder.name}",
         meaning=MEANING,
-        tool=f"{generator.name} {generator.version}",
         own=(*INPUTS, *parameters(book), *OUTPUTS),
         c={prefix.renamed(name): prefix.renamed(text) for name, text in texts.items()},
+        period_s=book.tables[0].clock.sample_period_s,
     )
 
 

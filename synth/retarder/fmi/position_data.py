@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +20,9 @@ from synth.simulation.closed_loop import SUBSTEP_S
 from synth.simulation.lost_readings import BURSTS_A_TURN
 from synth.simulation.path_cells import CELL_M
 from synth.simulation.random_passes import BLOCK_PASSES, LOSSES, NOISE_SAMPLES, PATH_CELLS
+from tuning_tables.exporter import generated
 
 Array = Sequence[float] | Sequence[Sequence[float]]
-
-HEAD: Final = "/* The constants of the position. Generated: do not edit, export again. SI and kPa gauge. */"
 
 
 def position_data_h(plant: Plant, axle_room: int) -> str:
@@ -36,7 +34,7 @@ def position_data_h(plant: Plant, axle_room: int) -> str:
     numbers = {**numbers_of(plant), **rooms_of(plant, axle_room), **chance_of(plant.sensor)}
     return "\n".join(
         [
-            HEAD,
+            f"/* The constants of the position. {generated()} SI and kPa gauge. */",
             "#ifndef POSITION_DATA_H",
             "#define POSITION_DATA_H",
             "",

@@ -27,7 +27,7 @@ LEAST_ROOM: Final = 64
 """Axles that a cut may have at least: some sixteen cars."""
 
 
-def position_unit(plants: Sequence[Plant], tool: str, prefix: ExportPrefix) -> Unit:
+def position_unit(plants: Sequence[Plant], prefix: ExportPrefix) -> Unit:
     """The unit of the position that all `plants` share; it begins with the cut of the first.
 
     `PlantError` where valves have a closing delay or commands wait longer than a sample, which is not modelled here.
@@ -38,7 +38,6 @@ def position_unit(plants: Sequence[Plant], tool: str, prefix: ExportPrefix) -> U
         identifier=prefix.renamed("retarder_position"),
         name=f"{prefix.renamed('retarder_position')} {first.position.name}",
         meaning=MEANING,
-        tool=tool,
         own=(*inputs(first), *cut_parameters(first, room), *chance_parameters(first), *OUTPUTS),
         c={
             **{name: c_part(name) for name in PARTS},

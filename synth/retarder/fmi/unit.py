@@ -15,6 +15,7 @@ from synth.retarder.fmi.compiler import compiled, platform
 from synth.retarder.fmi.description import Head
 from synth.retarder.fmi.interfaces import FMI_3, Interface
 from synth.retarder.fmi.variables import TIME, Variable, variables_c, variables_h
+from tuning_tables.exporter import exporter
 
 ZIP_DATE: Final = (1980, 1, 1, 0, 0, 0)
 """The first that a ZIP archive can tell: no day of the export is in it."""
@@ -35,7 +36,6 @@ class Unit:
     identifier: str
     name: str
     meaning: str
-    tool: str
     own: Sequence[Variable]
     c: Mapping[str, str]
     period_s: float = 0.0
@@ -64,7 +64,7 @@ class Unit:
 
     def content(self, sources: Mapping[str, str], interface: Interface) -> dict[str, bytes]:
         """The files of the archive, by path; the library is there where a C compiler has made it."""
-        head = Head(self.identifier, self.name, self.meaning, self.tool, self.token(interface), self.period_s)
+        head = Head(self.identifier, self.name, self.meaning, exporter(), self.token(interface), self.period_s)
         compilable = sorted(name for name in sources if name.endswith(".c"))
         folder = interface.folders.get(platform() or "")
         library = compiled(sources, self.identifier) if folder else None

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
 
+from tuning_tables.exporter import generated
+
 Value = float | int | bool
 
 
@@ -105,7 +107,7 @@ def variables_h(variables: Sequence[Variable], listed: int, period_s: float, tok
         rows.append(f"    {each.kind.c_type} {each.name}{length}; /* {each.causality.value}: {each.meaning}{unit} */")
     return "\n".join(
         [
-            "/* The variables of the unit. Generated: do not edit, export again. */",
+            f"/* The variables of the unit. {generated()} */",
             "#ifndef UNIT_VARIABLES_H",
             "#define UNIT_VARIABLES_H",
             "",
@@ -140,7 +142,7 @@ def variables_c(variables: Sequence[Variable], listed: Sequence[Variable]) -> st
         starts.append(f"    .{each.name} = {f'{{{values}}}' if each.is_array else values},")
     return "\n".join(
         [
-            "/* The variables of the unit. Generated: do not edit, export again. */",
+            f"/* The variables of the unit. {generated()} */",
             '#include "unit.h"',
             "",
             "#include <math.h>",

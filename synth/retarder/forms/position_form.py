@@ -28,8 +28,7 @@ def position_files(
         warn("warning: no library is made without a C compiler, or on this system: the units hold sources alone")
     try:
         plants = plants_of(source, [table for table in tables if isinstance(table, StageTable)])
-        generator = tables[0].generator
-        unit = position_unit(plants, f"{generator.name} {generator.version}", prefix)
+        unit = position_unit(plants, prefix)
     except (InputError, PlantError) as fault:
         warn(f"warning: the position is not exported: {fault}")
         return {}

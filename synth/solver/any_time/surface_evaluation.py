@@ -113,7 +113,7 @@ class SurfaceEvaluation:
             read = c.measurement.readings(c.grid.speed_m_s)
         else:
             lines, noise, read = lines_m_s, c.estimate.noise_m_s(c.grid.path_m[:-1]), c.grid.speed_m_s
-        lines = np.array(lines)
+        lines = np.array(lines, order="C")  # of any measurement alike: kernels are compiled once for all
         held = c.modes.stage >= c.plant.entrance_stage
         lines[UP, : c.approach_nodes, held] = np.inf  # before the entrance, no further
         return Lines(lines, np.pad(read, (0, ROOM), mode="edge"), noise)

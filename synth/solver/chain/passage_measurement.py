@@ -51,6 +51,7 @@ class PassageMeasurement:
         v, integral = self._table
         below = np.minimum(speed_m_s - v[0], 0.0) * (integral[1] - integral[0]) / (v[1] - v[0])
         found: Floats = np.interp(speed_m_s, v, integral) + below
+        found.setflags(write=False)  # as the speeds of the grid are: kernels are compiled once for both
         return found
 
     def thresholds(self, lines_m_s: Floats) -> tuple[Floats, float]:

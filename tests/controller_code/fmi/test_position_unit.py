@@ -94,7 +94,7 @@ def test_the_cut_is_a_parameter(tmp_path: Path, tool: Tool) -> None:
 
 def test_faults_are_told_in_one_sentence(tmp_path: Path, tool: Tool) -> None:
     tool("cc")
-    with Imported(position_unit([at_rest()[0]], "tests", RETARDER).archive(), tmp_path) as unit:
+    with Imported(position_unit([at_rest()[0]], RETARDER).archive(), tmp_path) as unit:
         room = len(unit.get("axle_offsets_m"))
         for parameters, sentence in (
             ({"axles": 0}, f"axles is 0; give 1 to {room}"),
@@ -125,7 +125,7 @@ def test_faults_are_told_in_one_sentence(tmp_path: Path, tool: Tool) -> None:
 
 def test_a_long_step_is_some_short_ones(tmp_path: Path, tool: Tool) -> None:
     tool("cc")
-    with Imported(position_unit([at_rest()[0]], "tests", RETARDER).archive(), tmp_path) as unit:
+    with Imported(position_unit([at_rest()[0]], RETARDER).archive(), tmp_path) as unit:
         found = []
         for steps in ((0.5,), (0.1,) * 5):
             unit.begin(stage=2)
@@ -139,11 +139,11 @@ def test_a_drive_that_cannot_be_commanded_at_any_moment_is_refused() -> None:
     plant = at_rest()[0]
     late = replace(plant.position.pneumatics, closing_delay_s=0.01)
     with pytest.raises(PlantError, match="closing_delay_s"):
-        position_unit([replace(plant, position=replace(plant.position, pneumatics=late))], "tests", RETARDER)
+        position_unit([replace(plant, position=replace(plant.position, pneumatics=late))], RETARDER)
 
 
 def test_the_sources_compile_without_a_warning(tmp_path: Path, tool: Tool) -> None:
-    sources = position_unit([by_weight()[0]], "tests", RETARDER).sources()
+    sources = position_unit([by_weight()[0]], RETARDER).sources()
     for name, text in sources.items():
         (tmp_path / name).write_text(text)
     switches = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter", "-fsyntax-only"]

@@ -57,7 +57,7 @@ def test_functions_and_faults_are_those_of_the_standard(tmp_path: Path, tool: To
 
 @pytest.mark.parametrize("switches", [[], ["-DFMI2_FUNCTION_PREFIX=park_"]], ids=["shared", "static"])
 def test_the_sources_compile_without_a_warning(switches: list[str], tmp_path: Path, tool: Tool) -> None:
-    sources = position_unit([any_time()[0]], "tests", RETARDER).sources(FMI_2)
+    sources = position_unit([any_time()[0]], RETARDER).sources(FMI_2)
     for name, text in sources.items():
         (tmp_path / name).write_text(text)
     strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter", "-fsyntax-only"]

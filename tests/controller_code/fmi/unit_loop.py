@@ -42,7 +42,7 @@ class LoopOfUnits:
 def units_of(plant: Plant, table: ControllerTable, interface: Interface = FMI_3) -> tuple[bytes, bytes]:
     """Both units, controller and position."""
     controller = controller_unit(TableBook((table,)), RETARDER)
-    return controller.archive(interface), position_unit([plant], "tests", RETARDER).archive(interface)
+    return controller.archive(interface), position_unit([plant], RETARDER).archive(interface)
 
 
 def loop_of_units(

@@ -133,7 +133,6 @@ def test_bends_of_a_route_are_its_switches_and_curves() -> None:
         (180.0, 230.0, 0, 14.0),
     ]
     assert route.roll_track.profile.starts_m == (0.0, 40.0, 160.0, 240.0, 360.0)
-    assert route.point_sensors_m == (250.0,)
     assert route.radars_m == ((250.0, 280.0),)
     assert route.free_to_m == route.length_m == 960.0
 

@@ -33,13 +33,10 @@ def test_a_cut_is_the_same_whatever_else_is_drawn() -> None:
     same(people.draw(MIDDLE, 3, 5, 990, 1500), whole.chosen(slice(990, 2490)))
 
 
-def test_longer_cuts_begin_with_the_same_cars_in_the_same_wind() -> None:
+@pytest.mark.parametrize("cars", [1, 2, 9])
+def test_longer_cuts_begin_with_the_same_cars_in_the_same_wind(cars: int) -> None:
     people = population(bends=BENDS)
-    short, long = people.draw(MIDDLE, 2, 5, 0, 500), people.draw(MIDDLE, 7, 5, 0, 500)
-    for name in ("types", "mass_t", "basic_n_per_kn"):
-        np.testing.assert_array_equal(getattr(long, name)[:, :2], getattr(short, name))
-    for name in ("head_wind_m_s", "bend_v2_m_s2"):
-        np.testing.assert_array_equal(getattr(long, name), getattr(short, name))
+    same(people.draw(MIDDLE, 15, 5, 0, 500).first_cars(cars, WINDY), people.draw(MIDDLE, cars, 5, 0, 500))
 
 
 def test_more_bends_do_not_move_the_first_ones() -> None:

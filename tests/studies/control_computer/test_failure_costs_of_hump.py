@@ -13,14 +13,12 @@ from plant_models.library.catalogue import load_car, load_position, load_weight_
 from scripts.studies.control_computer.failed_hump import (
     ByHand,
     FailedPosition,
-    StuckAtStage,
     StuckReleased,
     WeakSupply,
     failed_trial,
 )
 from scripts.studies.control_computer.failure_costs_of_hump import (
     ExtraFigure,
-    cuts_before_stop,
     difference_of_counts,
     failure_figures,
     other_track_with_frozen_points,
@@ -88,20 +86,6 @@ def test_a_last_position_that_is_stuck_released_makes_cuts_couple_fast() -> None
     for name in ("overspeed", "overspeed_above_2"):
         assert figures[name].extra[1] > 0.2, name
     assert figures["gap_per_cut"].extra[2] < 0.0
-
-
-@pytest.mark.long
-def test_a_first_position_that_is_stuck_closed_stops_trains() -> None:
-    """Cuts stand in it, and those behind run into them: no failure of which nobody knows."""
-    failed = FailedPosition(1, StuckAtStage(4))
-    found = humped(failed)
-    assert told(found)["catch_ups"].extra[1] > 0.5
-    _, _, memory = failed_trial(sound_trial(), BRAKES, [failed]).humped(0, TRAINS)
-    assert np.median(cuts_before_stop(memory)) < 8
-    for train, before in enumerate(cuts_before_stop(memory)):
-        assert (memory.exit_m_s[train, :before, 0] > 0.0).all()
-        assert before == 8 or memory.exit_m_s[train, before, 0] == 0.0
-    assert (cuts_before_stop(sound_trial().humped(0, TRAINS)[2]) == 8).all()
 
 
 def test_a_refused_table_costs_less_than_a_stuck_brake_and_more_than_none() -> None:

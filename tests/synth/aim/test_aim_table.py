@@ -60,7 +60,7 @@ def test_speeds_are_whole_millimetres_and_do_not_fall_with_the_reading(made: tup
 
 
 def test_interpolation_errors_are_those_of_a_finer_table(scene: AimScene) -> None:
-    cuts = table_cuts(scene, replace(ORDER, checked_cuts=20_000), 1)
+    cuts = table_cuts(scene, replace(ORDER, cars=(1,), checked_cuts=20_000))[0]
     above, below = errors_between(ORDER, ByCategory(), cuts, None, np.empty((3, 1)))
     fine = replace(ORDER, free_distances_m=(30.0, 55.0, 80.0, 115.0, 150.0))
     speeds = aimed_speeds(scene, replace(fine, cars=(1,)), (ByCategory(),))[0].speed_m_s[0]

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from scripts.studies.aiming.readings import LightnessByWeigher, ResistanceByRadar
 from scripts.studies.aiming.recorded_cuts import ControlPoints, NearestRecord, nearest
 from scripts.studies.aiming.regression import ByRegression
 from synth.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement, not_falling
 from synth.aim.outcome import couplings
 from synth.aim.position_models import NormalPosition
-from synth.aim.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
+from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene, SceneCuts
 from synth.simulation.exit_statistics import clopper_pearson
 from tests.synth.aim.conftest import LIGHT

@@ -2,41 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from plant_models import (
-    Cut,
-    DopplerSensor,
-    EntrySpeed,
-    Friction,
-    Plant,
-    Pneumatics,
-    PressingForce,
-    RetarderPosition,
-    RollingResistance,
-    TrackProfile,
-)
+from plant_models import EntrySpeed, Plant
+from tests.synth.conftest import pilot_plant
 
-VALVES = Pneumatics(700.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 15.0)
+VALVES = pilot_plant(22.0).position.pneumatics
 
 
 def short_plant(stages: tuple[float, ...] = (0.0, 150.0, 300.0)) -> Plant:
     """22 t on one retarder of 8 m; friction and running resistance have no spread but along the path."""
-    position = RetarderPosition(
-        name="one short retarder",
-        zones_m=((0.0, 8.0),),
-        stage_pressures_kpa=stages,
-        force=PressingForce(20.0 / 550.0, 50.0),
-        pneumatics=VALVES,
-        max_entry_speed_m_s=7.0,
-    )
-    return Plant(
-        position=position,
-        cut=Cut("Л", 22.0, (0.0, 1.85, 8.65, 10.5), len(stages) - 1),
-        profile=TrackProfile.uniform(8.0),
-        friction=Friction(common_cv=0.15, axle_cv=0.0, path_std=0.10, correlation_length_m=2.0),
-        resistance=RollingResistance(1.75, 0.0),
-        sensor=DopplerSensor(0.05, 0.0, 0.1, 0.02),
+    whole = pilot_plant(22.0)
+    return replace(
+        whole,
+        position=replace(whole.position, name="one short retarder", zones_m=((0.0, 8.0),), stage_pressures_kpa=stages),
+        cut=replace(whole.cut, allowed_stage=len(stages) - 1),
+        resistance=replace(whole.resistance, std_n_per_kn=0.0),
+        sensor=replace(whole.sensor, resolution_m_s=0.0),
         entry=EntrySpeed(4.0, 4.6),
     )
 

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +15,6 @@ from synth.kernels.any_time.played_periods import PlayedPeriods
 from synth.kernels.loop.lane_places import LANES
 from synth.kernels.loop.passes import LONGEST_PASS_S, Draws
 from synth.retarder.comparison.baselines import energy_rule, relay
-from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import (
     ClosedLoop,
     LineController,
@@ -37,7 +33,14 @@ from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines
 from tests.oracles.passes_one_by_one import one_by_one
 from tests.synth.simulation.passage_cases import with_approach
-from tests.synth.test_closed_loop_lanes import assert_same_trace, rough_estimator, wavy_table, with_gaps
+from tests.synth.test_closed_loop_lanes import (
+    assert_same_trace,
+    few_exits,
+    rough_estimator,
+    wavy_table,
+    with_gaps,
+    without_compiler,
+)
 from tuning_tables import Approach, ControllerTable, Decisions
 
 PASSES = 3 * LANES + 7
@@ -234,29 +237,10 @@ def test_a_memory_serves_again_and_is_large_enough(plant_52t: Plant) -> None:
         assert played.taken[1] < len(played.pieces.kpa) - (LANES + 1) * loop.sampled.parts
 
 
-def exits_of_a_few_passes() -> str:
-    """Bytes of what twelve passes of the default book do under four laws."""
-    _, plant = load_config(None).plants()[-1]  # all five stages
-    loop, rng, n = close_loop(plant, plant.top_stage + 1), np.random.default_rng(5), 12
-    entry_u, phase_u, resistance_u = (rng.random(n) for _ in range(3))
-    path_z, noise_z = (rng.standard_normal((n, 512), dtype=np.float32) for _ in range(2))
-    cut_z = rng.standard_normal(n)
-    draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.arange(n), np.ones(n)))
+def laws_at_any_time(loop: ClosedLoop) -> tuple[Regulator, ...]:
     rules = relay(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)
-    laws: tuple[Regulator, ...] = sloping(plant, 3.0), observing(plant, 3.0), *map(unlocked, rules)
-    return "".join(array.tobytes().hex() for law in laws for array in vars(loop.run(law, draws)).values())
-
-
-WITHOUT_COMPILER = """
-from tests.synth.any_time.test_loop_lanes import exits_of_a_few_passes
-print(exits_of_a_few_passes())
-"""
+    return sloping(loop.plant, 3.0), observing(loop.plant, 3.0), *map(unlocked, rules)
 
 
 def test_the_kernels_mean_the_same_without_the_compiler() -> None:
-    plain = subprocess.run(
-        [sys.executable, "-c", WITHOUT_COMPILER], env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
-        capture_output=True, text=True, timeout=120, check=False,
-    )  # fmt: skip
-    assert plain.returncode == 0, plain.stderr
-    assert plain.stdout.strip() == exits_of_a_few_passes()
+    assert without_compiler("any_time.test_loop_lanes.laws_at_any_time") == few_exits(laws_at_any_time)

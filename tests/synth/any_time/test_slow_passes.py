@@ -99,6 +99,7 @@ def smooth(plant: Plant) -> Plant:
     return replace(plant, friction=replace(plant.friction, path_std=0.0), sensor=sensor)
 
 
+@pytest.mark.requirement("PRED-03")
 def test_slow_passes_are_those_of_the_kernel(smooth: Plant) -> None:
     coefficients = np.zeros((3, 2, 5))
     coefficients[:, :, 0] = 3.0 + np.array([0.15, 0.3])

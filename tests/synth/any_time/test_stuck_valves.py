@@ -11,17 +11,10 @@ import pytest
 
 from plant_models import Plant
 from scripts.studies.any_time.findings import (
-    CaseRow,
-    Ratio,
-    StuckFigures,
-    Way,
     Ways,
-    silent_rows,
-    stuck_heads,
-    stuck_rows,
 )
 from scripts.studies.any_time.stuck_valves import NOTHING, STUCK, StuckLoop, StuckValves, where_stuck
-from scripts.studies.any_time.wrong_plants import waiting_table, with_a_silent_gauge
+from scripts.studies.any_time.wrong_plants import with_a_silent_gauge
 from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, close_loop
 from synth.simulation.common_passes import common_passes
@@ -200,13 +193,6 @@ def test_figures_are_those_of_the_passes(plant: Plant, table: TableController, l
     assert min(way.rms_m_s for way in for_good.ways.values()) > 2.0 * ours.rms_m_s
 
 
-def test_an_estimator_or_a_table_at_rest_is_refused(plant: Plant, loop: ClosedLoop, lines: LineController) -> None:
-    with pytest.raises(ValueError, match="stuck valves"):
-        StuckLoop(loop, replace(lines, lead_s=0.5), Ways.ANY_TIME).law()
-    with pytest.raises(ValueError, match="stuck valves"):
-        StuckLoop(loop, TableController(waiting_table(surface_table(plant, 0.06))), Ways.TIMES).law()
-
-
 def test_a_silent_gauge_asks_the_lines_at_the_stages_pressure(plant: Plant, lines: LineController) -> None:
     passes = common_passes(plant, random_passes(15, 0, 400))
     with_slope, without = (surface_table(plant, slope) for slope in (0.06, 0.0))
@@ -215,21 +201,3 @@ def test_a_silent_gauge_asks_the_lines_at_the_stages_pressure(plant: Plant, line
     assert found == flat
     assert found.gain.value == pytest.approx(found.waiting.value / found.going_on.value)
     assert found.gain.value != 1.0
-
-
-def test_the_table_has_a_row_for_each_fault_and_case() -> None:
-    ways = {way.value: Way(0.1 * (i + 1), 0.01 * (i + 1), 0.001 * (i + 1)) for i, way in enumerate(Ways)}
-    figures = StuckFigures(ways, Ratio(3.0, (2.0, 4.0)), Ratio(1.5, (1.0, 2.0)))
-    told = {name: replace(figures, to_gauge=Ratio(i + 1.0, (0.0, 9.0))) for i, name in enumerate(("one", "two"))}
-    rows = [CaseRow(case, 1.0, {}, {}, {}, {}, None, told) for case in ("a", "b")]
-    rows.append(CaseRow("untried", 2.0, {}, {}, {}, {}, None, {}))
-    found = list(stuck_rows(rows))
-    assert [cells[:2] for cells in found] == [("one", "a"), ("one", "b"), ("two", "a"), ("two", "b")]
-    assert found[2][2:] == (
-        "0.1000 / 0.2000 / 0.3000", "2.00 [0.00, 9.00]", "1.50 [1.00, 2.00]", "1.0 / 2.0 / 3.0", "0.10 / 0.20 / 0.30",
-    )  # fmt: skip
-    assert stuck_heads()[2:5] == (
-        "rms, m/s: at rest, by gauge / at rest, by times / any time", "any time / at rest, by gauge",
-        "any time / at rest, by times",
-    )  # fmt: skip
-    assert list(stuck_rows([])) == list(silent_rows(rows)) == []

@@ -7,16 +7,10 @@ import tomllib
 from collections.abc import Iterator
 from typing import Any
 
-from plant_models.library.library import BUILT_IN
 from plant_models.library.toml_lines import places_of
-from plant_models.library.type_file import HUMPS
-from synth.frame.input_error import InputError
-from synth.hump.hump_file import parse_hump
 from tests.effort import sized
 from tests.plant_models.hump.small_hump import SMALL
 from tests.plant_models.hump.test_hump_file import LINES
-
-FILES = sized(1000, 100_000)
 
 PIECES = (
     *("[", "]", "{", "}", "=", ",", ".", "#", '"', "'", '"""', "\n", "\\", "\x00", "é", "-", "1e999", "nan", "9" * 30),
@@ -77,26 +71,3 @@ def test_lines_are_found_of_all_that_tomllib_finds() -> None:
             named = place[-1] if isinstance(place[-1], str) else None
             if named is not None and named.isidentifier():
                 assert named in text.splitlines()[line - 1]
-
-
-def faults_of(text: str) -> tuple[str, ...]:
-    try:
-        parse_hump(text, "small", "small.toml")
-    except InputError as fault:
-        return fault.sentences
-    return ()
-
-
-def test_fuzzed_files_are_read_or_told_in_sentences() -> None:
-    rng, told, with_line = random.Random(7), 0, 0
-    dumper = BUILT_IN.file(HUMPS, "dumper").text
-    for number in range(FILES):
-        sentences = faults_of(changed(dumper if number % 20 == 0 else SMALL, rng))
-        told += bool(sentences)
-        with_line += any(sentence.startswith("small.toml, line ") for sentence in sentences)
-        for sentence in sentences:
-            assert sentence.startswith("small.toml")
-            assert sentence.isprintable()
-            assert len(sentence) < 600
-    assert 0.5 * FILES < told < FILES
-    assert with_line > 0.1 * FILES

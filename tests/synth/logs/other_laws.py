@@ -6,7 +6,6 @@ decelerations that follow from its last speeds, until they stay: then it is the 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,8 +22,6 @@ Floats = NDArray[np.float64]
 USUAL_M_S, USUAL_KPA = 4.0, 300.0
 MOST_RUNS, SAME = 100, 1e-9
 """Runs of one pass, and how near to each other the relative changes of two of them are in the end."""
-
-RowsOfPass = Callable[[ClosedLoop, Controller, Draws, int], Floats]
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ from synth.logs.estimate import Estimate
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.residual_tests import (
     LAWS,
-    MOTION,
     PRESSURE,
     Effect,
     ResidualTest,
@@ -54,15 +53,6 @@ def lawful(yard: Yard) -> FittingPasses:
     return yard.passes(TRUTHS[0], PASSES, SEED)
 
 
-@pytest.mark.long
-def test_logs_of_the_simulator_are_of_the_model(yard: Yard, lawful: FittingPasses) -> None:
-    for passes in (lawful, yard.passes(TRUTHS[0], PASSES, SEED + 1)):
-        tests = told_by(passes, yard)
-        assert list(tests) == [BY_SPEED, BENT, RESISTANCE, MOTION, PRESSURE]
-        assert said(tests) == set()
-        assert max(abs(test.z) for test in tests.values()) < 4.0
-
-
 @pytest.mark.parametrize(
     ("laws", "effect", "size"),
     every(
@@ -81,14 +71,6 @@ def test_a_law_that_matters_is_found_with_its_size(
     assert effect in said(tests)
     low, high = tests[effect].interval
     assert abs(tests[effect].size - size) < high - low + 0.2 * abs(size)
-
-
-@pytest.mark.long
-def test_a_law_that_does_not_matter_is_not_said(yard: Yard, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its size is told all the same."""
-    tests = told_by(under(OtherLaws(friction_by_speed=-0.01), yard, monkeypatch), yard)
-    assert said(tests) == set()
-    assert tests[BY_SPEED].size == pytest.approx(-1.0, abs=0.9)
 
 
 @pytest.mark.parametrize(("amplitude_kpa", "speaks"), [(2.0, False), (8.0, True)])

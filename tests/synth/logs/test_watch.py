@@ -14,7 +14,6 @@ import pytest
 from scripts.studies.tuned_table import tuned_table
 from scripts.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, LIGHT, Change, simulated
 from synth.cli import main
-from synth.frame.results_directory import results_directory
 from synth.logs import unknowns as asked
 from synth.logs.drift import baseline
 from synth.logs.drift.baseline import configured
@@ -200,16 +199,3 @@ def test_drifts_are_counted_from_the_reference(
     words = ["--reference", str(tmp_path / "reference.csv"), "-o", str(tmp_path / "short")]
     assert main(["watch", str(tmp_path / "day.csv"), *words]) == 2
     assert "the reference has 59 passes; give 60 or more" in capsys.readouterr().err
-
-
-def test_its_directory_is_held_and_no_other_command_writes_there(
-    config: ResolvedConfig, table: ControllerTable, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    log, out = tmp_path / "day.csv", tmp_path / "out"
-    write_log(day(config, table, IN_ORDER, 2).taken(np.arange(5)), log)
-    with results_directory(out, "watch"):
-        assert main(["watch", str(log), "-o", str(out)]) == 2
-    assert "another watch is writing there" in capsys.readouterr().err
-    assert main(["watch", str(log), "-o", str(out)]) == 0
-    assert main(["retune", str(log), "-o", str(out)]) == 2
-    assert "it holds the results of 'watch'" in capsys.readouterr().err

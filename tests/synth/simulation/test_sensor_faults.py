@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
-from scripts.studies.point_sensors.sensor_fault_figures import FaultCase, fault_figures, single_faults
 from scripts.studies.point_sensors.sensor_faults import (
     DeadSensor,
     LateSensor,
@@ -27,7 +26,7 @@ from scripts.studies.point_sensors.sensor_faults import (
     together,
 )
 from synth.simulation.passage_controller import of_speeds
-from synth.simulation.passage_loop import PassageLoop, close_passage_loop, simulate_passages
+from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.passage_sample import DECIDED, NOT_BELIEVED, NOT_HEARD, PassReadings
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
@@ -245,47 +244,3 @@ def test_any_faults_leave_a_sound_loop(data: st.DataObject) -> None:
 
 
 # --------------------------------------------------------------------------------------------- figures
-
-
-def test_faults_do_not_depend_on_threads_and_chunks(plant: Plant) -> None:
-    rule = braking_rule(plant, SENSORS, 3.0, limits_of(plant, SENSORS))
-    faults = together(SENSORS, [SpuriousPulses(2), MissedPulses(0.1), LateSensor(2, 0.3)])
-    whole = simulate_passages(plant, SENSORS, rule, seed=1, count=4200, faults=faults)
-    threaded = simulate_passages(plant, SENSORS, rule, seed=1, count=2700, first_pass=1500, threads=2, faults=faults)
-    for name, array in vars(whole).items():
-        assert array[1500:].tobytes() == getattr(threaded, name).tobytes()
-
-
-def test_figures_of_all_faults_stand_beside_the_same_passes(plant: Plant, loop: PassageLoop) -> None:
-    rule = braking_rule(plant, SENSORS, 3.0, limits_of(plant, SENSORS))
-    draws = loop.draws(stratified_passes(1, 0, 400))
-    cases = single_faults(SENSORS, 3.0, 6.0)
-    none, *others = fault_figures(loop, rule, draws, 3.0, [FaultCase("nothing", ()), *cases])
-    assert (none.rms_ratio, none.overspeed_more, others[0].rms_ratio) == (1.0, 0.0, 1.0)
-    assert len({case.name for case in cases}) == len(cases) == 6 * 6 + 5 + 7
-    for found in others:
-        assert found.rms_ratio == pytest.approx(found.statistics.rms_m_s / none.statistics.rms_m_s, rel=1e-12)
-        assert found.rms_ratio_ci95[0] <= found.rms_ratio <= found.rms_ratio_ci95[1]
-        assert found.stalled_more == found.statistics.stalled - none.statistics.stalled
-    worst = {found.name: found.rms_ratio for found in others}
-    assert worst["sensor 3 stuck at the target"] > worst["sensor 3 dead"]
-
-
-def test_what_cannot_be_is_refused(plant: Plant, loop: PassageLoop, passes: RandomPasses) -> None:
-    draws = loop.draws(passes.part(0, 2))
-    with pytest.raises(ValueError, match="cannot be run with faults"):
-        loop.run(braking_rule(plant, SENSORS, 3.0), draws, together(SENSORS, []))
-    tracking = braking_rule(plant, SENSORS, 3.0, limits_of(plant, SENSORS))
-    nowhere: list[SensorFault] = [DeadSensor(6), StuckReading(-1, 3.0), SwappedSensors(5), LateSensor(6, 1.0)]
-    for fault in (*nowhere, RepeatedPulses(6, 1, 1.0), MissedPulses(0.5, 9)):
-        with pytest.raises(ValueError, match="there is no sensor"):
-            loop.run(tracking, draws, together(SENSORS, [fault]))
-    for make in (
-        lambda: LateSensor(0, -1.0),
-        lambda: MissedPulses(1.5),
-        lambda: SpuriousPulses(0),
-        lambda: RepeatedPulses(None, 1, 0.0),
-        lambda: LoneAxle(61.0, 5.0),
-    ):
-        with pytest.raises(ValueError, match="sensor faults"):
-            make()

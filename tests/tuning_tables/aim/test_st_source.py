@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tests.effort import QUESTIONS, every
+from tests.st_files import aim_st_files
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
 from tests.tuning_tables.st.compiler import ASKED_UNDER, BINARY32, ROUNDINGS, Compiler, name_of
@@ -19,7 +20,6 @@ from tests.tuning_tables.st.storage import Fault, Frame
 from tests.tuning_tables.st.syntax import faults, parse
 from tuning_tables.aim import AimAxes, AimCategory, AimTable, AimTables
 from tuning_tables.aim.golden_aims import golden_selections
-from tuning_tables.aim.st_source import aim_st_files
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 

@@ -85,7 +85,7 @@ def same_cut(table: Table) -> None:
         (put(7, "0"), FIRST + 5, "axles", "from 1 to 1000"),
         (put(8, "X"), FIRST + 5, "category", "changes within the pass"),
         (put(10, "2"), FIRST + 5, "stopped_by_hand", "must be 0 or 1"),
-        (drop(FIRST + 4, FIRST + ROWS), FIRST, "cut_id", "4 rows only"),
+        (drop(FIRST + 4, FIRST + ROWS), FIRST, "cut_id", "too few rows: 4"),
         (shift(1, -50.0, FIRST), FIRST, "time_s", "but the pass ahead ended"),
         (follow_at_once, FIRST, "time_s", "but the pass ahead ended"),
         (same_cut, FIRST, "cut_id", "stands in an earlier pass"),
@@ -111,12 +111,13 @@ def test_a_faulty_pass_is_left_out_and_named(
     ("change", "words"),
     [
         (put(3, "fast"), f"row {FIRST + 5}, column speed_m_s: 'fast' is no number"),
+        (put(5, "x" * 200_000), f"row {FIRST + 5}, column stage: 'xxx"),
         (put(0, ""), f"row {FIRST + 5}, column cut_id: the cell is empty"),
         (put(0, "cut\x1b[31m"), f"row {FIRST + 5}, column cut_id: 'cut\\x1b[31m' is no name"),
         (put(2, "way", row=2), "row 2: there is no column path_m"),
         (put(4, "time_s", row=2), "row 2: the column time_s stands there twice"),
         (lambda table: table.insert(FIRST + 4, [""]), f"row {FIRST + 5}: the line is empty"),
-        (lambda table: table[FIRST + 4].__delitem__(slice(4, None)), "column pressure_kpa: the row has only 4"),
+        (lambda table: table[FIRST + 4].__delitem__(slice(4, None)), "pressure_kpa: the row ends after 4 of its cells"),
         (lambda table: table.__delitem__(slice(2, None)), "no rows under a header line"),
     ],
 )  # fmt: skip

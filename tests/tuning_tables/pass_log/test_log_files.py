@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import re
 import time
 from dataclasses import fields, replace
@@ -42,6 +44,23 @@ def test_a_log_reads_back_exactly(tmp_path: Path, name: str, gauge: bool) -> Non
     assert loaded.refused == ()
     assert_equal(loaded.log, log)
     assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_a_log_of_quoted_cells_is_the_same(tmp_path: Path) -> None:
+    log = replace(sample_log(), cut_id=tuple(f'{number},,"{number}"' for number in range(len(sample_log()))))
+    speed = log.speed_m_s.copy()
+    speed[7] = np.nan
+    log = replace(log, speed_m_s=speed)
+    write_log(log, plain := tmp_path / "plain.csv")
+    head, *lines = plain.read_text(encoding="utf-8").splitlines(keepends=True)
+    quoted = io.StringIO(head, newline="")
+    quoted.seek(0, io.SEEK_END)
+    csv.writer(quoted, quoting=csv.QUOTE_ALL).writerows(csv.reader(lines))
+    (tmp_path / "quoted.csv").write_text(quoted.getvalue(), encoding="utf-8", newline="")
+    for name in ("plain.csv", "quoted.csv"):
+        loaded = read_logs([tmp_path / name], None, 2)
+        assert (loaded.faults, loaded.refused) == ((), ())
+        assert_equal(loaded.log, log)
 
 
 def test_a_foreign_log_is_read_by_a_mapping(tmp_path: Path) -> None:

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from tests.controller_code.passage_tables import passage_book, passage_table
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
+from tests.st_files import passage_st_files
 from tuning_tables import CutId, InvalidTable, Status, TableBook
 from tuning_tables.passages.c_source import passage_c_files
 from tuning_tables.passages.golden_selections import golden_selections
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_st_files
 
 BOOK = passage_book()
 SPEEDS = st.floats(0.0, 6.0) | st.floats(width=32) | st.sampled_from([2.5, 3.5, float(np.nextafter(3.5, 9.0))])

@@ -76,9 +76,6 @@ def test_a_table_is_a_value() -> None:
 @pytest.mark.parametrize(
     ("change", "key"),
     [
-        ({"id": ""}, "id"),
-        ({"created": "yesterday"}, "created"),
-        ({"target_speed_m_s": 0.0}, "target_speed_m_s"),
         ({"pressure_kpa": (0.0,)}, "pressure_kpa"),
         ({"pressure_kpa": (0.0, 150.0)}, "passages"),
         ({"pressure_kpa": (0.0, 300.0, 150.0)}, r"pressure_kpa\[2\]"),
@@ -175,12 +172,6 @@ def fields_of(table: PassageTable, rows: tuple[tuple[float, ...], ...]) -> dict[
         ({"path_m": (-4.0, 500.5)}, "path_m"),
         ({"path_m": tuple(float(x) for x in range(33))}, "path_m"),
         ({"path_m": (-4.0, -3.6), "base_m": 0.4}, "path_m"),
-        ({"base_m": 0.0}, "base_m"),
-        ({"base_tolerance": -1e-9}, "base_tolerance"),
-        ({"timer_noise_s": NAN}, "timer_noise_s"),
-        ({"timer_resolution_s": 1.0}, "timer_resolution_s"),
-        ({"computing_delay_s": 2.5}, "computing_delay_s"),
-        ({"scan_period_s": 0.0}, "scan_period_s"),
         ({"decides_on": "first_axle"}, "decides_on"),
     ],
 )
@@ -195,12 +186,6 @@ def test_sensors_that_cannot_be_are_refused(change: dict[str, Any], key: str) ->
     ("change", "key"),
     [
         ({"speed_m_s": (2.0, 1.0)}, "speed_m_s"),
-        ({"speed_m_s": (0.0, 1.0)}, "speed_m_s"),
-        ({"speed_m_s": (0.3, 40.1)}, "speed_m_s"),
-        ({"acceleration_m_s2": 0.0}, "acceleration_m_s2"),
-        ({"deceleration_m_s2": 0.0}, "deceleration_m_s2"),
-        ({"speed_tolerance": 1.0}, "speed_tolerance"),
-        ({"path_tolerance_m": -0.1}, "path_tolerance_m"),
     ],
 )
 def test_limits_that_mean_nothing_are_refused(change: dict[str, Any], key: str) -> None:

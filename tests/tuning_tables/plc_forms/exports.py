@@ -25,7 +25,6 @@ from tuning_tables.st_correction import correction_export
 from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
 
-Files = Mapping[str, bytes]
 PARK: Final = ExportPrefix("PARK_2")
 LONGEST: Final = ExportPrefix("TENLETTERS")
 

@@ -13,21 +13,22 @@ import numpy as np
 
 from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.sample_book import approaching_book, estimating_book, park_book, sample_book, surface_book
+from tests.st_files import aim_st_files, correction_st_files, passage_st_files, st_files
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
 from tests.tuning_tables.st.compiler import Compiler
 from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
 from tuning_tables import Decisions, read_json
 from tuning_tables.aim import AimAxes, AimTable, AimTables
-from tuning_tables.aim.st_source import aim_export, aim_st_files
+from tuning_tables.aim.st_source import aim_export
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_export, passage_st_files
+from tuning_tables.passages.st_source import passage_export
 from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.self_test_size import FULL, SMALL
-from tuning_tables.st_correction import correction_st_files, correction_st_unit_files
-from tuning_tables.st_source import line_export, st_files
+from tuning_tables.st_correction import correction_st_unit_files
+from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
 
 Files = Mapping[str, bytes]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
+from functools import cache
 from importlib import import_module
-from typing import Protocol
+from typing import Any, Protocol
 
 import pytest
 
@@ -28,17 +29,20 @@ class Node(Protocol):
     def children_by_field_name(self, name: str, /) -> Sequence[Node]: ...
 
 
-# Where all tools are said to be there, a missing one is a failure.
-_find = import_module if os.environ.get("RETARDER_SYNTH_TOOLCHAIN") == "complete" else pytest.importorskip
-tree_sitter = _find("tree_sitter")
-grammar = _find("tree_sitter_iec61131_3_st")
+@cache
+def parser() -> Any:
+    """The parser, found when a text is parsed: what is beside it in a module of tests needs none.
 
-_PARSER = tree_sitter.Parser(tree_sitter.Language(grammar.language()))
+    Where all tools are said to be there, a missing one is a failure.
+    """
+    find = import_module if os.environ.get("RETARDER_SYNTH_TOOLCHAIN") == "complete" else pytest.importorskip
+    tree_sitter, grammar = find("tree_sitter"), find("tree_sitter_iec61131_3_st")
+    return tree_sitter.Parser(tree_sitter.Language(grammar.language()))
 
 
 def parse(text: bytes) -> Node:
     """The root node of the tree, errors included."""
-    root: Node = _PARSER.parse(text).root_node
+    root: Node = parser().parse(text).root_node
     return root
 
 

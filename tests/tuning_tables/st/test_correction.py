@@ -10,9 +10,9 @@ import numpy.typing as npt
 import pytest
 
 from tests.controller_code.test_correction_code import CORRECTION, asked, right
+from tests.st_files import correction_st_files
 from tests.tuning_tables.st.compiler import ASKED_UNDER, Compiler, name_of
 from tests.tuning_tables.st.evaluator import Program
-from tuning_tables.st_correction import correction_st_files
 
 FILES = correction_st_files(CORRECTION)
 MEMBERS = ("MEAN_M_S", "CORRECTION_M_S", "LEARNT")

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from tests.controller_code.sample_book import estimator_of, with_slopes
+from tests.st_files import aim_st_files
 from tests.tuning_tables.aim.hard_questions import hard_questions, sample_set
 from tests.tuning_tables.st.conftest import texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Array, Kind, Record, Scalar, Value
 from tuning_tables import ControllerTable
 from tuning_tables.aim.golden_aims import golden_selections
-from tuning_tables.aim.st_source import aim_st_files
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.st_source import TABLE_FILE

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from tests.controller_code.weighed_cuts import SAMPLES, TARGET_M_S, braked_by, weighed_book, weighed_cuts
+from tests.st_files import st_files
 from tests.tuning_tables.st.evaluator import Program
-from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.st_source import TABLE_FILE
 
 PAGE = Path(__file__).parents[3] / "docs" / "reference" / "structured-text.md"
 CUTS = 300

@@ -14,6 +14,7 @@ import pytest
 from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, BEGIN, ON, PAIR, Rows, asked, right
 from tests.effort import FEW, MANY, QUESTIONS, every
+from tests.st_files import passage_st_files
 from tests.tuning_tables.st.compiler import ASKED_UNDER, Compiler, name_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault
@@ -23,11 +24,7 @@ from tuning_tables.language.records import st_name
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
-from tuning_tables.passages.st_source import (
-    SELF_TEST_FILE,
-    TABLE_FILE,
-    passage_st_files,
-)
+from tuning_tables.passages.st_source import SELF_TEST_FILE, TABLE_FILE
 from tuning_tables.programs.tracker import TRACKER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from tests.controller_code.test_reexports import AFTER, BEFORE, FIXED, book, commands
+from tests.st_files import st_files
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.test_line_rules import select
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import SMALL
-from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.st_source import TABLE_FILE
 
 
 def program_of(categories: tuple[str, ...]) -> Program:

@@ -12,6 +12,7 @@ from typing import Final
 import pytest
 
 from tests.controller_code.passage_tables import passage_table
+from tests.st_files import aim_st_files, correction_st_files, passage_st_files, st_files
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
 from tests.tuning_tables.st.conftest import oddly_named_book, shaped_book
 from tests.tuning_tables.st.evaluator import Program
@@ -19,15 +20,13 @@ from tests.tuning_tables.st.exported_forms import FORMS
 from tests.tuning_tables.st.syntax import faults, parse, walk
 from tuning_tables import InvalidTable, st_source
 from tuning_tables.aim import AimTables
-from tuning_tables.aim.st_source import aim_st_files
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.passages import st_source as passage_st_source
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_export, passage_st_files
+from tuning_tables.passages.st_source import passage_export
 from tuning_tables.self_test_size import SMALL
-from tuning_tables.st_correction import correction_st_files
-from tuning_tables.st_source import line_export, st_files
+from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
 
 # Keywords, operators of instruction lists, standard functions and blocks, and words that single systems reserve.

@@ -7,13 +7,14 @@ import re
 import pytest
 
 from tests.controller_code.sample_book import estimating_book, park_book
+from tests.st_files import st_files
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.syntax import faults, parse
 from tests.tuning_tables.st.test_self_test import MOST_CALLS
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.plc_forms.iec import Layout, part_files, unit_files
 from tuning_tables.self_test_size import SMALL, SelfTestSize
-from tuning_tables.st_source import line_export, st_files
+from tuning_tables.st_source import line_export
 
 POSITIONS = {"BUNCH": estimating_book(), "PARK": park_book()}
 

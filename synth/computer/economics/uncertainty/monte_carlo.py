@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
 from synth.computer.economics.uncertainty.model import (
     Evaluations,
@@ -24,7 +23,6 @@ from synth.frame.interval import Interval
 Floats = NDArray[np.float64]
 
 QUANTILES = (0.05, 0.5, 0.95)
-FEWEST_DRAWS = 100
 
 
 @frozen_arrays
@@ -66,7 +64,6 @@ def drawn(model: Model, ranges: Ranges, draws: int = 10_000, seed: int = 18) -> 
 
     Draws of an input depend on its name and the seed alone: another input more leaves them as they are.
     """
-    require(draws >= FEWEST_DRAWS, f"draws is {draws}; intervals of quantiles take {FEWEST_DRAWS} or more")
     p = {
         name: np.random.default_rng((seed, zlib.crc32(name.encode()))).random(draws) for name in uncertain(ranges)
     }  # fmt: skip

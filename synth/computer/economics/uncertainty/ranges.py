@@ -32,9 +32,6 @@ class Constant:
 
     value: float
 
-    def __post_init__(self) -> None:
-        require(math.isfinite(self.value), f"the input is {self.value!r}; it must be a finite number")
-
     def quantile(self, p: Floats) -> Floats:
         """`value`."""
         return np.full_like(p, self.value)

@@ -13,8 +13,6 @@ from synth.computer.economics.uncertainty.ranges import Constant, Range
 
 Floats = NDArray[np.float64]
 
-MOST_POINTS = 1 << 20
-
 
 @dataclass(frozen=True)
 class SobolIndex:
@@ -61,10 +59,6 @@ def sobol_of(
     """
     from scipy.stats import sobol_indices  # start-up: scipy only where it is needed
 
-    require(
-        2 <= points <= MOST_POINTS and points & (points - 1) == 0,
-        f"points is {points}; Sobol points are a power of 2 from 2 to {MOST_POINTS}",
-    )
     names = uncertain(ranges)
     constants = {name: each.value for name, each in ranges.items() if isinstance(each, Constant)}
     random = np.random.default_rng(seed)

@@ -6,7 +6,6 @@ import math
 
 import pytest
 
-from plant_models.errors import PlantError
 from synth.computer.economics.pay_back import pay_back, yearly_effect
 
 
@@ -64,12 +63,3 @@ def test_without_an_investment() -> None:
     found = pay_back(-5.0, -1.0)
     assert found.years is None
     assert "5 less, but 1 more each year" in found.statement
-
-
-def test_impossible_inputs() -> None:
-    with pytest.raises(PlantError, match="normative_efficiency_per_year is 12"):
-        yearly_effect(1.0, 1.0, 12.0, 0.0)
-    with pytest.raises(PlantError, match="interest_per_year is -1"):
-        pay_back(1.0, 1.0, -1.0)
-    with pytest.raises(PlantError, match="investment is nan"):
-        pay_back(math.nan, 1.0)

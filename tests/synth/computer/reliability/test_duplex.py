@@ -62,31 +62,6 @@ def test_the_print_by_hand() -> None:
     assert float(Duplex(1e-6, 1.0).availability(24.0)) == pytest.approx(1.0, abs=1e-6)
 
 
-def test_limits() -> None:
-    """Without failures 1; without checks the pair of the textbook; never shorter than its check: one alone."""
-    assert float(Duplex(1e-12, 1.0).availability(24.0)) == pytest.approx(1.0, abs=1e-11)
-    x = 0.01 * 24.0
-    pair = (2.0 * (1.0 - np.exp(-x)) - 0.5 * (1.0 - np.exp(-2.0 * x))) / x
-    assert float(Duplex(0.01, 0.0).availability(24.0)) == pytest.approx(pair, rel=1e-13)
-    small = 1.0 - float(Duplex(1e-4, 0.0).availability(10.0))
-    assert small == pytest.approx((1e-4 * 10.0) ** 2 / 3.0, rel=1e-3)
-    assert float(Duplex(0.01, 2.0).availability(2.0)) == pytest.approx((1.0 - np.exp(-0.02)) / 0.02)
-
-
-@given(st.floats(1e-5, 1.0), st.floats(0.0, 10.0), st.floats(1e-3, 500.0), st.floats(1.01, 3.0))
-def test_availability_falls_with_failures_checks_and_periods(
-    rate: float, check: float, more: float, factor: float
-) -> None:
-    assume(factor * rate * check <= LONGEST_CHECK)
-    period = check + more
-    share = float(Duplex(rate, check).availability(period))
-    assert 0.0 <= share <= 1.0
-    assert float(Duplex(factor * rate, check).availability(period)) <= share + 1e-12
-    assert float(Duplex(rate, 0.5 * check).availability(period)) >= share - 1e-12
-    assert float(Duplex(rate, check).availability(factor * period)) <= share + 1e-12
-    assert share >= float(single_availability(rate, check, period)) - 1e-12
-
-
 @given(st.floats(1e-4, 0.1), st.floats(0.0, 2.0), st.floats(0.3, 0.99999))
 def test_the_longest_period_just_keeps_the_availability(rate: float, check: float, required: float) -> None:
     duplex = Duplex(rate, check)
@@ -115,15 +90,6 @@ def test_a_single_computer_by_hand_and_simulated() -> None:
     assert abs(ready.mean() - shares[0]) < 3.9 * ready.std() / np.sqrt(n)
 
 
-def test_impossible_values_are_refused() -> None:
-    for rate in (0.0, -1.0):
-        with pytest.raises(PlantError, match="duplex: failure_per_h"):
-            Duplex(rate, 1.0)
-    with pytest.raises(PlantError, match="check_h is -1"):
-        Duplex(0.01, -1.0)
-    with pytest.raises(PlantError, match="no shorter than check_h"):
-        Duplex(0.01, 2.0).availability(1.0)
-    with pytest.raises(PlantError, match="must lie between 0 and 1"):
-        Duplex(0.01, 2.0).longest_period_h(1.0)
+def test_an_availability_that_no_period_keeps_is_refused() -> None:
     with pytest.raises(PlantError, match=r"allow 0\.990066335 at most"):
         Duplex(0.01, 2.0).longest_period_h(0.999)

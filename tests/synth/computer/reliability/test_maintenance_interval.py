@@ -10,29 +10,25 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.special import lambertw
 
-from plant_models import PlantError
-from synth.computer.reliability.maintenance_interval import (
-    CalendarHours,
-    CheckedComputer,
-    Counted,
-    UsefulHours,
-    WorkingHours,
-    small_rate_interval_h,
-)
+from synth.computer.reliability.maintenance_interval import CheckedComputer
 
 COMPUTER = CheckedComputer(failure_per_h=0.01, check_h=0.25, manual_price_per_h=0.2, unnoticed_price_per_h=2.0)
-ALL: tuple[Counted, ...] = (UsefulHours(), WorkingHours(), CalendarHours())
 computers = st.builds(
     CheckedComputer, st.floats(1e-5, 1.0), st.floats(0.01, 5.0), st.floats(0.01, 5.0), st.floats(0.05, 5.0)
 )
 
 
-@pytest.mark.parametrize(("counted", "interval_h"), tuple(zip(ALL, (2.2278, 2.2529, 2.0142), strict=True)))
-def test_the_best_interval_is_the_minimum_of_a_grid(counted: Counted, interval_h: float) -> None:
+def losses(computer: CheckedComputer, interval_h: np.ndarray) -> tuple[tuple[float, np.ndarray], ...]:
+    """Both best intervals, each with the loss that it makes least: for an hour of use, for one of the calendar."""
+    per_use = computer.cycle_loss(interval_h) / computer.ready_h(interval_h)
+    return (computer.best_useful_h, per_use), (computer.best_calendar_h, computer.loss_per_year(interval_h))
+
+
+def test_the_best_interval_is_the_minimum_of_a_grid() -> None:
     grid = np.arange(0.5, 6.0, 1e-4)
-    best = counted.best_interval_h(COMPUTER)
-    assert best == pytest.approx(grid[COMPUTER.loss_per_h(grid, counted).argmin()], abs=1e-4)
-    assert best == pytest.approx(interval_h, abs=1e-4)
+    for (best, loss), interval_h in zip(losses(COMPUTER, grid), (2.2278, 2.0142), strict=True):
+        assert best == pytest.approx(grid[loss.argmin()], abs=1e-4)
+        assert best == pytest.approx(interval_h, abs=1e-4)
 
 
 @given(computers)
@@ -42,34 +38,14 @@ def test_the_best_interval_is_that_of_the_lambert_function(computer: CheckedComp
     assume(c > 1e-6)  # nearer to its branch point the function has no digits left
     useful = -lambertw(-np.exp(-(1.0 + c)), -1).real - 1.0 - c
     tolerance = 1e-13 / c
-    assert rate * UsefulHours().best_interval_h(computer) == pytest.approx(useful, rel=tolerance)
-    for counted, more in ((WorkingHours(), 0.0), (CalendarHours(), m)):
-        best = counted.best_interval_h(computer)
-        if c >= 1.0 + more:
-            assert best == np.inf
-            continue
-        assume(1.0 + more - c > 1e-6)
-        tolerance = 1e-13 / c + 1e-13 / (1.0 + more - c)
-        cycle = -lambertw(-(1.0 + more - c) * np.exp(-(1.0 + more)), -1).real - 1.0 - more
-        assert rate * best == pytest.approx(cycle, rel=tolerance)
-
-
-@given(computers, st.floats(0.2, 5.0))
-def test_no_other_interval_loses_less(computer: CheckedComputer, factor: float) -> None:
-    for counted in ALL:
-        best = counted.best_interval_h(computer)
-        if np.isfinite(best):
-            least, other = computer.loss_per_h(np.array([best, factor * best]), counted)
-            assert least <= other * (1.0 + 1e-9)
-
-
-def test_all_intervals_become_that_of_small_rates() -> None:
-    rare = replace(COMPUTER, failure_per_h=1e-6)
-    expected = np.sqrt(2.0 * 0.25 * 0.2 / (1e-6 * 2.0))
-    assert small_rate_interval_h(rare) == pytest.approx(expected)
-    for counted in ALL:
-        assert counted.best_interval_h(rare) == pytest.approx(expected, rel=2e-3)
-    assert small_rate_interval_h(COMPUTER) == pytest.approx(2.236, abs=5e-4)
+    assert rate * computer.best_useful_h == pytest.approx(useful, rel=tolerance)
+    if c >= 1.0 + m:
+        assert computer.best_calendar_h == np.inf
+        return
+    assume(1.0 + m - c > 1e-6)
+    tolerance = 1e-13 / c + 1e-13 / (1.0 + m - c)
+    cycle = -lambertw(-(1.0 + m - c) * np.exp(-(1.0 + m)), -1).real - 1.0 - m
+    assert rate * computer.best_calendar_h == pytest.approx(cycle, rel=tolerance)
 
 
 def test_losses_are_those_of_simulated_cycles() -> None:
@@ -79,18 +55,10 @@ def test_losses_are_those_of_simulated_cycles() -> None:
     for interval in (0.5, 2.0, 10.0, 60.0):
         ready = np.minimum(life, interval)
         loss = 2.0 * (interval - ready) + 0.2 * 0.25
-        for counted, hours in zip(ALL, (ready, np.full(n, interval), np.full(n, interval + 0.25)), strict=True):
-            residual = loss - float(computer.loss_per_h(interval, counted)) * hours
-            assert abs(residual.mean()) < 3.9 * residual.std() / np.sqrt(n), (interval, counted)
-
-
-def test_the_best_interval_is_that_of_simulated_cycles() -> None:
-    """The same lives for all intervals of a grid: the minimum lies within a few steps of it."""
-    life = np.random.default_rng(3).exponential(100.0, 400_000)
-    grid = np.linspace(1.6, 3.0, 29)
-    ready = np.array([np.minimum(life, x).mean() for x in grid])
-    found = grid[((2.0 * (grid - ready) + 0.05) / ready).argmin()]
-    assert UsefulHours().best_interval_h(COMPUTER) == pytest.approx(found, abs=0.3)
+        per_use, per_year = (float(told[0]) for _, told in losses(computer, np.array([interval])))
+        for told, hours in ((per_use, ready), (per_year / 8760.0, np.full(n, interval + 0.25))):
+            residual = loss - told * hours
+            assert abs(residual.mean()) < 3.9 * residual.std() / np.sqrt(n), interval
 
 
 def test_the_print_has_no_root() -> None:
@@ -103,28 +71,21 @@ def test_the_print_has_no_root() -> None:
 def test_the_equation_needs_the_duration_of_the_check() -> None:
     """The same computer in minutes: with τ the interval is the same time, without it, as printed, another one."""
     minutes = CheckedComputer(0.01 / 60.0, 0.25 * 60.0, 0.2 / 60.0, 2.0 / 60.0)
-    for counted in ALL:
-        assert counted.best_interval_h(minutes) == pytest.approx(60.0 * counted.best_interval_h(COMPUTER), rel=1e-9)
+    assert minutes.best_useful_h == pytest.approx(60.0 * COMPUTER.best_useful_h, rel=1e-9)
+    assert minutes.best_calendar_h == pytest.approx(60.0 * COMPUTER.best_calendar_h, rel=1e-9)
     without_h, without_min = (np.sqrt(2.0 * 0.1 / rate) for rate in (0.01, 0.01 / 60.0))
     assert without_min / without_h == pytest.approx(np.sqrt(60.0))
 
 
 def test_where_a_check_costs_too_much_none_pays() -> None:
     dear = replace(COMPUTER, failure_per_h=1.0, check_h=4.0, manual_price_per_h=3.0)
-    assert WorkingHours().best_interval_h(dear) == CalendarHours().best_interval_h(dear) == np.inf
+    assert dear.best_calendar_h == np.inf
     x = np.array([1.0, 10.0, 100.0, 1e4])
-    assert (np.diff(dear.loss_per_h(x, CalendarHours())) < 0.0).all()
-    assert np.isfinite(UsefulHours().best_interval_h(dear))
+    assert (np.diff(dear.loss_per_year(x)) < 0.0).all()
+    assert np.isfinite(dear.best_useful_h)
 
 
 def test_loss_of_a_year() -> None:
     """By hand: 8760·(2·(x − G) + 0.05)/(x + 0.25) at x = 2."""
     ready = (1.0 - np.exp(-0.02)) / 0.01
     assert float(COMPUTER.loss_per_year(2.0)) == pytest.approx(8760.0 * (2.0 * (2.0 - ready) + 0.05) / 2.25)
-
-
-def test_impossible_values_are_refused() -> None:
-    for key in vars(COMPUTER):
-        for value in (0.0, -1.0, float("nan")):
-            with pytest.raises(PlantError, match=f"maintenance interval: {key} is"):
-                replace(COMPUTER, **{key: value})

@@ -14,7 +14,7 @@ from plant_models import PlantError
 from synth.computer.reliability.duplex import Duplex
 from synth.computer.reliability.failure_losses import HourPrices, yearly_loss
 from synth.computer.reliability.four_states import FourStates, StateShares
-from synth.computer.reliability.maintenance_interval import CheckedComputer, UsefulHours
+from synth.computer.reliability.maintenance_interval import CheckedComputer
 
 UNNOTICED_K_RUB_PER_H = 5.0
 """S1, the upper end of the source."""
@@ -51,10 +51,10 @@ def test_the_chain_gives_about_twice_that_for_the_same_rate_of_checks() -> None:
 
 def test_two_to_three_hours_need_a_check_worth_of_half_a_minute() -> None:
     """x = 2.5 h is the best interval only if τSc/S1 = λx²/2 = 0.0075 h; with Sc/S1 of 0.1, τ is 4.5 min."""
-    worth_h = brentq(lambda w: UsefulHours().best_interval_h(checked(w)) - INTERVAL_H, 1e-5, 1.0, xtol=1e-12)
+    worth_h = brentq(lambda w: checked(w).best_useful_h - INTERVAL_H, 1e-5, 1.0, xtol=1e-12)
     assert worth_h == pytest.approx(FAILURE_PER_H * INTERVAL_H**2 / 2.0, rel=0.005)
     assert worth_h == pytest.approx(0.0075, abs=5e-5)
-    ends = [UsefulHours().best_interval_h(checked(w)) for w in (0.0048, 0.0108)]
+    ends = [checked(w).best_useful_h for w in (0.0048, 0.0108)]
     np.testing.assert_allclose(ends, [2.0, 3.0], rtol=0.005)
 
 

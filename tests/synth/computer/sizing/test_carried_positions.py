@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from plant_models.errors import PlantError
-from synth.computer.sizing.call_costs import CallCosts, c_costs, st_costs
+from synth.computer.sizing.call_costs import c_costs, st_costs
 from synth.computer.sizing.carried_positions import (
     MOST_POSITIONS,
     PositionTimes,
@@ -25,7 +24,6 @@ from synth.computer.sizing.trackside_controllers import (
     plc,
     usual_controllers,
 )
-from synth.frame.settings.changed import changed
 
 DOCS = Path(__file__).parents[4] / "docs"
 
@@ -117,21 +115,3 @@ def test_an_overloaded_processor_never_answers() -> None:
 def test_a_very_fast_controller_stops_the_search() -> None:
     fast = replace(industrial_pc(), clock_hz=1e15, latency_s=0.0)
     assert most_positions(fast, PositionTimes()) == MOST_POSITIONS
-
-
-def test_the_checksums_are_for_the_start() -> None:
-    instructions = c_costs().intact
-    assert instructions is not None
-    assert cortex_m4().start_s(15) == pytest.approx(15 * instructions * 1.5 * 2.0 / 168e6)
-    assert plc().start_s(15) is None
-
-
-def test_impossible_values_are_refused() -> None:
-    with pytest.raises(PlantError, match=r"clock_hz is 0\.0"):
-        replace(cortex_m4(), clock_hz=0.0)
-    with pytest.raises(PlantError, match="decide is -1"):
-        CallCosts(1, -1, 0, 0, None, "")
-    with pytest.raises(PlantError, match="positions is 0"):
-        carried(cortex_m4(), PositionTimes(), 0)
-    with pytest.raises(PlantError, match=r"answer_s is 0\.0"):
-        changed(PositionTimes(), answer_s=0.0)

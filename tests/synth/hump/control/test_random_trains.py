@@ -73,13 +73,6 @@ def test_without_counters_points_are_thrown_under_cuts(monkeypatch: pytest.Monke
     assert total(Scene(faults=3))["thrown under"] > 0
 
 
-@pytest.mark.long
-def test_without_the_fouling_rule_points_are_thrown_beside_cuts() -> None:
-    scene = SCENES["stalled, published model, points"]
-    assert sum(len(list(random_humping(seed, scene).thrown_beside())) for seed in range(120)) > 0
-    assert total(scene)["thrown beside"] == 0  # it is not asked for there
-
-
 def test_cuts_stall_in_the_trains_and_objects_never_overlap() -> None:
     stalled = stood = 0
     for seed in range(40):

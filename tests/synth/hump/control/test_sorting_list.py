@@ -135,12 +135,6 @@ def sentences(text: str) -> tuple[str, ...]:
     return ()
 
 
-@given(st.text(max_size=60))
-def test_any_text_is_a_list_or_told_in_sentences(text: str) -> None:
-    for content in (text, HEAD + text, HEAD + "1,1,4," + text):
-        assert all(sentence.startswith("train.csv: ") and len(sentence) < 400 for sentence in sentences(content))
-
-
 def test_a_file_that_is_none_is_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no such file"):
         load_sorting_list(tmp_path / "none.csv")

@@ -7,7 +7,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from plant_models.hump import TrackSection
 from plant_models.library.catalogue import load_car, load_weight_categories
@@ -37,8 +36,6 @@ from tests.synth.hump.trains.asked_cuts import (
 )
 from tuning_tables.aim import AimAxes
 from tuning_tables.aim.held_aim import aim_grid
-
-Floats = NDArray[np.float64]
 
 CATEGORIES = load_weight_categories()
 MIX = CarMix((MixedCar(load_car("gondola-4").car, 0.7, 11.6), MixedCar(load_car("tank-4").car, 0.3, 9.0)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -59,31 +58,10 @@ def figures(humped: HumpedTrains, trace: TrainTrace, found: TrainOutcomes) -> di
     }
 
 
-def test_the_title_of_a_hump_may_have_any_letters(humped: HumpedTrains) -> None:
-    entry = replace(humped.entry, title="".join(map(chr, range(0x20, 0x7F))) + r" a $\frac{1}$ b $x^$")
-    assert draw(catch_ups(entry, {}, 1))
-
-
 def texts(figure: Figure) -> list[Text]:
     """Every text of a figure."""
     inside = [part for axes in figure.axes for part in axes.get_children() if isinstance(part, Text)]
     return [text for text in (*figure.texts, *inside) if text.get_text()]
-
-
-@pytest.mark.long
-def test_pictures_repeat_to_the_byte(humped: HumpedTrains, trace: TrainTrace, found: TrainOutcomes) -> None:
-    def once() -> list[object]:
-        counts = by_element(humped.hump.routes, found.contact)
-        pictures = (
-            catch_ups(humped.entry, counts, TRAINS * CUTS, "contacts"),
-            couplings(found),
-            time_path(trace),
-            speed_path(trace, CATEGORY_TYPES),
-            hump_speed_program(pushed(trace)),
-        )
-        return [draw(picture) for picture in pictures]
-
-    assert once() == once()
 
 
 def test_no_text_leaves_a_figure(figures: dict[str, Figure]) -> None:

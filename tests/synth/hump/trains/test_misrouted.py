@@ -21,7 +21,6 @@ from tests.synth.hump.trains.made_trials import GivenHead
 from tests.synth.hump.trains.rolling_cuts import route_rolling
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 TRAINS, CUTS = 40, 2
 SPEED_M_S = 2.4

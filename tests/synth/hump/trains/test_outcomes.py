@@ -6,7 +6,6 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from plant_models.library import load_hump
 from synth.hump.configuration.settings import TracksSettings
@@ -25,8 +24,6 @@ from synth.hump.trains.train_memory import TrainMemory
 from tests.plant_models.rolling.populations import population
 from tests.synth.hump.trains.bare_cuts import LEAD, BareTrains, one_switch
 from tests.synth.hump.trains.made_trials import Day
-
-Floats = NDArray[np.float64]
 
 LENGTH_M = np.array([[14.0, 28.0, 14.0, 14.0, 42.0, 14.0]])
 NONE, SWITCH, BRAKE = 2, 0, 1

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from synth.hump.trains.coupling_on_track import OnTrack, contact_on_track
 from synth.hump.trains.motion import Cars, Moving
 from synth.hump.trains.standing_cars import StandingCars
 from tests.synth.hump.trains.bare_cuts import GRAVITY_M_S2, EvenFall
-
-Floats = NDArray[np.float64]
 
 LENGTH_M = 14.0
 

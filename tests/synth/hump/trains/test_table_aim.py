@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from plant_models.hump import Retarder
-from synth.aim.aim_book import aim_book
 from synth.frame.input_error import InputError
 from synth.frame.results_directory import results_directory
 from synth.hump.configuration.trial_file import parse_trial_file
@@ -23,7 +22,6 @@ from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.shown.positions import aim_rows
 from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.stretch_reading import ReadOnStretch
-from synth.hump.trains.train_figures import ratio
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.trial_inputs import write_inputs
 from synth.simulation.free_roll import rolling_cuts
@@ -33,12 +31,10 @@ from tests.synth.hump.trains.exported_aims import (
     STRETCH_M,
     made_tables,
     medium,
-    resolved_aim,
     written,
 )
 from tests.synth.hump.trains.mixed_cuts import without_padding
 from tests.system.conftest import changed
-from tuning_tables import DamagedTable
 from tuning_tables.aim import ParkPosition, aim_exit_speed
 from tuning_tables.programs.aim_speed import exit_speed
 
@@ -183,24 +179,6 @@ def test_measured_cuts_are_commanded_by_their_reading(tmp_path: Path) -> None:
     assert np.corrcoef(last[alike], ahead[alike])[0, 1] > 3.5 / np.sqrt(alike.sum())
 
 
-@pytest.mark.long
-def test_an_exported_aim_agrees_with_the_one_that_is_designed_for_the_trial(tmp_path: Path) -> None:
-    """Same cuts, same nodes, other draws: same trains come to the same gaps and over-speeds within what 2000 and 4000
-    drawn cuts tell of a quantile; the difference is taken train by train."""
-    light = changed(SMALL, ("most_cars = 3\n", "most_cars = 3\ncategory_shares = { L = 1.0 }\n"), ("= 200", "= 4000"))
-    book = aim_book(resolved_aim(medium(), 0, 4000), "2026-11-22T08:00:00Z", print)
-    written(tmp_path / "aim", [made.table for made in book.tables])
-    place = str(tmp_path / "trial.toml")
-    own, told = (made_trial(resolve_trial(parse_trial_file(light + more, place))) for more in ("", 'tables = "aim"\n'))
-    found, base = told.batch(0, 150), own.batch(0, 150)
-    cuts = base.judged.astype(float)
-    over = ratio((found.overspeed.sum(axis=1) - base.overspeed.sum(axis=1)).astype(float), cuts)
-    gap = ratio(found.gap_m - base.gap_m, cuts)
-    quantile = np.sqrt(0.1 * 0.9 * (1.0 / 4000 + 1.0 / 4000))
-    assert over[1] - 3.0 * quantile < 0.0 < over[2] + 3.0 * quantile
-    assert abs(gap[0]) < 0.03 * base.gap_m.sum() / cuts.sum()
-
-
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -247,14 +225,6 @@ def test_tables_must_list_the_longest_cut_and_be_measured_ahead_of_the_position(
     written(tmp_path / "moved", moved)
     with pytest.raises(InputError, match=r"measured up to 300 m from the crest on the way to track 1, where .* 284 m"):
         resolved(tmp_path, 'tables = "moved"\nknowledge = "measured"\n')
-
-
-def test_a_damaged_table_is_told_as_such(tmp_path: Path) -> None:
-    folder = written(tmp_path / "aim", made_tables(0.6, measured=False))
-    file = folder / "aim-3-category.json"
-    file.write_bytes(file.read_bytes().replace(b"0.012", b"0.013", 1))
-    with pytest.raises(DamagedTable, match="aim-3-category"):
-        resolved(tmp_path, 'tables = "aim"\n')
 
 
 def test_what_tables_are_not_made_for_is_a_warning(tmp_path: Path) -> None:

@@ -7,17 +7,14 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from plant_models import PlantError
 from plant_models.rolling.resistance_law import Tb10062Law
 from plant_models.rolling.weather import Weather
 from synth.hump.configuration.settings import TracksSettings
-from synth.hump.trains.hump_routes import hump_routes
 from synth.hump.trains.hump_speed import pair_by_pair
 from synth.hump.trains.outcomes import TrainOutcomes, joined
-from synth.hump.trains.train_figures import ratio, train_figures
+from synth.hump.trains.train_figures import train_figures
 from synth.hump.trains.trial import Control, Sensing
-from tests.effort import every, sized
-from tests.plant_models.hump.random_humps import random_hump
+from tests.effort import every
 from tests.synth.hump.trains.made_trials import Day
 
 MEASURED = Control(sensing=Sensing(), slow_down_s=0.2)
@@ -108,26 +105,6 @@ def test_all_humps_of_the_library_are_humped(hump: str, lead: int) -> None:
     assert len(names) == len(set(names))
 
 
-HUMPS = sized(50, 150)
-
-
-@pytest.mark.long
-def test_random_humps_are_humped() -> None:
-    """Ways with fewer positions than others, or with none, among them; a hump without any position is refused."""
-    humped, uneven = 0, 0
-    for seed in range(HUMPS):
-        graph = random_hump(seed)
-        routes = hump_routes(graph, graph.leads[0])
-        if routes.positions == 0:
-            with pytest.raises(PlantError, match="hump trial: "):
-                Day(cuts=4).on(graph)
-            continue
-        balanced(Day(cuts=4, control=MEASURED if seed % 2 else Control(False)).on(graph).batch(0, 5))
-        humped, uneven = humped + 1, uneven + (not routes.even)
-    assert humped - uneven >= HUMPS // 50
-    assert uneven > HUMPS // 4
-
-
 def test_a_constant_speed_is_kept() -> None:
     trains, _, memory = Day(constant_m_s=2.5).on().humped(0, 20)
     assert (memory.hump_speed_m_s == 2.5).all()
@@ -149,16 +126,3 @@ def test_a_feedback_only_slows_the_train_down_and_within_what_the_locomotive_can
     gain = np.diff(memory.hump_speed_m_s**2, axis=1)
     assert (gain <= 2.0 * day.acceleration_m_s2 * apart + 1e-9).all()
     assert (gain >= -2.0 * day.acceleration_m_s2 * apart - 1e-9).all()
-
-
-@pytest.mark.long
-def test_at_too_high_a_speed_a_feedback_catches_less() -> None:
-    """The same trains at a speed that is too high: commanded anew they are caught less, and slowed down still less."""
-    caught = {}
-    for name, control in (("open", Control(False)), ("closed", Control()), ("slowed", Control(slow_down_s=0.5))):
-        day = Day(cuts=25, std_m_s=0.4, constant_m_s=3.2, control=control)
-        caught[name] = day.on().batch(0, 60).caught
-    base = np.full(60, 25.0)
-    for better, worse in (("closed", "open"), ("slowed", "closed")):
-        _, _, high = ratio((caught[better] - caught[worse]).astype(float), base)
-        assert high < 0.0, better

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from synth.cli import main
 from synth.hump.configuration.trial_file import parse_trial_file
@@ -34,8 +33,6 @@ from tests.synth.hump.trains.made_trials import Day, GivenHead
 from tests.synth.hump.trains.mixed_cuts import without_padding
 from tests.synth.hump.trains.test_forecast import COUNT, AsTold, single_cuts
 from tests.synth.hump.trains.uneven_humps import OWN_TRACK, SHORT_TRACKS, UNEVEN, routes_of
-
-Floats = NDArray[np.float64]
 
 NAMES = tuple(UNEVEN)
 MEASURED = Control(sensing=Sensing(), slow_down_s=0.2)
@@ -167,25 +164,6 @@ def test_a_cut_rolls_freely_from_its_last_position_to_the_standing_cars(name: st
         assert memory.end_speed_m_s[lane, cut] == pytest.approx(rolled.speed_m_s[0, -1], abs=1e-9)
         seen += 1
     assert seen >= 10
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", NAMES)
-def test_the_aim_of_each_route_keeps_its_probability(name: str, tmp_path: Path) -> None:
-    """Slowly humped, so that hardly any cut is disturbed: over-speeds on short routes are as many as was asked for."""
-    trial = made_on(tmp_path, name, "[hump_speed]\nconstant_m_s = 0.6\n")
-    _, _, memory = trial.humped(0, 250)
-    short = trial.routes.positions_of[memory.route] == 2
-    none = trial.routes.elements
-    free = (memory.misrouted_at == none) & (memory.contact_at == none) & ~memory.caught_on_track
-    first = np.ones(short.shape, dtype=bool)
-    for cut in range(1, 12):  # where another cut rolls ahead, what is free is only expected
-        first[:, cut] = ~(memory.route[:, :cut] == memory.route[:, cut, None]).any(axis=1)
-    judged = short & free & first
-    over = memory.end_speed_m_s[judged] > 5.0 / 3.6
-    chance = np.sqrt(0.1 * 0.9 * (1.0 / judged.sum() + 1.0 / 300))
-    assert judged.sum() > 60
-    assert over.mean() < 0.1 + 3.5 * chance
 
 
 @pytest.mark.parametrize("name", NAMES)

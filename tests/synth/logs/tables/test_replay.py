@@ -118,20 +118,6 @@ def test_measured_exits_are_the_true_ones(replayed: list[Replay], assumed: Yard)
     assert 0.8 < innovation.std() < 1.3
 
 
-@pytest.mark.long
-def test_ranks_are_uniform_where_the_configuration_is_true_and_not_elsewhere(
-    replayed: list[Replay], assumed: Yard, worn: Yard
-) -> None:
-    from scipy.stats import kstest
-
-    ranks = np.concatenate([found.rank for found in replayed])
-    assert len(ranks) == PASSES * REPETITIONS
-    assert kstest(ranks, "uniform").pvalue > 0.01
-    wrong = fitted(assumed, log_of(worn, assumed.tables[CASE], 5, 500))
-    own = [assumed.tables[CASE]]
-    assert replay(wrong, assumed.config, ReplayOrder(own, own, 32)).uniformity.p_value < 1e-3
-
-
 def test_passes_whose_table_cannot_be_told_are_listed(assumed: Yard) -> None:
     log = log_of(assumed, assumed.tables[CASE], 3, 6)
     target, by_hand = log.target_m_s.copy(), log.stopped_by_hand.copy()

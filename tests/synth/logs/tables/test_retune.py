@@ -26,7 +26,7 @@ from tuning_tables import ControllerTable, from_json, read_book, write_book
 from tuning_tables.pass_log.log_files import write_log
 from tuning_tables.pass_log.pass_log import PassLog
 
-from .conftest import CREATED, KNOWN_MEAN, TEXT, Yard
+from .conftest import COARSE, CREATED, KNOWN_MEAN, TEXT, Yard
 
 CASES = [("LS-1", 3.0), ("S-1", 3.0)]
 
@@ -108,7 +108,7 @@ def test_what_a_log_gave_is_not_offered_again(
 def test_a_replay_of_the_own_tables_commands_what_they_did(assumed: Yard, tmp_path: Path) -> None:
     write_log(log_of(assumed, assumed, 3), tmp_path / "log.h5")
     write_book(tuple(assumed.tables.values()), tmp_path / "old.h5")
-    (tmp_path / "c.toml").write_text(TEXT)
+    (tmp_path / "c.toml").write_text(TEXT + COARSE)
     words = ["--table", str(tmp_path / "old.h5"), "--config", str(tmp_path / "c.toml")]
     assert main(["replay", str(tmp_path / "log.h5"), *words, "--own", words[1], "-o", str(tmp_path / "again")]) == 0
     told = json.loads((tmp_path / "again" / "summary.json").read_text())
