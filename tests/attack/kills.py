@@ -120,7 +120,7 @@ def judged(output: Path, ended: Ended, whole: Mapping[str, bytes], by: str) -> I
     is_whole = ended.err.endswith("\n")  # it is a file, too, which the disk may have been too full for
     if ended.code == 74 and is_whole and ": " not in ended.err.splitlines()[-1].removeprefix("retarder-synth: "):
         yield f"no file is named: {ended.err[-300:]!r}"
-    if ended.code == 130 and "interrupted" not in ended.err.splitlines()[-1]:
+    if ended.code == 130 and "interrupted" not in (ended.err.splitlines() or [""])[-1]:
         yield f"its last line is {ended.err[-300:]!r}"
     if "Traceback" in ended.err:
         yield ended.err[-600:]

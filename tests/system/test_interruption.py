@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from synth.cli import main
 from synth.frame.held_directory import LOCK
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import LEFTOVER
@@ -178,3 +179,14 @@ def command_of(pid: int) -> bytes:
         return Path(f"/proc/{pid}/cmdline").read_bytes()
     except OSError:
         return b""
+
+
+def test_ctrl_c_before_the_work_begins_is_told(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(*_: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("synth.cli.hump.check_command", interrupted)
+    assert main(["hump", "check", "medium"]) == 130
+    assert capsys.readouterr().err == "retarder-synth: interrupted\n"
