@@ -8,6 +8,7 @@ command imports what it needs.
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import os
 import sys
@@ -28,6 +29,11 @@ from synth.frame.terminal.telling import (
     say_each,
 )
 
+M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
+"""Names of settings of memory in glibc's malloc.h."""
+
+MIB = 2**20
+
 TRACEBACK = "RETARDER_SYNTH_TRACEBACK"
 """Name of the environment variable that has the traceback of an unforeseen fault printed."""
 
@@ -38,7 +44,18 @@ def script() -> NoReturn:
     What it loads is there to stay, so Python need not look for garbage in it all the time.
     """
     gc.set_threshold(100_000)
+    keep_freed_memory()
     leave(main())
+
+
+def keep_freed_memory() -> None:
+    """Have glibc keep the memory of freed arrays for the next ones; another C library is left alone.
+
+    By itself it gives large arrays back at once, and fetches the next ones page by page from the system.
+    """
+    if (mallopt := getattr(ctypes.CDLL(None), "mallopt", None) if sys.platform == "linux" else None) is not None:
+        mallopt(M_MMAP_THRESHOLD, 32 * MIB)
+        mallopt(M_TRIM_THRESHOLD, 512 * MIB)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
