@@ -92,7 +92,7 @@ class Corpus:
                 aside = place.with_suffix(".making")
                 aside.write_bytes(pickle.dumps(make()))
                 aside.rename(place)
-        found: Value = pickle.loads(place.read_bytes())  # noqa: S301  # written by this run of the tests
+        found: Value = pickle.loads(place.read_bytes())  # written by this run of the tests
         return found
 
     def _make(self, recipe: Recipe, place: Path) -> None:
