@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -79,10 +80,14 @@ def test_files_without_kernels_leave_the_fingerprint_alone(checkout: Path, name:
 def test_a_system_that_does_not_name_its_processor_has_a_fingerprint(
     checkout: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def no_such_file(path: Path, **_: object) -> str:
-        raise FileNotFoundError(2, "No such file or directory", str(path))
+    read_text = Path.read_text
 
-    monkeypatch.setattr(Path, "read_text", no_such_file)
+    def without_processor(path: Path, *words: Any, **named: Any) -> str:
+        if path == Path("/proc/cpuinfo"):
+            raise FileNotFoundError(2, "No such file or directory", str(path))
+        return read_text(path, *words, **named)
+
+    monkeypatch.setattr(Path, "read_text", without_processor)
     assert len(kernel_fingerprint(checkout)) == 16
 
 

@@ -118,7 +118,7 @@ def test_the_tables_validate_against_the_configuration_with_own_types(
 
 def test_compiled_c_decides_and_chooses_as_python(book: TableBook, tmp_path: Path, tool: Callable[[str], str]) -> None:
     tool("gcc")
-    questions = ask(book, 10_000, 2_000, 20261122)
+    questions = ask(book, 20_000, 2_000, 20261122)
     assert differences(build_controller(book, tmp_path), questions, follow(book, 1_000, 20261122)).none
 
 

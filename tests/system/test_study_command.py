@@ -64,7 +64,7 @@ def test_a_run_leaves_its_files(tmp_path: Path, capsys: pytest.CaptureFixture[st
     result = read_result(study, tmp_path / "interpolation.json")
     assert capsys.readouterr().out == result.json()
     assert (tmp_path / "interpolation.md").read_text(encoding="utf-8") == result.markdown()
-    assert {Path(name).suffix for name in results_in(tmp_path)} == {".json", ".md", ".svg"}
+    assert {Path(name).suffix for name in results_in(tmp_path)} == {".json", ".md"}
 
 
 def test_the_product_alone_says_where_studies_are(tmp_path: Path) -> None:

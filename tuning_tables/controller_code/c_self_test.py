@@ -85,7 +85,7 @@ def c_test_source(code: ControllerCode) -> str:
     checks = [line for place, each in enumerate(code.questions) for line in asking(code, place, each)]
     return "\n".join(
         [
-            f"/* Self-test of retarder_{code.stem}.c. {generated()} See retarder_{stem}.h. */",
+            *c_comment(f"Self-test of retarder_{code.stem}.c. {generated()} See retarder_{stem}.h."),
             f'#include "retarder_{stem}.h"',
             "",
             *same_export(code),
