@@ -30,7 +30,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "book",
         "How accurate are the tables of the default book?",
-        8.0,
+        16.0,
         "reference/results.md",
         "scripts.studies.book",
         "scripts.studies.book_picture",
@@ -210,7 +210,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "time-price",
         "What does less time in a position cost in accuracy?",
-        120.0,
+        51.0,
         "explanation/choices.md#time",
         "scripts.studies.time_price.study",
         "scripts.studies.time_price.picture",

@@ -23,7 +23,7 @@ YARD_STUDIES: tuple[Study, ...] = (
     Study(
         "control-computer",
         "How fast and how reliable must the control computer be, what does it pay, and which controller does it today?",
-        500.0,
+        110.0,
         "how-to/control-computer.md",
         "scripts.studies.control_computer.study",
     ),
