@@ -8,6 +8,7 @@ command imports what it needs.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import gc
 import os
@@ -53,7 +54,10 @@ def keep_freed_memory() -> None:
 
     By itself it gives large arrays back at once, and fetches the next ones page by page from the system.
     """
-    if (mallopt := getattr(ctypes.CDLL(None), "mallopt", None) if sys.platform == "linux" else None) is not None:
+    if sys.platform != "linux":
+        return
+    with contextlib.suppress(AttributeError):  # of a C library that has no such function
+        mallopt = ctypes.CDLL(None).mallopt
         mallopt(M_MMAP_THRESHOLD, 32 * MIB)
         mallopt(M_TRIM_THRESHOLD, 512 * MIB)
 

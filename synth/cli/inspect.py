@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -65,18 +66,27 @@ class Inspected:
     code: Sequence[CodeFile]
     summary: dict[str, Any] | None
 
+    @cached_property
+    def exporters(self) -> tuple[str, ...]:
+        """The programs that wrote the files of the tables."""
+        return exporters_at(self.tables.path)
+
     @property
     def defects(self) -> tuple[Concerned, ...]:
-        """Known ones of the versions that made the tables, or exported the code."""
-        tables = (*self.tables.of_stages, *(file.table for file in self.tables.aims))
-        return concerned(lambda: (*map(told_document, tables), *(each.document for each in self.code)))
+        """Known ones of the versions that made the tables, or exported them or the code."""
+        return concerned(lambda: (*self._told(), *(each.document for each in self.code)))
+
+    def _told(self) -> Iterator[dict[str, Any]]:
+        """The tables, each as every program exported it that wrote one of the files."""
+        for table in (*self.tables.of_stages, *(file.table for file in self.tables.aims)):
+            for exporter in self.exporters or ("",):
+                yield {**told_document(table), "exported_by": exporter}
 
     def document(self) -> dict[str, Any]:
         """It for programs."""
         tables = self.tables
         files = [*map(file_document, tables.files), *map(aim_document, tables.aims)]
-        exporters = [*exporters_at(tables.path)]
-        found: dict[str, Any] = {"path": str(tables.path), "exported_by": exporters, "files": files}
+        found: dict[str, Any] = {"path": str(tables.path), "exported_by": [*self.exporters], "files": files}
         found |= {"passage_tables": [*map(passage_document, tables.passages)]} if tables.passages else {}
         found |= {"code": [*map(code_document, self.code)]} if self.code else {}
         found |= {"known_defects": [each.document for each in self.defects]}
@@ -95,7 +105,7 @@ class Inspected:
             yield from passage_page(each)
         for aim in tables.aims:
             yield from aim_page(aim)
-        yield from (f"{tables.path}: its tables were exported by {name}" for name in exporters_at(tables.path))
+        yield from (f"{tables.path}: its tables were exported by {name}" for name in self.exporters)
         yield from map(code_sentence, self.code)
         if self.summary is not None:
             yield f"{tables.path / 'summary.json'}: {self.summary['sentence']}"

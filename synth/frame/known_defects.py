@@ -41,12 +41,10 @@ class Defect:
     def concerns(self, table: Document) -> bool:
         """Whether a version with this defect made the table, or exported it, as far as that is told."""
         made_by = table.get("generator", {})
-        programs = {
-            MADE: (made_by.get("name"), made_by.get("version")),
-            EXPORTED: tuple(table.get("exported_by", "").split(" ", 1)),
-        }
+        exporter, _, exporting = table.get("exported_by", "").partition(" ")
+        programs = {MADE: (made_by.get("name"), made_by.get("version")), EXPORTED: (exporter, exporting)}
         found = (programs[step] for step in self.steps)
-        return table["kind"] in self.kinds and any(self.is_in(each[1]) for each in found if each[0] == OWN)
+        return table["kind"] in self.kinds and any(self.is_in(version) for name, version in found if name == OWN)
 
     def is_in(self, version: str) -> bool:
         """Whether this version of the program has it; so it is taken where the version is none of ours."""

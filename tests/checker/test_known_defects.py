@@ -15,6 +15,7 @@ from synth.cli import main
 from synth.frame import known_defects
 from synth.frame.known_defects import Defect, release
 from tests.tuning_tables.every_kind import smallest_aim, smallest_lines, smallest_points
+from tuning_tables import document, write_json
 from tuning_tables.document import to_document
 
 MADE_UP = Defect(
@@ -79,6 +80,25 @@ def test_a_defect_concerns_the_versions_that_have_it(
             assert each.concerns(table) == (is_concerned and table["kind"] == kind)
             assert not replace(each, steps=("exported",)).concerns(table)
             assert not each.concerns({**table, "generator": {"name": "another program", "version": made_by}})
+
+
+def test_inspect_warns_of_a_table_by_the_version_that_exported_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with monkeypatch.context() as later:
+        later.setattr(document, "exporter", lambda: "retarder-synth 98.7")
+        write_json(smallest_lines(), tmp_path / "later.json")
+    write_json(smallest_lines(), tmp_path / "now.json")
+    monkeypatch.setattr(
+        known_defects, "known_defects", lambda: (replace(MADE_UP, introduced="98", steps=("exported",)),)
+    )
+    for name in ("later", "now"):
+        assert main(["inspect", str(tmp_path / f"{name}.json")]) == 0
+        assert ("known defect RS-0" in capfd.readouterr().out) == (name == "later")
+
+
+def test_a_program_that_tells_no_version_may_have_any_defect() -> None:
+    assert MADE_UP.concerns({"kind": "lines", "exported_by": "retarder-synth"})
 
 
 @pytest.mark.usefixtures("unsafe")
