@@ -30,7 +30,7 @@ from synth.frame.terminal.telling import (
     say_each,
 )
 
-M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
+M_TRIM_THRESHOLD, M_MMAP_MAX, M_ARENA_MAX = -1, -4, -8
 """Names of settings of memory in glibc's malloc.h."""
 
 MIB = 2**20
@@ -52,13 +52,15 @@ def script() -> NoReturn:
 def keep_freed_memory() -> None:
     """Have glibc keep the memory of freed arrays for the next ones; another C library is left alone.
 
-    By itself it gives large arrays back at once, and fetches the next ones page by page from the system.
+    By itself it gives large arrays back at once, and fetches the next ones page by page from the system; in a thread
+    but the first, it gives back whatever is freed.
     """
     if sys.platform != "linux":
         return
     with contextlib.suppress(AttributeError):  # of a C library that has no such function
         mallopt = ctypes.CDLL(None).mallopt
-        mallopt(M_MMAP_THRESHOLD, 32 * MIB)
+        mallopt(M_MMAP_MAX, 0)
+        mallopt(M_ARENA_MAX, 1)
         mallopt(M_TRIM_THRESHOLD, 512 * MIB)
 
 
