@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.kernels.sweep.bellman import Entrance, Readings, sweep
+from synth.kernels.sweep.bellman import Entrance, sweep
+from synth.kernels.sweep.drawn_lines import Readings
 from synth.kernels.sweep.pass_time import Costs, Prices
 from synth.kernels.vector.packs import EIGHT
 from synth.problem.aim import Aim

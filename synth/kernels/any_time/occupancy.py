@@ -31,25 +31,19 @@ def occupy(policy, chain, factor, extra, heading, here, negligible, keep, met, e
     Outputs: `met`; `exits` (E,) by energy; `totals` (4,): stalled, escaped, changes down, changes up.
     """
     (lines, reading, noise), (records, band, where, way_band) = policy, met
-    (periods, kpa, way, target, share), (entry, entry_way, entry_kpa) = chain.periods, chain.entry
-    stationary, mixing, motion = chain.stationary, chain.mixing, chain.motion
+    (periods, kpa, way, target, share), mixing, motion = chain.periods, chain.mixing, chain.motion
     nodes, modes, levels = lines.shape[1], lines.shape[2], factor.shape[0]
     points, (ways, _, ring, row) = exits.shape[0], heading.shape
     spans = np.zeros((ways, levels, ring, 2), np.int64)
     spans[:, :, :, 0] = points
     moved, scratch = np.zeros((levels, row)), np.zeros((3, row + 2 * ROOM))
     span, chance = np.zeros((modes, 2), np.int64), np.zeros((3, row))
-    reach = max(motion.bands.shape[0], entry.shape[0])
+    reach = max(motion.bands.shape[0], chain.entry[0].shape[0])
     ahead = NodesAhead(np.zeros(reach, np.int64), np.zeros(reach), np.zeros(reach))
     used = 0
     totals[:], exits[:] = 0.0, 0.0
     look_ahead(0, extra, motion, ring, ahead)
-    for r in range(entry.shape[0]):
-        for q in range(levels):
-            for j in range(points):
-                scratch[0, j] = entry[r, j] * stationary[q]
-            shift = ahead.free[r] - entry_kpa * factor[q] * ahead.braking[r]
-            push_row(scratch[0, 1:points], 1, shift, points, heading[entry_way, q, r], spans[entry_way, q, r])
+    enter(chain, factor, ahead, scratch, heading, spans)
     for n in range(nodes):
         look_ahead(n, extra, motion, ring, ahead)
         gather_arrivals(n % ring, points, heading, spans, target, share, here, span, way_band[n], totals)
@@ -81,14 +75,32 @@ def occupy(policy, chain, factor, extra, heading, here, negligible, keep, met, e
                         totals[2 + command // 2] += product(moved[q], chance[command], begin, end)
             for q in range(levels):
                 totals[1] += abs(moved[q, points - 1]) if last == points else 0.0
-    for w in range(ways):
-        for q in range(levels):
-            last_row = heading[w, q, nodes % ring]
-            totals[0] += last_row[0]
-            for j in range(1, points):
-                exits[j] += last_row[j]
-            last_row[:] = 0.0
+    collect_exits(nodes % ring, heading, exits, totals)
     return records
+
+
+@part
+def enter(chain, factor, ahead, scratch, heading, spans):
+    """What enters, by path node and energy, heads for its first sample."""
+    (entry, entry_way, entry_kpa), points = chain.entry, chain.entry[0].shape[1]
+    for r in range(entry.shape[0]):
+        for q in range(factor.shape[0]):
+            for j in range(points):
+                scratch[0, j] = entry[r, j] * chain.stationary[q]
+            shift = ahead.free[r] - entry_kpa * factor[q] * ahead.braking[r]
+            push_row(scratch[0, 1:points], 1, shift, points, heading[entry_way, q, r], spans[entry_way, q, r])
+
+
+@part
+def collect_exits(slot, heading, exits, totals):
+    """Bring what heads for the exit to `exits` (E,), and leave its rows empty."""
+    for w in range(heading.shape[0]):
+        for q in range(heading.shape[1]):
+            row = heading[w, q, slot]
+            totals[0] += row[0]
+            for j in range(1, exits.shape[0]):
+                exits[j] += row[j]
+            row[:] = 0.0
 
 
 @part

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +10,28 @@ from numpy.typing import NDArray
 from synth.kernels.compiling import part, part_inline
 from synth.kernels.loop.lane_places import Floats, Ints
 from synth.kernels.vector import packs
+from tuning_tables.programs.estimate import (
+    BEGUN,
+    BELIEVED,
+    CROSS_COVARIANCE,
+    DOUBTED,
+    EXCESS,
+    EXCESS_COVARIANCE,
+    EXCESS_VARIANCE,
+    FACTOR,
+    FACTOR_COVARIANCE,
+    FACTOR_VARIANCE,
+    PATH_M,
+    READING_M_S,
+    REPEATED,
+    SPEED_M_S,
+    SPEED_VARIANCE,
+    UNSEEN,
+)
 from tuning_tables.programs.motion_filter import (
     LARGEST_EXCESS_M_S2,
     LARGEST_FACTOR,
+    LEAST_EXCESS_M_S2,
     LEAST_FACTOR,
     LEAST_SPEED_M_S,
     LEAST_STEP_M,
@@ -60,6 +79,119 @@ def work_until(table, place, j):
     return drive, brake, j
 
 
+class Filter(NamedTuple):
+    """What the filter knows of a pack of passes: speed, factor and excess, and their covariances."""
+
+    speed: Any
+    factor: Any
+    excess: Any
+    speed_variance: Any
+    factor_covariance: Any
+    excess_covariance: Any
+    factor_variance: Any
+    cross_covariance: Any
+    excess_variance: Any
+
+
+@part_inline
+def filter_of(state, at, begun):
+    """The filter of the states that begin at `at`; where no pass has `begun`, a speed that can be divided by."""
+    return Filter(
+        packs.choose(begun, packs.gather(state, at + SPEED_M_S), ONE), packs.gather(state, at + FACTOR),
+        packs.gather(state, at + EXCESS), packs.gather(state, at + SPEED_VARIANCE),
+        packs.gather(state, at + FACTOR_COVARIANCE), packs.gather(state, at + EXCESS_COVARIANCE),
+        packs.gather(state, at + FACTOR_VARIANCE), packs.gather(state, at + CROSS_COVARIANCE),
+        packs.gather(state, at + EXCESS_VARIANCE),
+    )  # fmt: skip
+
+
+@part_inline
+def predicted(former, table, step, drive, work_at_one):
+    """(filter, speed that the brake takes at a factor of 1) `step` metres on."""
+    speed = former.speed
+    gained = drive - former.excess * step - former.factor * work_at_one
+    mean = packs.greatest((speed + speed + gained / speed) / TWO, LEAST_SPEED_M_S)
+    found = packs.greatest(speed + gained / mean, LEAST_SPEED_M_S)
+    slope, effect, drag = speed / found, work_at_one / mean, step / mean
+    path_part = table.path_variance / packs.greatest(step, LEAST_STEP_M)
+    cross = slope * former.factor_covariance - effect * former.factor_variance - drag * former.cross_covariance
+    excess = slope * former.excess_covariance - effect * former.cross_covariance - drag * former.excess_variance
+    square = slope * former.speed_variance - effect * former.factor_covariance - drag * former.excess_covariance
+    square = slope * square - effect * (cross - effect * path_part) - drag * excess
+    now = Filter(
+        found, former.factor, former.excess, packs.greatest(square, NOUGHT), cross, excess, former.factor_variance,
+        former.cross_covariance, former.excess_variance,
+    )  # fmt: skip
+    return now, effect
+
+
+@part_inline
+def corrected(now, table, v):
+    """The filter once the measured speed `v` is weighed in."""
+    square, cross, excess = now.speed_variance, now.factor_covariance, now.excess_covariance
+    total, innovation = square + table.speed_variance, v - now.speed
+    gain, factor_gain, excess_gain = square / total, cross / total, excess / total
+    factor, added = now.factor + factor_gain * innovation, now.excess + excess_gain * innovation
+    return Filter(
+        packs.greatest(now.speed + gain * innovation, LEAST_SPEED_M_S),
+        packs.least(packs.greatest(factor, LEAST_FACTOR), LARGEST_FACTOR),
+        packs.least(packs.greatest(added, LEAST_EXCESS_M_S2), LARGEST_EXCESS_M_S2),
+        square - gain * square, cross - gain * cross, excess - gain * excess,
+        packs.greatest(now.factor_variance - factor_gain * cross, NOUGHT),
+        now.cross_covariance - factor_gain * excess,
+        packs.greatest(now.excess_variance - excess_gain * excess, NOUGHT),
+    )  # fmt: skip
+
+
+@part_inline
+def keep_filter(state, at, known, anew, v, table, corrects, better, now):
+    """Write the filters of the `known` passes: `better` where a reading `corrects`; begun `anew` with `v`, or `now`."""
+    choose = packs.choose
+    speed = choose(anew, v, choose(corrects, better.speed, now.speed))
+    variance = choose(anew, table.speed_variance, choose(corrects, better.speed_variance, now.speed_variance))
+    factor = choose(corrects, better.factor, now.factor)
+    factor_covariance = choose(corrects, better.factor_covariance, now.factor_covariance)
+    excess_covariance = choose(corrects, better.excess_covariance, now.excess_covariance)
+    factor_variance = choose(corrects, better.factor_variance, now.factor_variance)
+    cross_covariance = choose(corrects, better.cross_covariance, now.cross_covariance)
+    excess_variance = choose(corrects, better.excess_variance, now.excess_variance)
+    packs.scatter(state, at + SPEED_M_S, known, speed)
+    packs.scatter(state, at + FACTOR, known, choose(anew, packs.narrow(packs.eight(1.0)), factor))
+    packs.scatter(state, at + EXCESS, known, choose(anew, NOUGHT, choose(corrects, better.excess, now.excess)))
+    packs.scatter(state, at + SPEED_VARIANCE, known, variance)
+    packs.scatter(state, at + FACTOR_COVARIANCE, known, choose(anew, NOUGHT, factor_covariance))
+    packs.scatter(state, at + EXCESS_COVARIANCE, known, choose(anew, NOUGHT, excess_covariance))
+    packs.scatter(state, at + FACTOR_VARIANCE, known, choose(anew, table.factor_variance, factor_variance))
+    packs.scatter(state, at + CROSS_COVARIANCE, known, choose(anew, NOUGHT, cross_covariance))
+    packs.scatter(state, at + EXCESS_VARIANCE, known, choose(anew, table.excess_variance, excess_variance))
+    return speed, variance
+
+
+@part_inline
+def hear(state, at, there, table, v_m_s):
+    """Take in the readings: (speed, the sensible one before, whether the last was heard, whether this is fresh)."""
+    sensible = (v_m_s >= 0.0) & (v_m_s <= float(LARGEST_SPEED_M_S))
+    v = packs.choose(sensible, packs.narrow(v_m_s), NOUGHT)
+    reading, repeats = packs.gather(state, at + READING_M_S), packs.gather(state, at + REPEATED)
+    was_heard = (packs.gather(state, at + UNSEEN) <= NOUGHT) | (repeats > NOUGHT)
+    repeated = packs.choose(sensible & (v >= reading) & (v <= reading), repeats + ONE, NOUGHT)
+    packs.scatter(state, at + READING_M_S, there, packs.choose(sensible, v, reading))
+    packs.scatter(state, at + REPEATED, there, repeated)
+    return v, reading, was_heard, sensible & (repeated + repeated + repeated < table.frozen)
+
+
+@part_inline
+def work_done(observed, table, i, begun, s_m):
+    """(path, way from the last sample, work of grade and brake on it, both up to the path, break before)."""
+    at = i * FIELDS
+    before = packs.choose(begun, packs.gather(observed.state, at + PATH_M), table.place_m[0])
+    farthest = packs.choose(begun, before + LARGEST_STEP_M, table.place_m[table.breaks - 1])
+    s = packs.choose((packs.wide(before) <= s_m) & (s_m <= packs.wide(farthest)), packs.narrow(s_m), before)
+    d, w, j = work_until(table, s, packs.gather(observed.at_break, i))
+    drive, brake = d - packs.gather(observed.reached, i * 2), w - packs.gather(observed.reached, i * 2 + 1)
+    return s, s - before, drive, brake, d, w, j
+
+
 @part
 def estimated(observed, table, there, i, s_m, v_m_s):
     """The speeds to compare of the passes `i` of a pack, float64; `there`: the lanes that have a pass.
@@ -67,85 +199,35 @@ def estimated(observed, table, there, i, s_m, v_m_s):
     What the grade and the brake did up to the last sample is remembered, not worked out anew. Not inlined: laws without
     an estimator would pay for it by 15 %.
     """
-    nought, one, two, least_speed = NOUGHT, ONE, TWO, LEAST_SPEED_M_S
     state, at = observed.state, i * FIELDS
-    sensible = (v_m_s >= 0.0) & (v_m_s <= float(LARGEST_SPEED_M_S))
-    v = packs.choose(sensible, packs.narrow(v_m_s), nought)
     kpa = packs.gather(observed.passed_kpa, i)
-    p = packs.choose((kpa >= 0.0) & (kpa <= float(LARGEST_OVERPRESSURE_KPA)), packs.narrow(kpa), nought)
-    begun = packs.gather(state, at) > nought
-    before = packs.choose(begun, packs.gather(state, at + 1), table.place_m[0])
-    farthest = packs.choose(begun, before + LARGEST_STEP_M, table.place_m[table.breaks - 1])
-    s = packs.choose((packs.wide(before) <= s_m) & (s_m <= packs.wide(farthest)), packs.narrow(s_m), before)
-    reading, unseen, repeats = packs.gather(state, at + 12), packs.gather(state, at + 11), packs.gather(state, at + 13)
-    again = sensible & (v >= reading) & (v <= reading)
-    heard = (unseen <= nought) | (repeats > nought)
-    repeated = packs.choose(again, repeats + one, nought)
-    packs.scatter(state, at + 12, there, packs.choose(sensible, v, reading))
-    packs.scatter(state, at + 13, there, repeated)
-    fresh = sensible & (repeated + repeated + repeated < table.frozen)
-    moving = v >= least_speed
-    speed, factor = packs.choose(begun, packs.gather(state, at + 2), one), packs.gather(state, at + 3)
-    excess, c5, c6 = packs.gather(state, at + 4), packs.gather(state, at + 5), packs.gather(state, at + 6)
-    c7, c8, c9 = packs.gather(state, at + 7), packs.gather(state, at + 8), packs.gather(state, at + 9)
-    c10, believings = packs.gather(state, at + 10), packs.gather(state, at + 14)
-    doubts = packs.gather(state, at + 15)
-    d, w, j = work_until(table, s, packs.gather(observed.at_break, i))
-    drive, brake = d - packs.gather(observed.reached, i * 2), w - packs.gather(observed.reached, i * 2 + 1)
-    step, work_at_one = s - before, p * brake
-    gained = drive - excess * step - factor * work_at_one
-    mean = packs.greatest((speed + speed + gained / speed) / two, least_speed)
-    predicted = packs.greatest(speed + gained / mean, least_speed)
-    slope, effect, drag = speed / predicted, work_at_one / mean, step / mean
-    path_variance = table.path_variance / packs.greatest(step, LEAST_STEP_M)
-    p12 = slope * c6 - effect * c8 - drag * c9
-    p13 = slope * c7 - effect * c9 - drag * c10
-    p11 = slope * (slope * c5 - effect * c6 - drag * c7)
-    p11 = packs.greatest(p11 - effect * (p12 - effect * path_variance) - drag * p13, nought)
-    total, innovation = p11 + table.speed_variance, v - predicted
-    leap, most = (v - reading) - (predicted - speed), table.leap_m_s + effect
-    leaps = (leap > most) | (leap < nought - most)
-    strange = (heard & leaps) | (packs.opposite(heard) & packs.opposite(moving))
-    far = innovation * innovation > GATE_SQUARED * total
-    doubted = begun & fresh & far & (strange | (doubts > nought))
-    counted = packs.choose(moving & packs.opposite(leaps), doubts + one, one)
-    few = (believings < FEW_READINGS) | (counted >= table.doubted)
+    p = packs.choose((kpa >= 0.0) & (kpa <= float(LARGEST_OVERPRESSURE_KPA)), packs.narrow(kpa), NOUGHT)
+    begun = packs.gather(state, at + BEGUN) > NOUGHT
+    v, reading, was_heard, fresh = hear(state, at, there, table, v_m_s)
+    s, step, drive, brake, d, w, j = work_done(observed, table, i, begun, s_m)
+    former, believed = filter_of(state, at, begun), packs.gather(state, at + BELIEVED)
+    now, effect = predicted(former, table, step, drive, p * brake)
+    doubts, moving, innovation = packs.gather(state, at + DOUBTED), v >= LEAST_SPEED_M_S, v - now.speed
+    leap, most = (v - reading) - (now.speed - former.speed), table.leap_m_s + effect
+    leaps = (leap > most) | (leap < NOUGHT - most)
+    strange = (was_heard & leaps) | (packs.opposite(was_heard) & packs.opposite(moving))
+    far = innovation * innovation > GATE_SQUARED * (now.speed_variance + table.speed_variance)
+    doubted = begun & fresh & far & (strange | (doubts > NOUGHT))
+    counted = packs.choose(moving & packs.opposite(leaps), doubts + ONE, ONE)
+    few = (believed < FEW_READINGS) | (counted >= table.doubted)
     corrects = begun & fresh & packs.opposite(doubted)
     anew = moving & ((packs.opposite(begun) & fresh) | (doubted & few))
-    gain, factor_gain, excess_gain = p11 / total, p12 / total, p13 / total
-    found = packs.choose(corrects, packs.greatest(predicted + gain * innovation, least_speed), predicted)
-    found = packs.choose(anew, v, found)
-    likely = packs.least(packs.greatest(factor + factor_gain * innovation, LEAST_FACTOR), LARGEST_FACTOR)
-    bound = LARGEST_EXCESS_M_S2
-    excessive = packs.least(packs.greatest(excess + excess_gain * innovation, nought - bound), bound)
-    ones = packs.narrow(packs.eight(1.0))
-    known = there & (begun | anew)
-    packs.scatter(state, at, known, ones)
-    packs.scatter(state, at + 1, known, s)
-    packs.scatter(state, at + 2, known, found)
-    packs.scatter(state, at + 3, known, packs.choose(anew, ones, packs.choose(corrects, likely, factor)))
-    packs.scatter(state, at + 4, known, packs.choose(anew, nought, packs.choose(corrects, excessive, excess)))
-    variance = packs.choose(anew, table.speed_variance, packs.choose(corrects, p11 - gain * p11, p11))
-    packs.scatter(state, at + 5, known, variance)
-    c6 = packs.choose(anew, nought, packs.choose(corrects, p12 - gain * p12, p12))
-    c7 = packs.choose(anew, nought, packs.choose(corrects, p13 - gain * p13, p13))
-    packs.scatter(state, at + 6, known, c6)
-    packs.scatter(state, at + 7, known, c7)
-    c8 = packs.choose(corrects, packs.greatest(c8 - factor_gain * p12, nought), c8)
-    c9 = packs.choose(corrects, c9 - factor_gain * p13, c9)
-    c10 = packs.choose(corrects, packs.greatest(c10 - excess_gain * p13, nought), c10)
-    packs.scatter(state, at + 8, known, packs.choose(anew, table.factor_variance, c8))
-    packs.scatter(state, at + 9, known, packs.choose(anew, nought, c9))
-    packs.scatter(state, at + 10, known, packs.choose(anew, table.excess_variance, c10))
-    unseen = packs.choose(corrects | anew, nought, unseen + one)
-    packs.scatter(state, at + 11, there, unseen)
-    believings = packs.choose(anew, one, packs.choose(corrects, believings + one, believings))
-    packs.scatter(state, at + 14, known, believings)
-    doubts = packs.choose(corrects | anew, nought, packs.choose(doubted, counted, doubts))
-    packs.scatter(state, at + 15, known, doubts)
+    known, seen = there & (begun | anew), corrects | anew
+    better = corrected(now, table, v)
+    found, variance = keep_filter(state, at, known, anew, v, table, corrects, better, now)
+    packs.scatter(state, at + BEGUN, known, packs.narrow(packs.eight(1.0)))
+    packs.scatter(state, at + PATH_M, known, s)
+    packs.scatter(state, at + UNSEEN, there, packs.choose(seen, NOUGHT, packs.gather(state, at + UNSEEN) + ONE))
+    believed = packs.choose(anew, ONE, packs.choose(corrects, believed + ONE, believed))
+    packs.scatter(state, at + BELIEVED, known, believed)
+    packs.scatter(state, at + DOUBTED, known, packs.choose(seen, NOUGHT, packs.choose(doubted, counted, doubts)))
     packs.scatter(observed.reached, i * 2, known, d)
     packs.scatter(observed.reached, i * 2 + 1, known, w)
     packs.scatter(observed.at_break, i, known, j)
-    beyond = packs.greatest(variance - table.lost_variance, nought)
-    answer = packs.greatest(found - table.caution * beyond, nought)
-    return packs.wide(packs.choose(begun | anew, answer, nought - one))
+    answer = packs.greatest(found - table.caution * packs.greatest(variance - table.lost_variance, NOUGHT), NOUGHT)
+    return packs.wide(packs.choose(begun | anew, answer, NOUGHT - ONE))

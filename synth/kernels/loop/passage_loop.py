@@ -19,13 +19,14 @@ from synth.kernels.loop.motion import LEFT, MOVING, STALLED, Cells, Path
 from synth.kernels.loop.passage_pulses import (
     Heard,
     Memory,
+    Pair,
     Pulses,
+    cover_coil,
     next_row,
     place_coils,
     pulses_before,
     rows_by_the_clock,
-    rows_of_source,
-    take_row,
+    take_pair,
 )
 from synth.kernels.loop.passage_regulator import NOT_HEARD, begin_cut, outcome_of, stage_after_pair
 from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
@@ -97,17 +98,21 @@ def roll(
 
 
 @part_inline
-def note_pair(
-    seen: Floats, count: int, time_s: float, half_s: float, told: int, passage: int, taken_for: int, read_m_s: float,
-    outcome: int, stage: int,
-) -> int:  # fmt: skip
+def note_pair(seen: Floats, count: int, time_s: float, pair: Pair, taken_for: int, outcome: int, stage: int) -> int:
     """Write one pulse pair, if that is wanted (`seen` not empty); returns the number of pairs."""
     if count < seen.shape[0]:
-        seen[count, 0], seen[count, 1] = time_s, time_s - half_s
-        seen[count, 2], seen[count, 3], seen[count, 4] = told, passage, taken_for
-        seen[count, 5], seen[count, 6], seen[count, 7] = read_m_s, outcome, stage
+        seen[count, 0], seen[count, 1] = time_s, time_s - pair.half_s
+        seen[count, 2], seen[count, 3], seen[count, 4] = pair.sensor, pair.passage, taken_for
+        seen[count, 5], seen[count, 6], seen[count, 7] = pair.read_m_s, outcome, stage
         return count + 1
     return count
+
+
+@part_inline
+def note_outcome(pulses: Pulses, source: int, outcome: int, outcomes: Outcomes) -> None:
+    """Keep what came of the first pair heard from a source at which is decided."""
+    if source >= 0 and pulses.decides[source] >= 0 and outcomes[pulses.decides[source]] == NOT_HEARD:
+        outcomes[pulses.decides[source]] = outcome
 
 
 @part
@@ -120,22 +125,16 @@ def run_passage_pass(
     `heard`: what of the pulses, (R,) each; `outcomes` (M,): what came of the first pair heard from each source at which
     is decided.
     """
-    (edges_m, free, brake), (after_s, told_m_s) = cells, heard
+    edges_m, free, brake = cells
     sources, resting = pulses.path_m.shape[0], drive.command.shape[0]
     place_coils(pulses, noise_z, memory)
     begin_cut(memory.state)
     outcomes[:] = NOT_HEARD
-    waiting = rows_by_the_clock(pulses, after_s, told_m_s, memory)
+    waiting = rows_by_the_clock(pulses, heard, memory)
     coil = pulses_before(edges_m[0], free[0], start_m_s, memory)
     cell, s, v, time, status = 0, edges_m[0], start_m_s, 0.0, MOVING
-    piece, stage, begun_s, rests_from_s, heard_s = (
-        drive.initial_mode,
-        drive.initial_stage,
-        0.0,
-        -math.inf,
-        WATCHED_FROM_S,
-    )
-    switchings, pairs = 0, 0
+    piece, stage, begun_s, rests_from_s = drive.initial_mode, drive.initial_stage, 0.0, -math.inf
+    switchings, pairs, heard_s = 0, 0, WATCHED_FROM_S
     count = note(events, 0, time, s, v, drive.kpa[piece], stage, math.nan)
     while status == MOVING:
         due_s, at = next_row(waiting, memory)
@@ -149,14 +148,8 @@ def run_passage_pass(
             time += used
         elif status == ON_COIL:
             time, status = time + used, MOVING
-            source = memory.order[coil]
+            waiting = cover_coil(memory.order[coil], time, noise_z, pulses, heard, waiting, memory)
             coil += 1
-            if source < sources:
-                memory.first_s[source] = time
-            else:
-                source -= sources
-                z = noise_z[pulses.column[source]]
-                waiting = rows_of_source(pulses, source, time, z, after_s, told_m_s, waiting, memory)
         elif until_s == LONGEST_PASS_S:
             time, status = max(time, until_s), STALLED  # it creeps
         elif until_s == piece_ends_s:
@@ -166,24 +159,16 @@ def run_passage_pass(
             count = note(events, count, until_s, s, v, drive.kpa[piece], stage, math.nan)
         else:
             time = max(time, until_s)
-            row, waiting = take_row(at, waiting, memory)
-            told, source, half_s = pulses.told_sensor[row], memory.row_source[row], memory.half_s[row]
-            over_s = memory.over_s[row]
-            read = pulses.base_m / over_s
-            passage = pulses.number[source] if source >= 0 else -1
-            ended = due_s - half_s >= rests_from_s
-            wanted, taken_for = stage_after_pair(
-                law, tracks, memory.state, told, due_s - heard_s, over_s, read, passage, stage, ended
-            )
-            heard_s = due_s
-            outcome = outcome_of(law, taken_for, ended)
-            if source >= 0 and pulses.decides[source] >= 0 and outcomes[pulses.decides[source]] == NOT_HEARD:
-                outcomes[pulses.decides[source]] = outcome
+            pair, waiting = take_pair(at, waiting, pulses, memory)
+            ended = due_s - pair.half_s >= rests_from_s
+            wanted, taken_for = stage_after_pair(law, tracks, memory.state, pair, due_s - heard_s, stage, ended)
+            heard_s, outcome = due_s, outcome_of(law, taken_for, ended)
+            note_outcome(pulses, pair.source, outcome, outcomes)
             if wanted != stage:
                 piece, stage, begun_s, rests_from_s = drive.command[piece, wanted], wanted, due_s, math.inf
                 switchings += 1
-            count = note(events, count, due_s, s, v, drive.kpa[piece], stage, read)
-            pairs = note_pair(seen, pairs, due_s, half_s, told, passage, taken_for, read, outcome, stage)
+            count = note(events, count, due_s, s, v, drive.kpa[piece], stage, pair.read_m_s)
+            pairs = note_pair(seen, pairs, due_s, pair, taken_for, outcome, stage)
     count = note(events, count, time, s, v, drive.kpa[piece], stage, math.nan)
     return v, time, status, switchings, count, pairs
 

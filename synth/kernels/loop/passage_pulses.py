@@ -74,6 +74,18 @@ class Memory(NamedTuple):
     state: NDArray[np.float32]
 
 
+class Pair(NamedTuple):
+    """A pulse pair that is heard: the `sensor` told, the true `source` and its `passage` among those heard (−1: none),
+    half the true time between the pulses, the measured time over the base, and the speed that it tells."""
+
+    sensor: int
+    source: int
+    passage: int
+    half_s: float
+    over_s: float
+    read_m_s: float
+
+
 @borrowing_inline
 def coils_of(pulses: Pulses, source: int, z: float) -> Any:
     """Impulse element: (path of the first pulse, of the second) of `source`; `z`: the error of the base, in stds."""
@@ -144,35 +156,40 @@ def wait_for(row: int, source: int, due_s: float, half_s: float, over_s: float, 
 
 
 @part_inline
-def rows_by_the_clock(pulses: Pulses, after_s: Floats, told_m_s: Floats, memory: Memory) -> int:
+def rows_by_the_clock(pulses: Pulses, heard: Heard, memory: Memory) -> int:
     """Have the rows heard that come from no source; returns how many rows are waited for."""
     waiting = 0
     for row in range(pulses.first_row[pulses.path_m.shape[0]], pulses.told_sensor.shape[0]):
-        if not math.isnan(after_s[row]):
-            over_s = pulses.base_m / told_m_s[row]
-            half_s = 0.5 * over_s if told_m_s[row] > 0.0 else 0.0
-            waiting = wait_for(row, -1, after_s[row], half_s, over_s, waiting, memory)
+        if not math.isnan(heard.after_s[row]):
+            told_m_s = heard.told_m_s[row]
+            over_s = pulses.base_m / told_m_s
+            half_s = 0.5 * over_s if told_m_s > 0.0 else 0.0
+            waiting = wait_for(row, -1, heard.after_s[row], half_s, over_s, waiting, memory)
     return waiting
 
 
 @part_inline
-def rows_of_source(
-    pulses: Pulses, source: int, time_s: float, z: float, after_s: Floats, told_m_s: Floats, waiting: int,
-    memory: Memory,
-) -> int:  # fmt: skip
-    """Have the rows of `source` heard, whose second pulse comes at `time_s`; returns how many rows are waited for.
+def cover_coil(
+    coil: int, time_s: float, noise_z: NDArray[np.float32], pulses: Pulses, heard: Heard, waiting: int, memory: Memory
+) -> int:
+    """The first axle is on a coil at `time_s`; returns how many rows are waited for.
 
-    `z`: noise of the timer in standard deviations, NaN: nothing was measured. A time that is measured as 0 or less
-    tells an infinite or negative speed: the rule holds, and the tracker does not believe it.
+    At the second coil of a source its rows are heard, later. Its timer may measure nothing. A time that is measured as
+    0 or less tells an infinite or negative speed: the rule holds, and the tracker does not believe it.
     """
+    source = coil - pulses.path_m.shape[0]
+    if source < 0:
+        memory.first_s[coil] = time_s
+        return waiting
     true_s = time_s - memory.first_s[source]
-    measured_s = measured_over_base_s(pulses, true_s, z)
+    measured_s = measured_over_base_s(pulses, true_s, noise_z[pulses.column[source]])
     if math.isnan(measured_s):
         return waiting
     for row in range(pulses.first_row[source], pulses.first_row[source + 1]):
-        if not math.isnan(after_s[row]):
-            over_s = measured_s if math.isnan(told_m_s[row]) else pulses.base_m / told_m_s[row]
-            waiting = wait_for(row, source, time_s + after_s[row], 0.5 * true_s, over_s, waiting, memory)
+        after_s, told_m_s = heard.after_s[row], heard.told_m_s[row]
+        if not math.isnan(after_s):
+            over_s = measured_s if math.isnan(told_m_s) else pulses.base_m / told_m_s
+            waiting = wait_for(row, source, time_s + after_s, 0.5 * true_s, over_s, waiting, memory)
     return waiting
 
 
@@ -188,8 +205,11 @@ def next_row(waiting: int, memory: Memory) -> Any:
 
 
 @part_inline
-def take_row(at: int, waiting: int, memory: Memory) -> Any:
-    """(row, how many still wait) once the row at place `at` of `waiting` is heard."""
+def take_pair(at: int, waiting: int, pulses: Pulses, memory: Memory) -> Any:
+    """(pair, how many rows still wait) once the row at place `at` of `waiting` is heard."""
     row = memory.waiting[at]
     memory.waiting[at] = memory.waiting[waiting - 1]
-    return row, waiting - 1
+    source, over_s = memory.row_source[row], memory.over_s[row]
+    passage = pulses.number[source] if source >= 0 else -1
+    pair = Pair(pulses.told_sensor[row], source, passage, memory.half_s[row], over_s, pulses.base_m / over_s)
+    return pair, waiting - 1

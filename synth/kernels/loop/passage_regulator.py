@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from synth.kernels.compiled_rules import compiled_rule
 from synth.kernels.compiling import borrowing_inline
+from synth.kernels.loop.passage_pulses import Pair
 from tuning_tables.programs import at_pulse, tracker
 from tuning_tables.programs.passage_table import HeldPassages
 
@@ -39,14 +40,13 @@ def stage_at_passage(law: HeldPassages, heard: int, stage: int, v_m_s: float) ->
 
 @borrowing_inline
 def stage_after_pair(
-    law: HeldPassages, tracks: bool, state: Tracked, sensor: int, since_s: float, over_base_s: float,
-    reading_m_s: float, true_passage: int, stage: int, transient_ended: bool,
-) -> Any:  # fmt: skip
+    law: HeldPassages, tracks: bool, state: Tracked, pair: Pair, since_s: float, stage: int, transient_ended: bool
+) -> Any:
     """(stage wanted, heard passage that the pair is taken for or −1); without tracker the passage is told."""
     if tracks:
-        heard, v = hear(law, state, sensor, since_s, over_base_s)
+        heard, v = hear(law, state, pair.sensor, since_s, pair.over_s)
         return int(stage_after(law, heard, stage, v, transient_ended)), int(heard)
-    return int(stage_after(law, true_passage, stage, reading_m_s, transient_ended)), true_passage
+    return int(stage_after(law, pair.passage, stage, pair.read_m_s, transient_ended)), pair.passage
 
 
 @borrowing_inline

@@ -15,29 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.kernels.compiling import kernel, part
-from synth.kernels.sweep.chain_arrays import Floats, Ints, Scenario, change_at
-from synth.kernels.sweep.commands import normal_cdf
+from synth.kernels.sweep.chain_arrays import Floats, Scenario, change_at
+from synth.kernels.sweep.drawn_lines import Drawing, Gains, add_gains, draw_lines
 from synth.kernels.sweep.flow import in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import find_runs, landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
 from synth.kernels.sweep.pass_time import add_change_times, add_quantum_times
-from synth.kernels.sweep.thresholds import find_lines
 from synth.kernels.sweep.transient_sweep import add_transient_values
-from synth.kernels.vector.packs import EIGHT, choose, load8, magnitude, store
-
-
-class Readings(NamedTuple):
-    """`reading` (E,): what is measured of the speeds, with errors of std `noise`; `heard` (R, T): probability that
-    there is one at a decision, else the stage is held.
-
-    `smear_start` (E,), `smear` (E, W): probability of true speeds given a measured one.
-    """
-
-    reading: Floats
-    noise: float
-    heard: Floats
-    smear_start: Ints
-    smear: NDArray[Any]
+from synth.kernels.vector.packs import EIGHT, choose, load8, store
 
 
 class Entrance(NamedTuple):
@@ -45,6 +30,23 @@ class Entrance(NamedTuple):
 
     approach_nodes: int
     stage: int
+
+
+class Rows(NamedTuple):
+    """What the states of hidden scenarios are worth, a row of E·T to each mode and level of each scenario.
+
+    `recent`, `mixed` (I, ring, H, L, E·T) at the samples of the last nodes, and before the noise level changes; `ahead`
+    (I, M + 1, H, L, E·T) at held stages on the way to a sample; `holds` (I, H, L, E·T) if the stage is held, `changes`
+    (I, H, L, C, E·T) by command. `quanta` (I, H, L, E): path to the next sample; `shift` (I, H, L) of energy, in cells.
+    """
+
+    recent: NDArray[Any]
+    mixed: NDArray[Any]
+    ahead: NDArray[Any]
+    holds: NDArray[Any]
+    changes: NDArray[Any]
+    quanta: Floats
+    shift: Floats
 
 
 @kernel
@@ -57,101 +59,125 @@ def sweep(chain, scenarios, prior, costs, tolerance, rounding, readings, entranc
     Outputs: `values` (I, N + 1, H, L, E, T), or of the first nodes only, `lines` (C, R, K + 1, T) in readings, `gain`
     (C, R, K + 1, T, E): averaged cost saved by the change, by measured speed.
     """
-    terminal, stalled, prices = costs
     factor, extra = scenarios
-    grid, landings, stage, transition = chain.grid, chain.landings, chain.modes.stage, chain.noise.transition
-    count, nodes, width = factor.shape[0], chain.track.drive.shape[0], stalled.shape[0]
-    modes, size, points = stage.shape[0], transition.shape[0], grid.speed.shape[0]
-    commands, decisions, stages, reach = lines.shape[0], lines.shape[1], lines.shape[2], chain.entry.shape[0]
-    ring, row, kind = chain.transient_noise.mean.shape[1] + 3, points * width, terminal.dtype
-    recent, mixed = np.zeros((count, ring, modes, size, row), kind), np.zeros((count, ring, modes, size, row), kind)
-    ahead, holds = np.empty((count, reach, modes, size, row), kind), np.empty((count, modes, size, row), kind)
-    changes = np.zeros((count, modes, size, commands, row), kind)
-    quanta, shift = np.empty((count, modes, size, points)), np.empty((count, modes, size))
-    gains, chance = np.empty((commands, stages, row), kind), np.empty((commands, row), kind)
-    best, chosen = np.empty(points + 1), np.empty((commands // 2, points + 1), np.int64)
-    possible, undecided = np.empty((2, stages), np.int64), np.empty(points, np.bool_)
-    spent, scratch = np.empty(row, kind), landing_scratch(landings.ends.shape[4], size, kind)
+    count, nodes = factor.shape[0], chain.track.drive.shape[0]
+    width, kind = costs.stalled.shape[0], costs.terminal.dtype
+    commands, decisions, stages, points = lines.shape[0], lines.shape[1], lines.shape[2], chain.grid.speed.shape[0]
+    rows = rows_at_exit(chain, costs, count, commands)
+    gains = Gains(np.empty((commands, stages, points * width), kind), np.empty((2, stages), np.int64))
+    drawing = Drawing(
+        np.empty(points + 1), np.empty((commands // 2, points + 1), np.int64),
+        np.empty((commands, points * width), kind), np.empty(points, np.bool_),
+    )  # fmt: skip
+    spent = np.empty(points * width, kind)
+    scratch = landing_scratch(chain.landings.ends.shape[4], chain.noise.levels.shape[0], kind)
     met, slope = landing_tables(chain, factor, extra)
-    in_every_state(terminal, row, recent[:, nodes % ring])
-    in_every_state(terminal, row, mixed[:, nodes % ring])
-    in_every_state(terminal, row, ahead.reshape(count * reach, modes, size, row))
-    copy_out(recent[:, nodes % ring], values, nodes, points)
+    ring = rows.recent.shape[1]
+    copy_out(rows.recent[:, nodes % ring], values, nodes, points)
     for n in range(nodes - 1, -1, -1):
-        decision = chain.decision_at[n]
-        gains[:], possible[:] = 0.0, 0
+        decision, here = chain.decision_at[n], rows.recent[:, n % ring]
+        gains.saved[:], gains.possible[:] = 0.0, 0
         for i in range(count):
             scenario = Scenario(factor[i], extra[i], met[i], slope[i])
-            shifts(n, chain, factor[i], extra[i], shift[i])
-            following = recent[i, (n + 1) % ring]
-            hold_everywhere(n, chain, stalled, prices, following, shift[i], ahead[i], quanta[i], holds[i], spent)
-            for command in range(commands if decision < decisions else 0):
-                side, by = command % 2, command // 2 + 1
-                for h in range(modes):
-                    c = landings.change_chain[command, h]
-                    if c < 0 or (side == 1 and n < entrance.approach_nodes and stage[h] + by > entrance.stage):
-                        continue  # no gain, so no line, and what `changes` holds plays no part
-                    possible[side, stage[h]] = by
-                    found = find_runs(change_at(chain, n, decision, 0, c), 0, points, landings, grid, scenario, scratch)
-                    for q in range(size):
-                        change, changed = change_at(chain, n, decision, q, c), changes[i, h, q, command]
-                        value_change(
-                            change, found, landings.ends, grid, scenario, recent[i], mixed[i], stalled, prices,
-                            scratch, best, changed,
-                        )  # fmt: skip
-                        add_gains(holds[i, h, q], changed, prior[i, h, q], rounding, width, gains[command, stage[h]])
-        for k in range(stages):
-            undecided[:] = False
+            hold_everywhere(n, chain, scenario, costs, rows, i, spent)
             if decision < decisions:
-                for command in range(commands):
-                    spread(gains[command, k], readings.smear_start, readings.smear, width, spent)
-                    apart(spent, width, gain[command, decision, k])
-                find_lines(
-                    gain[:, decision, k], possible[:, k], readings.reading, tolerance, best, chosen,
-                    lines[:, decision, k],
-                )  # fmt: skip
-                command_chances(lines[:, decision, k], readings, decision, width, chance, undecided)
-            for i in range(count):
-                for h in range(modes):
-                    for q in range(size if stage[h] == k else 0):
-                        sampled_values(
-                            chance, changes[i, h, q], ahead[i, 1, h, q], holds[i, h, q],
-                            quanta[i, h, q], undecided, stalled, recent[i, n % ring, h, q],
-                        )  # fmt: skip
+                value_changes(n, chain, scenario, costs, rows, i, prior[i], rounding, entrance, scratch, drawing, gains)
+        for k in range(stages):
+            drawing.undecided[:] = False
+            if decision < decisions:
+                draw_lines(decision, k, gains, readings, tolerance, spent, drawing, gain, lines)
+            decide(k, chain.modes.stage, costs.stalled, drawing, rows, here)
         for i in range(count):
-            mix_values(recent[i, n % ring], transition, 1, points, stalled, mixed[i, n % ring])
-        copy_out(recent[:, n % ring], values, n, points)
+            mix_values(here[i], chain.noise.transition, 1, points, costs.stalled, rows.mixed[i, n % ring])
+        copy_out(here, values, n, points)
+
+
+@kernel
+def rows_at_exit(chain, costs, count, commands):
+    """What energies at the exit are worth, in every mode and level of `count` scenarios, and memory for all rows."""
+    modes, size, points = chain.modes.stage.shape[0], chain.noise.levels.shape[0], chain.grid.speed.shape[0]
+    ring, reach = chain.transient_noise.mean.shape[1] + 3, chain.entry.shape[0]
+    row, kind, last = points * costs.stalled.shape[0], costs.terminal.dtype, chain.track.drive.shape[0] % ring
+    rows = Rows(
+        np.zeros((count, ring, modes, size, row), kind), np.zeros((count, ring, modes, size, row), kind),
+        np.empty((count, reach, modes, size, row), kind), np.empty((count, modes, size, row), kind),
+        np.zeros((count, modes, size, commands, row), kind), np.empty((count, modes, size, points)),
+        np.empty((count, modes, size)),
+    )  # fmt: skip
+    in_every_state(costs.terminal, row, rows.recent[:, last])
+    in_every_state(costs.terminal, row, rows.mixed[:, last])
+    in_every_state(costs.terminal, row, rows.ahead.reshape(count * reach, modes, size, row))
+    return rows
 
 
 @part
-def hold_everywhere(n, chain, stalled, prices, following, shift, ahead, quanta, holds, scratch):
-    """Values of one scenario that holds at a node, in all modes and levels, into `holds` (H, L, E·T).
+def hold_everywhere(n, chain, scenario, costs, rows, i, scratch):
+    """Values of scenario `i` that holds at node `n`, in all modes and levels, into `rows.holds`.
 
-    `following` (H, L, E·T): at the next node; `ahead` (M + 1, H, L, E·T) on the way to later samples is brought one
-    node back; `quanta` (H, L, E) becomes the path to the next sample.
+    `rows.ahead` is brought one node back; `rows.quanta` becomes the path to the next sample. `scratch` (E·T,).
     """
-    modes, size, points = quanta.shape
-    grid, transition = chain.grid, chain.noise.transition
+    grid, transition, stalled, points = chain.grid, chain.noise.transition, costs.stalled, chain.grid.speed.shape[0]
+    ahead, shift, quanta, ring = rows.ahead[i], rows.shift[i], rows.quanta[i], rows.recent.shape[1]
+    shifts(n, chain, scenario.factor, scenario.extra, shift)
     for r in range(ahead.shape[0] - 2, 0, -1):
         pull(ahead[r], points, transition, shift, stalled, 1, points, ahead[r + 1], scratch)
-    pull(following, points, transition, shift, stalled, 1, points, ahead[1], scratch)
-    add_quantum_times(n, prices, grid, shift, 1, points, ahead, quanta[0, 0])
-    for h in range(modes):
-        for q in range(size):
+    pull(rows.recent[i, (n + 1) % ring], points, transition, shift, stalled, 1, points, ahead[1], scratch)
+    add_quantum_times(n, costs.prices, grid, shift, 1, points, ahead, quanta[0, 0])
+    for h in range(shift.shape[0]):
+        for q in range(shift.shape[1]):
             a = shift[h, q] * grid.energy_step / grid.path_step
             quanta_to_next_sample(grid.speed, 0, points, a, chain.period, grid.path_step, quanta[h, q])
-            hold_values(ahead, h * size + q, quanta[h, q], stalled.shape[0], holds[h, q])
+            hold_values(ahead, h * shift.shape[1] + q, quanta[h, q], stalled.shape[0], rows.holds[i, h, q])
 
 
 @part
-def value_change(change, count, ends, grid, scenario, values, mixed, stalled, prices, scratch, spent, out):
+def value_changes(n, chain, scenario, costs, rows, i, prior, rounding, entrance, scratch, drawing, gains):
+    """Values of scenario `i` after each change of stage at node `n`, into `rows.changes`; what they save, to `gains`.
+
+    `prior` (H, L): weights of the scenario's states. A command that the entrance forbids has no gain, so no line, and
+    what `rows.changes` holds of it plays no part.
+    """
+    grid, landings, stage, decision = chain.grid, chain.landings, chain.modes.stage, chain.decision_at[n]
+    points, width = grid.speed.shape[0], costs.stalled.shape[0]
+    for command in range(gains.saved.shape[0]):
+        side, by = command % 2, command // 2 + 1
+        for h in range(stage.shape[0]):
+            c = landings.change_chain[command, h]
+            if c < 0 or (side == 1 and n < entrance.approach_nodes and stage[h] + by > entrance.stage):
+                continue
+            gains.possible[side, stage[h]] = by
+            found = find_runs(change_at(chain, n, decision, 0, c), 0, points, landings, grid, scenario, scratch)
+            for q in range(prior.shape[1]):
+                change, changed = change_at(chain, n, decision, q, c), rows.changes[i, h, q, command]
+                value_change(
+                    change, found, landings.ends, grid, scenario, rows.recent[i], rows.mixed[i], costs, scratch,
+                    drawing.best, changed,
+                )  # fmt: skip
+                saved = gains.saved[command, stage[h]]
+                add_gains(rows.holds[i, h, q], changed, prior[h, q], rounding, width, saved)
+
+
+@part
+def decide(k, stage, stalled, drawing, rows, here):
+    """Values at a sample in all states of stage `k`, `here` (I, H, L, E·T)."""
+    for i in range(here.shape[0]):
+        for h in range(here.shape[1]):
+            for q in range(here.shape[2] if stage[h] == k else 0):
+                sampled_values(
+                    drawing.chance, rows.changes[i, h, q], rows.ahead[i, 1, h, q], rows.holds[i, h, q],
+                    rows.quanta[i, h, q], drawing.undecided, stalled, here[i, h, q],
+                )  # fmt: skip
+
+
+@part
+def value_change(change, count, ends, grid, scenario, values, mixed, costs, scratch, spent, out):
     """`out` (E·T,) = value of a change of stage with what the command and its time cost.
 
     Arguments as in `transient_sweep` and `pass_time`.
     """
-    in_every_cell(prices.command, out)
-    add_transient_values(change, count, ends, grid, scenario, values, mixed, stalled, scratch, out)
-    add_change_times(change, count, ends, grid, scenario, prices, scratch.runs, spent, out)
+    in_every_cell(costs.prices.command, out)
+    add_transient_values(change, count, ends, grid, scenario, values, mixed, costs.stalled, scratch, out)
+    add_change_times(change, count, ends, grid, scenario, costs.prices, scratch.runs, spent, out)
 
 
 @part
@@ -182,59 +208,6 @@ def in_every_cell(numbers, out):
     for at in range(0, out.shape[0], width):
         for t in range(0, width, EIGHT):
             store(out, at + t, load8(numbers, t))
-
-
-@part
-def add_gains(hold, changed, weight, rounding, width, gain):
-    """Add the cost saved by a change, times `weight`, to `gain` (E·T,).
-
-    What is less than the part `rounding` of the cost itself may be saved by rounding alone, and is not added.
-    """
-    for at in range(width, gain.shape[0], EIGHT):
-        cost = load8(hold, at)
-        saved = cost - load8(changed, at)
-        counted = choose(magnitude(saved) > cost * rounding, saved, 0.0)
-        store(gain, at, load8(gain, at) + counted * weight)
-
-
-@part
-def spread(gain, start, weights, width, out):
-    """`out` (E·T,) = `gain` averaged over the true speeds behind every measured speed."""
-    for j in range(start.shape[0]):
-        for t in range(0, width, EIGHT):
-            found = load8(gain, start[j] * width + t) * weights[j, 0]
-            for m in range(1, weights.shape[1]):
-                found = found + load8(gain, (start[j] + m) * width + t) * weights[j, m]
-            store(out, j * width + t, found)
-
-
-@part
-def apart(row, width, out):
-    """`row` (E·T,), with targets padded, as `out` (T, E)."""
-    for t in range(out.shape[0]):
-        for j in range(out.shape[1]):
-            out[t, j] = row[j * width + t]
-
-
-@part
-def command_chances(lines, readings, decision, width, out, undecided):
-    """Probability of each command at every true speed and target, `out` (C, E·T); `lines` (C, T) in readings.
-
-    `undecided` (E,): whether any target may get another command than holding.
-    """
-    reading, noise, heard = readings.reading, readings.noise, readings.heard[decision]
-    out[:] = 0.0
-    for j in range(reading.shape[0]):
-        undecided[j] = False
-        for t in range(lines.shape[1]):
-            further_down, further_up = 0.0, 0.0
-            for command in range(lines.shape[0] - 2, -1, -2):
-                down = normal_cdf((lines[command, t] - reading[j]) / noise)
-                up = normal_cdf((reading[j] - lines[command + 1, t]) / noise)
-                out[command, j * width + t] = (down - further_down) * heard[t]
-                out[command + 1, j * width + t] = (up - further_up) * heard[t]
-                further_down, further_up = down, up
-            undecided[j] = undecided[j] or (heard[t] > 0.0 and (further_down > 0.0 or further_up > 0.0))
 
 
 @part

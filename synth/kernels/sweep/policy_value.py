@@ -83,92 +83,123 @@ def backward(policy, slopes, chain, factor, extra, costs, density, band, gradien
     return cost
 
 
+class State(NamedTuple):
+    """What the recursion is about: the resting `mode` of a `stage` at a `decision`, with a noise `level`."""
+
+    decision: int
+    stage: int
+    mode: int
+    level: int
+
+
 @part
 def follow_back(policy, slopes, chain, scenario, prices, worth, density, band, gradient):
     """What states are `worth` at the exit, brought back to where the pass begins."""
-    ahead, values, mixed, stop, changed, at_energy, told, scratch, quanta, shift, landing = worth
-    grid, landings, stage, transition = chain.grid, chain.landings, chain.modes.stage, chain.noise.transition
-    nodes, reach, ring = chain.track.drive.shape[0], ahead.shape[0], values.shape[0]
-    modes, size, points, stalled = stage.shape[0], transition.shape[0], grid.speed.shape[0], stop[0]
-    commands, decisions, visited_only = gradient.shape[0], gradient.shape[1], density.shape[0] > 0
+    stage, transition, decisions = chain.modes.stage, chain.noise.transition, gradient.shape[1]
+    nodes, ring, points = chain.track.drive.shape[0], worth.values.shape[0], chain.grid.speed.shape[0]
     for n in range(nodes - 1, -1, -1):
-        decision, first, last = chain.decision_at[n], 1, points
-        if visited_only:
+        first, last = 1, points
+        if density.shape[0] > 0:
             first, last = max(band[n, 0], 1), band[n, 1]
-        here = values[n % ring]
-        shifts(n, chain, scenario.factor, scenario.extra, shift)
-        for r in range(reach - 2, 0, -1):
-            pull(ahead[r], points, transition, shift, stop, first, last, ahead[r + 1], scratch)
-        pull(values[(n + 1) % ring], points, transition, shift, stop, first, last, ahead[1], scratch)
-        add_quantum_times(n, prices, grid, shift, first, last, ahead, scratch)
-        for h in range(modes):
-            k = stage[h]
-            for q in range(size):
-                acceleration = shift[h, q] * grid.energy_step / grid.path_step
-                quanta_to_next_sample(grid.speed, first, last, acceleration, chain.period, grid.path_step, quanta)
-                here[h, q, 0] = stalled
-                if decision >= decisions:
-                    for j in range(first, last):
-                        here[h, q, j] = ahead[1, h, q, j]
+        here = worth.values[n % ring]
+        roll_back(n, chain, scenario, prices, worth, first, last)
+        for h in range(stage.shape[0]):
+            for q in range(transition.shape[0]):
+                out, ahead, state = here[h, q], worth.ahead[1, h, q], State(chain.decision_at[n], stage[h], h, q)
+                out[0] = worth.stalled[0]
+                if state.decision < decisions:
+                    value_commands(policy, slopes, chain, scenario, prices, worth, density, n, state, first, last)
+                    value_decision(policy, slopes, chain, prices, worth, density, state, first, last, out, gradient)
                     continue
-                for command in range(commands):
-                    c, begin, end = landings.change_chain[command, h], first, first
-                    if c >= 0:
-                        begin, end = decided(policy, slopes, density, command, decision, k, h, q, first, last)
-                    told[command, 0], told[command, 1] = begin, end
-                    if begin >= end:
-                        continue
-                    change, out = change_at(chain, n, decision, q, c), changed[command]
-                    found = change_values(
-                        change, begin, end, landings, grid, scenario, values, mixed, stalled, landing, out
-                    )
-                    add_change_times(change, found, landings.ends, grid, scenario, prices, landing.runs, scratch, out)
                 for j in range(first, last):
-                    mass = density[decision, h, q, j] if visited_only else 1.0
-                    if abs(mass) < NEGLIGIBLE_MASS:
-                        here[h, q, j] = ahead[1, h, q, j]
-                        continue
-                    by_change, hold = 0.0, 1.0
-                    for command in range(commands):
-                        chance = policy[command, decision, k, j]
-                        is_told = told[command, 0] <= j < told[command, 1]
-                        at_energy[command] = prices.command[0] + changed[command, j] if is_told else np.nan
-                        by_change += chance * (at_energy[command] if is_told else 0.0)
-                        hold -= chance
-                    step = min(int(quanta[j]), reach - 2)
-                    x = min(quanta[j] - step, 1.0)
-                    if step == 0:
-                        value = (hold * x * ahead[1, h, q, j] + by_change) / (1.0 - hold * (1.0 - x))
-                        q_hold = (1.0 - x) * value + x * ahead[1, h, q, j]
-                    else:
-                        q_hold = (1.0 - x) * ahead[step, h, q, j] + x * ahead[step + 1, h, q, j]
-                        value = hold * q_hold + by_change
-                    here[h, q, j] = value
-                    for command in range(commands if visited_only else 0):
-                        nearer = q_hold if command < 2 else at_energy[command - 2]
-                        by_line = mass * slopes[command, decision, k, j]
-                        if by_line != 0.0 and not np.isnan(at_energy[command]):
-                            gradient[command, decision, k] += by_line * (at_energy[command] - nearer)
-        mix_values(here, transition, first, last, stop, mixed[n % ring])
+                    out[j] = ahead[j]
+        mix_values(here, transition, first, last, worth.stalled, worth.mixed[n % ring])
 
 
 @part
-def decided(policy, slopes, density, command, decision, k, h, q, first, last):
+def roll_back(n, chain, scenario, prices, worth, first, last):
+    """Bring what held stages are worth, `worth.ahead`, back to node `n`, for energies first ≤ j < last."""
+    ahead, shift, transition, points = worth.ahead, worth.shift, chain.noise.transition, chain.grid.speed.shape[0]
+    following = worth.values[(n + 1) % worth.values.shape[0]]
+    shifts(n, chain, scenario.factor, scenario.extra, shift)
+    for r in range(ahead.shape[0] - 2, 0, -1):
+        pull(ahead[r], points, transition, shift, worth.stalled, first, last, ahead[r + 1], worth.moved)
+    pull(following, points, transition, shift, worth.stalled, first, last, ahead[1], worth.moved)
+    add_quantum_times(n, prices, chain.grid, shift, first, last, ahead, worth.moved)
+
+
+@part
+def value_commands(policy, slopes, chain, scenario, prices, worth, density, n, state, first, last):
+    """What a state is worth after each command at node `n`, into `worth.changed` where `worth.told` says."""
+    grid, landings, landing = chain.grid, chain.landings, worth.scratch
+    for command in range(policy.shape[0]):
+        c, begin, end = landings.change_chain[command, state.mode], first, first
+        if c >= 0:
+            begin, end = decided(policy, slopes, density, command, state, first, last)
+        worth.told[command, 0], worth.told[command, 1] = begin, end
+        if begin >= end:
+            continue
+        change, out = change_at(chain, n, state.decision, state.level, c), worth.changed[command]
+        found = change_values(
+            change, begin, end, landings, grid, scenario, worth.values, worth.mixed, worth.stalled[0], landing, out
+        )
+        add_change_times(change, found, landings.ends, grid, scenario, prices, landing.runs, worth.moved, out)
+
+
+@part
+def value_decision(policy, slopes, chain, prices, worth, density, state, first, last, out, gradient):
+    """What a state is worth before its decision, `out` (E',), first ≤ j < last; with `density`, the gradient too."""
+    grid, quanta, told, at_energy = chain.grid, worth.quanta, worth.told, worth.at_energy
+    decision, k, h, q = state
+    visited_only, reach, commands = density.shape[0] > 0, worth.ahead.shape[0], policy.shape[0]
+    acceleration = worth.shift[h, q] * grid.energy_step / grid.path_step
+    quanta_to_next_sample(grid.speed, first, last, acceleration, chain.period, grid.path_step, quanta)
+    for j in range(first, last):
+        mass, at_once = density[decision, h, q, j] if visited_only else 1.0, worth.ahead[1, h, q, j]
+        if abs(mass) < NEGLIGIBLE_MASS:
+            out[j] = at_once
+            continue
+        by_change, hold = 0.0, 1.0
+        for command in range(commands):
+            chance = policy[command, decision, k, j]
+            is_told = told[command, 0] <= j < told[command, 1]
+            at_energy[command] = prices.command[0] + worth.changed[command, j] if is_told else np.nan
+            by_change += chance * (at_energy[command] if is_told else 0.0)
+            hold -= chance
+        step = min(int(quanta[j]), reach - 2)
+        x = min(quanta[j] - step, 1.0)
+        if step == 0:
+            value = (hold * x * at_once + by_change) / (1.0 - hold * (1.0 - x))
+            held = (1.0 - x) * value + x * at_once
+        else:
+            held = (1.0 - x) * worth.ahead[step, h, q, j] + x * worth.ahead[step + 1, h, q, j]
+            value = hold * held + by_change
+        out[j] = value
+        for command in range(commands if visited_only else 0):
+            nearer = held if command < 2 else at_energy[command - 2]
+            by_line = mass * slopes[command, decision, k, j]
+            if by_line != 0.0 and not np.isnan(at_energy[command]):
+                gradient[command, decision, k] += by_line * (at_energy[command] - nearer)
+
+
+@part
+def decided(policy, slopes, density, command, state, first, last):
     """Range of energies within [first, last) that hold every state for which the value of a command counts."""
-    while first < last and not counts(policy, slopes, density, command, decision, k, h, q, first):
+    while first < last and not counts(policy, slopes, density, command, state, first):
         first += 1
-    while first < last and not counts(policy, slopes, density, command, decision, k, h, q, last - 1):
+    while first < last and not counts(policy, slopes, density, command, state, last - 1):
         last -= 1
     return first, last
 
 
 @part
-def counts(policy, slopes, density, command, decision, k, h, q, j):
+def counts(policy, slopes, density, command, state, j):
     """Whether the value of a command counts in a state: it may be given there, or the gradient asks for it.
 
     The gradient compares each command with the one that goes a stage less far. `density` of length 0: every state is
     visited, and there is no gradient.
     """
+    decision, k, h, q = state
     may_be_given = policy[command, decision, k, j] > NEGLIGIBLE_PROBABILITY
     if density.shape[0] == 0:
         return may_be_given

@@ -7,6 +7,7 @@ import pytest
 
 from plant_models import PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
+from synth.kernels.loop.passage_pulses import Pair
 from synth.kernels.loop.passage_regulator import begin_cut, stage_after_pair
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
@@ -70,9 +71,9 @@ def test_the_kernel_runs_the_step_of_a_controller() -> None:
         for at, time_s in enumerate(heard.time_s):
             over_s = table.sensors.base_m / heard.reading_m_s[at]
             ended = bool(heard.outcome[at] != UNFINISHED)
-            asked = heard.told_sensor[at], time_s - before_s, over_s
-            wanted = at_pulse.at_pulse(held, state, *asked, stage, ended)
-            again, taken_for = stage_after_pair(held, True, compiled, *asked, heard.reading_m_s[at], -1, stage, ended)
+            since_s, pair = time_s - before_s, Pair(heard.told_sensor[at], -1, -1, 0.0, over_s, heard.reading_m_s[at])
+            wanted = at_pulse.at_pulse(held, state, pair.sensor, since_s, over_s, stage, ended)
+            again, taken_for = stage_after_pair(held, True, compiled, pair, since_s, stage, ended)
             assert wanted == again == heard.stage[at]
             assert int(state[0]) == heard.believed[at] == taken_for
             assert np.array_equal(state, compiled)
