@@ -21,6 +21,7 @@ from synth.solver.chain.kernel_arrays import chain_arrays, pass_times
 from synth.solver.exit_density import ExitDensity
 from synth.solver.policy_density import (
     CommandChances,
+    before_a_pack,
     commands,
     exit_density,
     forward_one,
@@ -97,7 +98,7 @@ class Evaluation:
         c, at_decisions = self.chain, lines.at_decisions(self.chain.decisions)
         policy, slopes = commands(c, at_decisions), slopes_of_commands(c, at_decisions)
         modes, levels, points = len(c.actuator.mode_stage), len(c.path_noise.levels), policy.shape[3]
-        density = np.empty((len(c.decisions), modes, levels, points))
+        density = before_a_pack((len(c.decisions), modes, levels, points))
         band = np.empty((len(c.drive_m_s2), 2), dtype=np.int64)
         found = []
         for i in range(len(c.scenarios.weight)):

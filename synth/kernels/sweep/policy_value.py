@@ -9,14 +9,28 @@ from typing import NamedTuple
 
 import numpy as np
 
-from synth.kernels.compiling import kernel, part
+from synth.kernels.compiling import kernel, part, part_inline
 from synth.kernels.sweep.chain_arrays import Floats, Ints, Scenario, change_at
-from synth.kernels.sweep.flow import in_every_state, mix_values, pull, shifts
+from synth.kernels.sweep.flow import extent, in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import Scratch, landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
 from synth.kernels.sweep.pass_time import add_change_times, add_quantum_times
 from synth.kernels.sweep.policy_density import NEGLIGIBLE_MASS
 from synth.kernels.sweep.transient import change_values
+from synth.kernels.vector.packs import (
+    EIGHT,
+    choose,
+    eight,
+    first_lane,
+    fraction,
+    holds_anywhere,
+    last_lane,
+    least,
+    load8,
+    magnitude,
+    store,
+    whole,
+)
 
 NEGLIGIBLE_PROBABILITY = 1e-9
 
@@ -25,8 +39,8 @@ class Worth(NamedTuple):
     """What states are worth in one scenario, and memory to work it out.
 
     `ahead` (M + 1, H, L, E') at held stages on the way to a sample; `values`, `mixed` (ring, H, L, E') at samples, and
-    before the noise level changes; `stalled` (1,). By command: `changed` (C, E') values after it, `at_energy` (C,)
-    those at one energy with its price, `told` (C, 2) the range of energies at which they count.
+    before the noise level changes; `stalled` (1,). By command: `changed` (C, E') values after it, `told` (C, 2) the
+    range of energies at which they count. `held` (E',): of holding to the next sample; `place` (E',): 0, 1, 2 …
     """
 
     ahead: Floats
@@ -34,8 +48,9 @@ class Worth(NamedTuple):
     mixed: Floats
     stalled: Floats
     changed: Floats
-    at_energy: Floats
     told: Ints
+    held: Floats
+    place: Floats
     moved: Floats
     quanta: Floats
     shift: Floats
@@ -54,8 +69,8 @@ def worth_at_exit(chain, costs, commands):
     for rows in (values, mixed):
         in_every_state(terminal, points, rows[last % ring : last % ring + 1])
     return Worth(
-        ahead, values, mixed, np.full(1, stalled), np.zeros((commands, row)), np.empty(commands),
-        np.empty((commands, 2), np.int64), np.zeros(row), np.empty(row), np.empty((modes, size)),
+        ahead, values, mixed, np.full(1, stalled), np.zeros((commands, row)), np.empty((commands, 2), np.int64),
+        np.empty(row), np.arange(row) * 1.0, np.zeros(row), np.empty(row), np.empty((modes, size)),
         landing_scratch(row, size, chain.grid.speed.dtype),
     )  # fmt: skip
 
@@ -106,13 +121,15 @@ def follow_back(policy, slopes, chain, scenario, prices, worth, density, band, g
         for h in range(stage.shape[0]):
             for q in range(transition.shape[0]):
                 out, ahead, state = here[h, q], worth.ahead[1, h, q], State(chain.decision_at[n], stage[h], h, q)
+                begin, end = first, last if state.decision < decisions else first
+                if begin < end and density.shape[0] > 0:
+                    begin, end = extent(density[state.decision, h, q], first, last, NEGLIGIBLE_MASS)
                 out[0] = worth.stalled[0]
-                if state.decision < decisions:
-                    value_commands(policy, slopes, chain, scenario, prices, worth, density, n, state, first, last)
-                    value_decision(policy, slopes, chain, prices, worth, density, state, first, last, out, gradient)
-                    continue
                 for j in range(first, last):
                     out[j] = ahead[j]
+                if begin < end:
+                    value_commands(policy, slopes, chain, scenario, prices, worth, density, n, state, begin, end)
+                    value_decision(policy, slopes, chain, prices, worth, density, state, begin, end, out, gradient)
         mix_values(here, transition, first, last, worth.stalled, worth.mixed[n % ring])
 
 
@@ -149,61 +166,102 @@ def value_commands(policy, slopes, chain, scenario, prices, worth, density, n, s
 @part
 def value_decision(policy, slopes, chain, prices, worth, density, state, first, last, out, gradient):
     """What a state is worth before its decision, `out` (E',), first ≤ j < last; with `density`, the gradient too."""
-    grid, quanta, told, at_energy = chain.grid, worth.quanta, worth.told, worth.at_energy
-    decision, k, h, q = state
-    visited_only, reach, commands = density.shape[0] > 0, worth.ahead.shape[0], policy.shape[0]
+    grid, h, q = chain.grid, state.mode, state.level
     acceleration = worth.shift[h, q] * grid.energy_step / grid.path_step
-    quanta_to_next_sample(grid.speed, first, last, acceleration, chain.period, grid.path_step, quanta)
-    for j in range(first, last):
-        mass, at_once = density[decision, h, q, j] if visited_only else 1.0, worth.ahead[1, h, q, j]
-        if abs(mass) < NEGLIGIBLE_MASS:
-            out[j] = at_once
-            continue
-        by_change, hold = 0.0, 1.0
-        for command in range(commands):
-            chance = policy[command, decision, k, j]
-            is_told = told[command, 0] <= j < told[command, 1]
-            at_energy[command] = prices.command[0] + worth.changed[command, j] if is_told else np.nan
-            by_change += chance * (at_energy[command] if is_told else 0.0)
-            hold -= chance
-        step = min(int(quanta[j]), reach - 2)
-        x = min(quanta[j] - step, 1.0)
-        if step == 0:
-            value = (hold * x * at_once + by_change) / (1.0 - hold * (1.0 - x))
-            held = (1.0 - x) * value + x * at_once
-        else:
-            held = (1.0 - x) * worth.ahead[step, h, q, j] + x * worth.ahead[step + 1, h, q, j]
-            value = hold * held + by_change
-        out[j] = value
-        for command in range(commands if visited_only else 0):
-            nearer = held if command < 2 else at_energy[command - 2]
-            by_line = mass * slopes[command, decision, k, j]
-            if by_line != 0.0 and not np.isnan(at_energy[command]):
-                gradient[command, decision, k] += by_line * (at_energy[command] - nearer)
+    quanta_to_next_sample(grid.speed, first, last, acceleration, chain.period, grid.path_step, worth.quanta)
+    at = ((state.decision * density.shape[1] + h) * density.shape[2] + q) * density.shape[3]
+    for j in range(first, last, EIGHT):
+        hold, given = commands_at(policy, prices, worth, state, j)
+        at_once, value, held = held_or_given(hold, given, worth, h, q, j)
+        if density.shape[0] > 0:
+            value = choose(magnitude(load8(density, at + j)) < NEGLIGIBLE_MASS, at_once, value)
+        store(worth.held, j, held)
+        store(out, j, choose(load8(worth.place, j) < last, value, load8(out, j)))
+    if density.shape[0] > 0:
+        add_slopes(slopes, prices, worth, density, state, gradient)
+
+
+@part_inline
+def commands_at(policy, prices, worth, state, j):
+    """(chance to hold, what the commands bring by their chances) of eight energies from `j` on."""
+    price, place, row = prices.command[0], load8(worth.place, j), worth.changed.shape[1]
+    _, decisions, stages, points = policy.shape
+    at, hold, given = (state.decision * stages + state.stage) * points + j, eight(1.0), eight(0.0)
+    for command in range(policy.shape[0]):
+        begin, end = worth.told[command, 0], worth.told[command, 1]
+        chance = load8(policy, command * decisions * stages * points + at)
+        hold = hold - chance
+        if begin < j + EIGHT and j < end:
+            after = load8(worth.changed, command * row + j) + price
+            given = given + choose((place >= begin) & (place < end), chance * after, 0.0)
+    return hold, given
+
+
+@part_inline
+def held_or_given(hold, given, worth, h, q, j):
+    """(worth of holding to the next node, of the decision, of holding to the next sample), for eight energies.
+
+    Where the next sample may be at this node again, the geometric series is summed.
+    """
+    ahead, reach = worth.ahead, worth.ahead.shape[0]
+    stride, at = ahead.shape[1] * ahead.shape[2] * ahead.shape[3], (h * ahead.shape[2] + q) * ahead.shape[3] + j
+    f, at_once = load8(worth.quanta, j), load8(ahead, stride + at)
+    step = least(whole(f), reach - 2)
+    x = least(f - fraction(step), 1.0)
+    value = (hold * x * at_once + given) / (1.0 - hold * (1.0 - x))
+    held = (1.0 - x) * value + x * at_once
+    for r in range(1, reach - 1):
+        lanes = step == r
+        if holds_anywhere(lanes):
+            later = (1.0 - x) * load8(ahead, r * stride + at) + x * load8(ahead, (r + 1) * stride + at)
+            held, value = choose(lanes, later, held), choose(lanes, hold * later + given, value)
+    return at_once, value, held
+
+
+@part
+def add_slopes(slopes, prices, worth, density, state, gradient):
+    """Add what a state costs more or less by every line to `gradient` (C, R, K + 1).
+
+    Each command is compared with the one that goes a stage less far.
+    """
+    decision, k, h, q = state
+    price, changed = prices.command[0], worth.changed
+    for command in range(slopes.shape[0]):
+        for j in range(worth.told[command, 0], worth.told[command, 1]):
+            mass, slope = density[decision, h, q, j], slopes[command, decision, k, j]
+            if slope != 0.0 and abs(mass) >= NEGLIGIBLE_MASS:
+                nearer = worth.held[j] if command < 2 else price + changed[command - 2, j]
+                gradient[command, decision, k] += mass * slope * (price + changed[command, j] - nearer)
 
 
 @part
 def decided(policy, slopes, density, command, state, first, last):
     """Range of energies within [first, last) that hold every state for which the value of a command counts."""
-    while first < last and not counts(policy, slopes, density, command, state, first):
-        first += 1
-    while first < last and not counts(policy, slopes, density, command, state, last - 1):
-        last -= 1
+    found = EIGHT
+    while first < last and found == EIGHT:
+        found = first_lane(counts(policy, slopes, density, command, state, first))
+        first += found
+    first, found = min(first, last), -1
+    while first < last and found < 0:
+        count = min(last - first, EIGHT)
+        found = last_lane(counts(policy, slopes, density, command, state, last - count), count)
+        last -= count - 1 - found
     return first, last
 
 
-@part
+@part_inline
 def counts(policy, slopes, density, command, state, j):
-    """Whether the value of a command counts in a state: it may be given there, or the gradient asks for it.
+    """Whether the value of a command counts at eight energies: it may be given there, or the gradient asks for it.
 
     The gradient compares each command with the one that goes a stage less far. `density` of length 0: every state is
     visited, and there is no gradient.
     """
-    decision, k, h, q = state
-    may_be_given = policy[command, decision, k, j] > NEGLIGIBLE_PROBABILITY
-    if density.shape[0] == 0:
-        return may_be_given
-    if abs(density[decision, h, q, j]) < NEGLIGIBLE_MASS:
-        return False
-    farther = min(command + 2, slopes.shape[0] - 2 + command % 2)
-    return may_be_given or slopes[command, decision, k, j] != 0.0 or slopes[farther, decision, k, j] != 0.0
+    _, decisions, stages, points = policy.shape
+    stride, at = decisions * stages * points, (state.decision * stages + state.stage) * points + j
+    found = load8(policy, command * stride + at) > NEGLIGIBLE_PROBABILITY
+    if density.shape[0] > 0:
+        farther = min(command + 2, slopes.shape[0] - 2 + command % 2)
+        asked = magnitude(load8(slopes, command * stride + at)) + magnitude(load8(slopes, farther * stride + at))
+        mass = ((state.decision * density.shape[1] + state.mode) * density.shape[2] + state.level) * density.shape[3]
+        found = (found | (asked > 0.0)) & (magnitude(load8(density, mass + j)) >= NEGLIGIBLE_MASS)
+    return found
