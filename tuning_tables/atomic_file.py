@@ -6,10 +6,15 @@ directory entry is forced out too. Leftovers of a killed process are known by th
 
 from __future__ import annotations
 
+import atexit
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Final
+
+_UNFINISHED: Final[set[Path]] = set()
+"""Files that this process is writing; removed by what it does at its end, also where a signal has it leave a block."""
 
 
 @contextmanager
@@ -24,6 +29,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     part = target.with_name(f".{target.name}.{os.urandom(8).hex()}.part")
     with faults_naming(target, part):
         try:
+            _UNFINISHED.add(part)
             os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
             yield part
             _force_to_disk(part)
@@ -32,6 +38,15 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         except BaseException:
             part.unlink(missing_ok=True)
             raise
+        finally:
+            _UNFINISHED.discard(part)
+
+
+@atexit.register
+def _remove_unfinished() -> None:
+    for part in tuple(_UNFINISHED):
+        with suppress(OSError):
+            part.unlink()
 
 
 def write_atomically(path: str | os.PathLike[str], content: bytes) -> None:

@@ -15,6 +15,9 @@ UNITS: Final[Mapping[str, Mapping[str, float]]] = {
 """By declared unit: what a file may write, and how much of the declared unit it is. "tons" alone are no unit: they may
 be short or long ones."""
 
+IN_NAMES: Final = {"_m_s": "m/s", "_m": "m", "_t": "t", "_permille": "permille"}
+"""By the end of a key: the unit that it has."""
+
 WRITTEN: Final = re.compile(r"([-+]?[0-9]+(?:\.[0-9]+)?) ?([^0-9]+)")
 
 
@@ -28,6 +31,12 @@ def in_unit(raw: Any, unit: str) -> Any:
     found = WRITTEN.fullmatch(raw) if isinstance(raw, str) else None
     factor = UNITS.get(unit, {}).get(found[2]) if found else None
     return raw if found is None or factor is None else float(found[1]) * factor
+
+
+def unit_in_name(key: str) -> str:
+    """The unit that ends `key`, of those that may be written in another way; '' where it has none of them."""
+    found = (unit for end, unit in IN_NAMES.items() if key.endswith(end) and not key.endswith(f"_per{end}"))
+    return next(found, "")
 
 
 def words_for(raw: object, unit: str) -> str:

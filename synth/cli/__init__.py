@@ -19,7 +19,6 @@ from typing import NoReturn
 from synth.frame.terminal.telling import (
     DAMAGED,
     INPUT_FAULT,
-    INTERRUPTED,
     LIMITS_MISSED,
     MACHINE_FAULT,
     OK,
@@ -66,14 +65,16 @@ def keep_freed_memory() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line (by default that of the process) and return its exit code."""
-    from synth.cli.commands import run
+    from synth.frame.terminal.interrupt import interruptible
     from synth.frame.terminal.standard_streams import standard_streams
 
     # See `synth.solver.one_blas_thread`; before BLAS is loaded it starts no threads at all.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     # No other package changes what a file may say, and nobody waits while all that are installed are asked for plugins.
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
-    with standard_streams() as stderr:
+    with interruptible(), standard_streams() as stderr:
+        from synth.cli.commands import run
+
         code = told(lambda: run(sys.argv[1:] if arguments is None else list(arguments)))
         flushed = told(flush_stdout)
         if code in (OK, LIMITS_MISSED):
@@ -97,9 +98,6 @@ def told(call: Callable[[], int]) -> int:
     except ReaderLeftError:  # whoever read our output has had enough of it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return PIPE_CLOSED
-    except KeyboardInterrupt:
-        say("interrupted")
-        return INTERRUPTED
     except OSError as fault:
         return told_of_system(fault)
     except MemoryError:

@@ -30,7 +30,7 @@ app = typer.Typer(
 
 def run(arguments: list[str]) -> int:
     """Run the command in `arguments`; the exit code. A fault of use is told in one line and gives 2."""
-    from synth.frame.terminal.telling import INPUT_FAULT, INTERRUPTED, say
+    from synth.frame.terminal.telling import INPUT_FAULT, say
 
     try:
         code = app(arguments, prog_name="retarder-synth", standalone_mode=False)
@@ -40,8 +40,6 @@ def run(arguments: list[str]) -> int:
         else:
             say(f"{fault.format_message().rstrip('.')}; see 'retarder-synth --help'")
         return INPUT_FAULT
-    if code == INTERRUPTED:  # typer has made that of Ctrl-C, without a word
-        raise KeyboardInterrupt
     return code or 0
 
 

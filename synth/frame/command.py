@@ -179,7 +179,12 @@ class Verdict:
         return None if any(limit.kept is None for limit in self.limits) else True
 
     @property
+    def worst_first(self) -> tuple[Limit, ...]:
+        """The limits that are missed, then those that are not decided, then those that are kept."""
+        return tuple(sorted(self.limits, key=lambda limit: (False, None, True).index(limit.kept)))
+
+    @property
     def sentence(self) -> str:
         """The limits that are not kept, or that all are."""
-        missed = [limit.sentence for limit in self.limits if not limit.kept]
+        missed = [limit.sentence for limit in self.worst_first if not limit.kept]
         return "; ".join(missed or [limit.sentence for limit in self.limits])

@@ -34,8 +34,8 @@ class Column:
 
     `form` prints a number, and each of the three of an `Interval`; JSON and CSV keep all digits. `once`: a cell is
     blank where it and the `once` columns before it repeat the row above. `spare`: 0 for what a reader cannot do
-    without; of the others a narrow terminal leaves out the highest first. `detail`: no terminal shows it. `words`: the
-    cells are words. `grey`: values that are printed as not decided.
+    without; of the others a narrow terminal leaves out the highest first. `detail`: no terminal shows it. `code`: no
+    person sees it. `words`: the cells are words. `grey`: values that are printed as not decided.
     """
 
     key: str
@@ -45,6 +45,7 @@ class Column:
     once: bool = False
     spare: int = 0
     detail: bool = False
+    code: bool = False
     words: bool = False
     grey: Callable[[Any], bool] = never
 
@@ -94,11 +95,8 @@ def brief_value(value: Any, form: Form) -> str:
         ends = {form(each) for each in (value.value, value.low95, value.high95)}
         return ends.pop() if len(ends) == 1 else shown_value(value, form)
     half = form(value.half_width).lstrip("+")
-    return (
-        shown_value(value, form)
-        if half in (form(0.0).lstrip("+"), form(math.inf).lstrip("+"))
-        else f"{form(value.value)} ±{half}"
-    )
+    says_enough = half not in (form(0.0).lstrip("+"), form(math.inf).lstrip("+")) and value.is_told_by_half
+    return f"{form(value.value)} ±{half}" if says_enough else shown_value(value, form)
 
 
 @dataclass(frozen=True)
@@ -124,8 +122,9 @@ class Table:
 
     @property
     def seen(self) -> tuple[Column, ...]:
-        """The columns in which some row has a figure."""
-        return tuple(column for column in self.columns if any(column.has(row) for row in self.rows) or not self.rows)
+        """The columns for people in which some row has a figure."""
+        columns = (column for column in self.columns if not column.code)
+        return tuple(column for column in columns if any(column.has(row) for row in self.rows) or not self.rows)
 
 
 @dataclass(frozen=True)

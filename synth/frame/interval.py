@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from plant_models.errors import require
+
+ROUNDING: Final = 1e-12
+"""Of a figure: what a mean of equal numbers may be off by."""
 
 
 @dataclass(frozen=True)
@@ -31,3 +35,10 @@ class Interval:
     def half_width(self) -> float:
         """The wider half."""
         return max(self.high95 - self.value, self.value - self.low95)
+
+    @property
+    def is_told_by_half(self) -> bool:
+        """Whether value ± `half_width` is fair: not rounding alone, and across zero only where the interval is."""
+        half = self.half_width
+        across = self.low95 < 0.0 < self.high95 or not abs(self.value) < half
+        return across and half > ROUNDING * abs(self.value)

@@ -1,8 +1,8 @@
 """The marker of a directory of results: which command writes there, and which files it wrote.
 
-A line of JSON each: first the command; then a name when its file is begun, and the name with the SHA-256 of the content
-before the file takes that name. So whatever a killed command has left is known. A line that was torn is passed over:
-its file has not got its name.
+A line of JSON each: first the command, and the number of its run; then a name when its file is begun, and the name
+with the SHA-256 of the content before the file takes that name. So whatever a killed command has left is known. A line
+that was torn is passed over: its file has not got its name.
 """
 
 from __future__ import annotations
@@ -62,17 +62,21 @@ def is_inside(directory: Path, name: str) -> bool:
 class OwnFiles:
     """The files that a command wrote into `directory`, in this run or earlier; only its holder may make one.
 
-    Names are relative to the directory, with slashes. Raises `OSError` where the marker cannot be written.
+    Names are relative to the directory, with slashes. `run`: its number, from 0; a run that goes on where another was
+    killed has the number of that one. Raises `OSError` where the marker cannot be written.
     """
 
     def __init__(self, directory: Path, command: str) -> None:
         self._directory, self._command = directory, command
         self._contents: dict[str, set[str]] = {}
         self._lock = threading.Lock()
+        self.run = 0
         for line in lines_of(directory):
             match line:
                 case [str(name), *contents] if is_inside(directory, name):
                     self._contents.setdefault(name, set()).update(map(str, contents))
+                case {"run": int(number)}:
+                    self.run = number
 
     def __iter__(self) -> Iterator[str]:
         """Names of the files, of which some may be gone or only begun."""
@@ -99,6 +103,11 @@ class OwnFiles:
         was_written = bool(self._contents.get(name))
         return was_written and os.path.lexists(self._directory / name) and self.content_of(name) is None
 
+    def begin_run(self) -> None:
+        """Note, on the disk when this returns, that the run before has ended, and this is the next one."""
+        self.run += 1
+        self._append({"run": self.run}, to_disk=True)
+
     def begin(self, name: str) -> None:
         """Note that the file `name` is being written, beside the name that it will get."""
         with self._lock:
@@ -113,7 +122,7 @@ class OwnFiles:
                 self._contents[name].add(content)
                 self._append([name, content], to_disk=True)
 
-    def _append(self, line: list[str], to_disk: bool = False) -> None:
+    def _append(self, line: object, to_disk: bool = False) -> None:
         marker = self._directory / MARKER
         with faults_naming(marker), marker.open("ab") as file:
             file.write(b"\n" + line_of(line))  # the newline ends a line that was torn
@@ -127,7 +136,7 @@ class OwnFiles:
             kept = {name: self.content_of(name) for name in sorted(self._contents)}
             lost = {name: self._contents[name] for name, content in kept.items() if self.is_changed(name)}
             self._contents = {name: {content} for name, content in kept.items() if content is not None} | lost
-            lines = [line_of({"format": FORMAT, "command": self._command})]
+            lines = [line_of({"format": FORMAT, "command": self._command, "run": self.run})]
             lines += [line_of([name, each]) for name, contents in self._contents.items() for each in sorted(contents)]
             write_atomically(self._directory / MARKER, b"\n".join(lines) + b"\n")
 

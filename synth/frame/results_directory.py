@@ -58,6 +58,11 @@ class ResultsDirectory:
         """Whether a next run of the command goes on from what this one or an earlier one has stored."""
         return self._own.stores
 
+    @property
+    def run(self) -> int:
+        """The number of this run; the same as of the one before, if that was killed before its summary was there."""
+        return self._own.run
+
     def names_below(self, folder: str) -> tuple[str, ...]:
         """The files below `folder` that this command wrote, in this run or earlier."""
         return tuple(name for name in sorted(self._own) if name.startswith(f"{folder}/") and self._own.content_of(name))
@@ -193,6 +198,8 @@ def results_directory(
         require_apart(path, own, reading, inputs)
         results = ResultsDirectory(path, own, reading)
         results.remove_leftovers()
+        if own.content_of(SUMMARY) is not None:
+            own.begin_run()
         results.remove(SUMMARY)
         own.tidy()  # which has the names in the directory on the disk, too
         yield results

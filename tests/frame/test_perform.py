@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 
 from plant_models import PlantError
 from synth.frame.asked_file import asked_of
-from synth.frame.command import Verdict
+from synth.frame.command import Limit, Verdict
 from synth.frame.command_guide import CommandGuide, Shown
 from synth.frame.command_line import Listed, add_listed, listed_group
 from synth.frame.exhibits import Chapter, Column, Table, brief_value
@@ -27,6 +27,7 @@ from synth.frame.page.told_page import shown
 from synth.frame.printed_numbers import ABSENT, as_known
 from synth.frame.sheet import to_csv
 from synth.frame.summary import plain, rows_of
+from synth.frame.terminal.progress import pace
 from synth.frame.told import Told
 from tests.frame.results import results_in
 from tests.frame.small_command import COMMAND, CoinOptions
@@ -171,6 +172,7 @@ def test_a_whole_number_is_exact_in_json(number: int) -> None:
 @given(value=st.floats(0.1, 2.0), below=st.floats(0.0, 1.0), above=st.floats(0.0, 1.0))
 def test_a_brief_interval_reaches_as_far_as_the_whole_one(value: float, below: float, above: float) -> None:
     assume(max(below, above) > 0.001)
+    assume(value > max(below, above))  # else ± would tell of numbers below zero
     told = brief_value(Interval(value, value - below, value + above, 9), "{:.3f}".format)
     assert float(told.partition(" ±")[2]) == pytest.approx(max(below, above), abs=0.00051)
 
@@ -184,6 +186,19 @@ def test_what_never_comes_has_no_half_width() -> None:
 @pytest.mark.parametrize(
     ("value", "low", "high", "told"),
     [
+        (0.01, 0.0013, 0.0344, "0.01 [0.0013, 0.0344]"),  # a share: ± would reach below 0
+        (-0.01, -0.0344, -0.0013, "-0.01 [-0.0344, -0.0013]"),
+        (0.01, -0.002, 0.0344, "0.01 ±0.0244"),  # a difference, whose sign is not decided
+        (1.7, 1.7 - 7e-16, 1.7, "1.7 [1.7, 1.7]"),  # a mean of equal speeds
+    ],
+)
+def test_half_an_interval_tells_no_more_than_all_of_it(value: float, low: float, high: float, told: str) -> None:
+    assert brief_value(Interval(value, low, high, 9), "{:.3g}".format) == told
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "told"),
+    [
         (2_970_355.0, -19.2e6, 19.9e6, 3e6),
         (933_211.0, -461e3, 2.43e6, 9e5),
         (1.2345, 1.2, 1.25, 1.234),
@@ -192,6 +207,22 @@ def test_what_never_comes_has_no_half_width() -> None:
 )
 def test_an_amount_has_no_more_figures_than_it_is_known_to(value: float, low: float, high: float, told: float) -> None:
     assert as_known(value, low, high) == pytest.approx(told, rel=1e-12)
+
+
+def test_what_is_missed_is_told_before_what_is_not_decided() -> None:
+    verdict = Verdict((Limit("kept", True), Limit("open", None), Limit("missed", False)))
+    assert (verdict.kept, verdict.sentence) == (False, "missed; open")
+
+
+def test_what_is_for_programs_is_not_shown_to_people() -> None:
+    table = Table("cuts", "Cuts", (Column("title", "of"), Column("name", "code", code=True)), [{"title": 1, "name": 2}])
+    assert [column.key for column in table.seen] == ["title"]
+    assert to_csv(table).splitlines()[-1] == b"1,2"
+
+
+def test_a_rate_is_told_where_there_is_one() -> None:
+    assert pace(0.2, 1, 0.0, "cases") == "0.2 s"
+    assert pace(219.0, 1, 3066.0, "cases") == "219 s, 0.27 cases a minute, about 3066 s left"
 
 
 def test_a_long_table_is_named_on_the_page_and_not_shown() -> None:

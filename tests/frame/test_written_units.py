@@ -8,13 +8,14 @@ from typing import Any
 import jsonschema
 import pytest
 
-from plant_models.library.written_units import UNITS, in_unit
+from plant_models.library.written_units import UNITS, in_unit, unit_in_name
 from synth.frame.input_error import InputError
 from synth.frame.settings.schema import schema_of
 from synth.frame.settings.section import Section, many, setting, setting_limits, setting_unit
 from synth.frame.settings.settings_file import settings_in
 from synth.hump.forms.hump_csv import from_csv, to_csv
 from synth.hump.hump_file import parse_hump
+from synth.retarder.configuration.settings import Settings
 from tests.frame.test_declared_settings import FILES, declared, nested
 from tests.plant_models.hump.small_hump import SMALL
 
@@ -79,6 +80,22 @@ def test_every_declared_number_may_be_written_with_its_units(
         for key in path:
             found = getattr(found, key)
         assert found == pytest.approx(value, rel=1e-9, abs=1e-9)
+
+
+def test_numbers_of_the_library_take_those_of_the_unit_in_their_key() -> None:
+    tree = {
+        "entry": {"low_m_s": "18 km/h"},
+        "targets": {"exit_speeds_m_s": [2.5, "9 km/h"]},
+        "track": {"grade_permille": "1.1 %"},
+        "cut": [{"car": "gondola-4", "mass_t": "80 short tons"}],
+    }
+    found = settings_in(Settings, tree, "x.toml")
+    assert (found.entry.low_m_s, found.targets.exit_speeds_m_s, found.track.grade_permille) == (5.0, (2.5, 2.5), 11.0)
+    assert found.cut[0].mass_t == pytest.approx(72.574779)
+    validator = jsonschema.Draft202012Validator(schema_of(Settings, "Configuration"))
+    assert validator.is_valid(tree)
+    assert not validator.is_valid({"entry": {"low_m_s": "18 t"}})
+    assert unit_in_name("slope_kn_per_kpa_per_t") == unit_in_name("delay_s") == ""
 
 
 def test_the_page_tells_all_of_them() -> None:

@@ -34,7 +34,6 @@ FAULTS = (
     (OSError(errno.ENOENT, "x", "file"), INPUT_FAULT),
     (OSError("of a library"), UNFORESEEN),
     (MemoryError(), MACHINE_FAULT),
-    (KeyboardInterrupt(), INTERRUPTED),
     (ValueError("x"), UNFORESEEN),
     (ZeroDivisionError("x"), UNFORESEEN),
 )

@@ -16,7 +16,6 @@ from xml.etree import ElementTree
 
 import pytest
 
-from synth.cli import main
 from synth.frame.held_directory import LOCK
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import LEFTOVER
@@ -181,12 +180,33 @@ def command_of(pid: int) -> bytes:
         return b""
 
 
-def test_ctrl_c_before_the_work_begins_is_told(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def interrupted(*_: object) -> int:
-        raise KeyboardInterrupt
+SWALLOWING = """
+import signal, sys, time, weakref
+import synth.cli.hump
+from synth.cli import main
+from tuning_tables.atomic_file import replacing
 
-    monkeypatch.setattr("synth.cli.hump.check_command", interrupted)
-    assert main(["hump", "check", "medium"]) == 130
-    assert capsys.readouterr().err == "retarder-synth: interrupted\n"
+class Given: ...
+
+def ends(reference):
+    signal.raise_signal(signal.SIGINT)
+    time.sleep(0.01)  # Python takes signals between two steps
+
+def check_command(source, manner):  # Ctrl-C comes while a file of it is being written
+    with replacing(source) as part:
+        given = Given()
+        reference = weakref.ref(given, ends)
+        del given
+    return 0
+
+synth.cli.hump.check_command = check_command
+sys.exit(main(["hump", "check", sys.argv[1]]))
+"""
+
+
+def test_ctrl_c_ends_a_command_without_results_and_its_unfinished_file(tmp_path: Path) -> None:
+    """Also where Python drops an exception, as it does while an object is given up."""
+    command = [sys.executable, "-c", SWALLOWING, str(tmp_path / "hump.toml")]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (130, "retarder-synth: interrupted\n")
+    assert list(tmp_path.iterdir()) == []

@@ -1,7 +1,7 @@
 """Measured passes as CSV: one long table under a header line, one row a sample.
 
 numpy parses whole blocks of lines. Only where it gives up, each line is gone through by itself, to name the fault.
-A decimal comma is read as a point in the whole file, texts too.
+A decimal comma is read as a point in all rows, texts too. Rows of empty cells at the end, as of spreadsheets, are none.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from tuning_tables.pass_log.log_columns import (
     LogColumns,
     TextRuns,
 )
-from tuning_tables.pass_log.log_mapping import PATHS, LogMapping
+from tuning_tables.pass_log.log_mapping import DELIMITERS, PATHS, LogMapping
 from tuning_tables.pass_log.pass_log import ROWS, PassLog
 from tuning_tables.regular_file import read_regular_file
 
@@ -46,18 +46,20 @@ NUMBER: Final = re.compile(r"\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan
 def read_csv_log(path: Path, mapping: LogMapping) -> LogColumns:
     """The rows of the CSV file at `path`; `InvalidLog` names file, row and column of what is wrong; `OSError`."""
     source = os.fspath(path)
-    text, is_cut_off = _text_of(path, mapping)
+    text, is_cut_off = _text_of(path)
     *lines, end = text.split("\n")
     independent, header = _first_lines(source, lines)
     if len(lines) <= header:
         raise _no_rows(source)
     places = _places(source, lines[header], header + 1, mapping)
-    broken = None
-    if is_cut_off or (end.strip() and not _is_whole(end, places, mapping)):
+    if mapping.decimal == ",":
+        *lines, end = text.replace(",", ".").split("\n")
+    broken, blank = None, f" \t{mapping.delimiter}"
+    if is_cut_off or (end.strip(blank) and not _is_whole(end, places, mapping)):
         broken = _broken_row(end, len(lines) + 1, places, mapping)
-    elif end.strip():  # only the last line feed is missing
+    elif end.strip(blank):  # only the last line feed is missing
         lines.append(end)
-    while broken is None and not lines[-1].strip():
+    while broken is None and len(lines) > header and not lines[-1].strip(blank):
         lines.pop()
     body = lines[header + 1 :]
     if not body:
@@ -113,7 +115,7 @@ def _no_rows(source: str) -> InvalidLog:
     return InvalidLog(f"{source}: no rows under a header line; give a log with columns {', '.join(COLUMNS)}.")
 
 
-def _text_of(path: Path, mapping: LogMapping) -> tuple[str, bool]:
+def _text_of(path: Path) -> tuple[str, bool]:
     """The text, and whether it ends within a character or in zero bytes: both are left where the power was lost."""
     try:
         content = read_regular_file(path, LARGEST_FILE_BYTES)
@@ -128,8 +130,7 @@ def _text_of(path: Path, mapping: LogMapping) -> tuple[str, bool]:
     is_cut_off = len(written) < len(content) or bool(decoder.getstate()[0])
     if "\0" in text:
         raise InvalidLog(f"{path}: character {text.index(chr(0))} is a zero byte; this is no CSV file.")
-    text = text.replace("\r\n", "\n").removesuffix("\r")
-    return text.replace(",", ".") if mapping.decimal == "," else text, is_cut_off
+    return text.replace("\r\n", "\n").removesuffix("\r"), is_cut_off
 
 
 def _is_whole(line: str, places: dict[str, int], mapping: LogMapping) -> bool:
@@ -166,17 +167,15 @@ def _places(source: str, line: str, row: int, mapping: LogMapping) -> dict[str, 
     places = {}
     for name in COLUMNS:
         foreign = mapping.columns.get(name, name)
-        if mapping.decimal == ",":
-            foreign = foreign.replace(",", ".")
         if found.count(foreign) > 1:
             raise InvalidLog(f"{source}: row {row}: the column {foreign} stands there twice; take one of them out.")
         if foreign in found and name not in mapping.constant:
             places[name] = found.index(foreign)
         elif name in mapping.columns or (name not in OPTIONAL and name not in mapping.constant):
-            raise InvalidLog(
-                f"{source}: row {row}: there is no column {foreign}, only {excerpt(', '.join(found), 200)}; add it, or "
-                "tell by a mapping what it is called."
-            )
+            told = f"{source}: row {row}: there is no column {foreign}, only {excerpt(', '.join(found), 200)}"
+            other = next((each for each in DELIMITERS if len(found) == 1 and each in line), None)
+            remedy = f"give delimiter = {other!r} in a mapping" if other else "add it, or tell its name by a mapping"
+            raise InvalidLog(f"{told}; {remedy}.")
     return places
 
 

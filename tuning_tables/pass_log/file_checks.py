@@ -25,6 +25,7 @@ UNIT_RATIOS: Final = (
     (2.237, "speed_m_s", 'in mph: give [units] speed_m_s = "mph" in a mapping'),
     (0.3048, "path_m", 'in feet: give [units] path_m = "ft" in a mapping'),
     (1000.0, "time_s", 'in milliseconds: give [units] time_s = "ms" in a mapping'),
+    (0.001, "time_s", "divided by 1000 once too often: take the unit ms out of the mapping"),
 )
 """Measured speed / path in time, the column that is suspected, and what it seems to be."""
 

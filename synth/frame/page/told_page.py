@@ -43,7 +43,7 @@ def first_screen(told: Told) -> Markup:
 
 def verdict_box(told: Told) -> Markup:
     """Accepted, not, or not decidable, limit by limit; nothing where nothing is judged."""
-    limits = told.verdict.limits
+    limits = told.verdict.worst_first
     if not limits:
         return Markup()
     items = [element("li", f"{WORDS[limit.kept]}: {limit.sentence}") for limit in limits]

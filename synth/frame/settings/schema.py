@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from plant_models.library.written_units import unit_schema
-from synth.frame.settings.section import Section
+from plant_models.library.written_units import unit_in_name, unit_schema
+from synth.frame.settings.section import OF_LIBRARY, Section
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
@@ -22,9 +22,15 @@ def with_units(node: Any, unit: str = "") -> Any:
     if not isinstance(node, dict):
         return node
     declared = node["unit"] if isinstance(node.get("unit"), str) else unit
-    inner = {key: with_units(each, declared) for key, each in node.items()}
+    in_node = ((key, each, unit_in_name(key) if is_of_library(each) else declared) for key, each in node.items())
+    inner = {key: with_units(each, of_it) for key, each, of_it in in_node}
     written = unit_schema(declared)
     if written is None or inner.get("type") != "number":
         return inner
     number = {key: inner.pop(key) for key in ("type", "minimum", "maximum") if key in inner}
     return {**inner, "anyOf": [number, written]}
+
+
+def is_of_library(node: Any) -> bool:
+    """Whether a part of a schema is that of a value of the library, whose key has its unit."""
+    return isinstance(node, dict) and node.get("source") == OF_LIBRARY

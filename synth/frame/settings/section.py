@@ -88,18 +88,24 @@ class Section(BaseModel):
         """Numbers that are written with another unit, in the declared one."""
         if not isinstance(given, dict):
             return given
-        units = {key: setting_unit(field) for key, field in cls.model_fields.items()}
-        written = {key for key, value in given.items() if units.get(key) and isinstance(value, str | list | dict)}
+        fields = {key: field for key, field in cls.model_fields.items() if setting_unit(field) or is_of_library(field)}
+        written = [key for key, value in given.items() if key in fields and isinstance(value, str | list | dict)]
         if not written:
             return given
-        from plant_models.library.written_units import in_unit  # the package of the plant has numpy
+        from plant_models.library.written_units import in_unit, unit_in_name  # the package of the plant has numpy
 
-        return {key: in_unit(value, units[key]) if key in written else value for key, value in given.items()}
+        units = {key: setting_unit(fields[key]) or unit_in_name(key) for key in written}
+        return {key: in_unit(value, units[key]) if key in units else value for key, value in given.items()}
 
 
 def setting_unit(field: FieldInfo) -> str:
     """Unit of a declared number, or of those of a list; '' of another field."""
     return extra_of(field, "unit")
+
+
+def is_of_library(field: FieldInfo) -> bool:
+    """Whether a type of the library has the value and its unit, which stands in the key."""
+    return setting_source(field) == OF_LIBRARY
 
 
 def setting_source(field: FieldInfo) -> str:

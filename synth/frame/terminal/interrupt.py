@@ -1,10 +1,9 @@
-"""Ctrl-C or SIGTERM while threads or processes compute: this process ends at once and leaves no unfinished file."""
+"""Ctrl-C or SIGTERM: this process ends at once and leaves no unfinished file."""
 
 from __future__ import annotations
 
 import contextlib
 import signal
-import sys
 import threading
 from collections.abc import Iterator
 from types import FrameType
@@ -22,9 +21,10 @@ ENDING: Final = (signal.SIGINT, signal.SIGTERM)
 
 @contextlib.contextmanager
 def interruptible(directory: ResultsDirectory | None = None, result: str = "book") -> Iterator[None]:
-    """Within, these signals end the process with code 130, after removing unfinished files from `directory`.
+    """Within, these signals end the process with code 130, as `leave` does; told of is the `directory` of its `result`.
 
-    Not by an exception: it would wait for threads that compute for seconds and cannot be told to stop.
+    Not by an exception: it would wait for threads that compute for seconds and cannot be told to stop, and Python drops
+    one that is raised where an object is given up.
     """
     if threading.current_thread() is not threading.main_thread():  # only the main thread may take signals
         yield
@@ -33,14 +33,10 @@ def interruptible(directory: ResultsDirectory | None = None, result: str = "book
     def end(number: int, frame: FrameType | None) -> None:
         for each in ENDING:
             signal.signal(each, signal.SIG_IGN)
-        if directory is not None:
-            with contextlib.suppress(OSError):
-                directory.remove_leftovers()
         said = "interrupted" if directory is None else f"interrupted; {directory.path} holds no complete {result}"
         on = directory is not None and directory.goes_on
-        say(f"{said}, but what the same command goes on from" if on else said)
-        with contextlib.suppress(OSError, ValueError):
-            sys.stdout.flush()
+        with contextlib.suppress(OSError, RuntimeError, ValueError):  # stderr may be in the middle of a line
+            say(f"{said}, but what the same command goes on from" if on else said)
         leave(INTERRUPTED)
 
     before = {each: signal.signal(each, end) for each in ENDING}

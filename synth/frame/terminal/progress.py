@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 
+from synth.frame.printed_numbers import few
 from synth.frame.terminal.manner import Manner
 
 
@@ -72,5 +73,7 @@ class Progress:
 
 def pace(elapsed_s: float, done: int, left_s: float, noun: str) -> str:
     """Rate so far and time to come."""
-    rate = f"{elapsed_s:.0f} s, {60.0 * done / max(elapsed_s, 1e-3):.0f} {noun} a minute"
+    if elapsed_s < 1.0:
+        return f"{elapsed_s:.1f} s"
+    rate = f"{elapsed_s:.0f} s, {few(60.0 * done / elapsed_s)} {noun} a minute"
     return f"{rate}, about {left_s:.0f} s left" if left_s > 0.5 else rate

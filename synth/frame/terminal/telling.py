@@ -23,7 +23,7 @@ def leave(code: int) -> NoReturn:
     """End the process at once with `code`.
 
     Python is not taken apart, which lasts a fifth of a second after a tune; but all that was registered for the end is
-    done, temporary directories removed among it.
+    done: temporary directories and unfinished files are removed.
     """
     atexit._run_exitfuncs()
     os._exit(code)

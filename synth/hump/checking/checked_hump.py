@@ -29,7 +29,7 @@ PLACES: Final = (
     Column("bad_m_s", "bad runner", "m/s", decimals(1)),
 )
 
-WARNINGS: Final = (Column("about", "about", detail=True, words=True), Column("sentence", "warnings", words=True))
+WARNINGS: Final = (Column("about", "about", code=True, words=True), Column("sentence", "warnings", words=True))
 
 
 @dataclass(frozen=True)

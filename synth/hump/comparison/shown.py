@@ -50,7 +50,7 @@ def figures(runs: Sequence[HumpedRun]) -> Iterator[Exhibit]:
 
 NAMES: Final = (
     Column("title", "figure", words=True, once=True),
-    Column("name", "name", words=True, detail=True),
+    Column("name", "name", words=True, code=True),
     Column("run", "run", words=True),
 )
 

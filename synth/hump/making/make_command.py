@@ -82,7 +82,7 @@ def show(made: MadeHump) -> Iterator[Chapter]:
             Chart("plan-and-profile", title, caption, partial(drawn, hump, route)),
         ),
     )
-    told = f"'retarder-synth hump simulate {HUMP_FILE}' humps trains over it; every line of the file may be changed."
+    told = f"'retarder-synth hump simulate' humps trains over {HUMP_FILE}; every line of the file may be changed."
     yield Chapter("What stands where", (*made.checked.exhibits(), Sentence(told, {}, brief=True)))
 
 

@@ -23,7 +23,7 @@ OF_DRAWN_TRACKS: Final = {"tracks.free_low", "tracks.free_high"}
 OF_SHIFTS: Final = {"tracks.pulled_from_share"}
 """What counts only where trains come to the same tracks."""
 
-BESIDE_ONE_SPEED: Final = {"constant_m_s", "early_s", "slow_down_s"}
+BESIDE_ONE_SPEED: Final = {"constant_m_s", "early_s"}
 """Of [hump_speed], what counts where there is one speed for all cuts; it stands in place of the rest."""
 
 CHANGES_NO_TRAIN: Final = ("trains.number", "acceptance.")

@@ -116,10 +116,8 @@ def state_file(asked: AskedPosition) -> str:
 def kept_of(asked: AskedPosition, directory: ResultsDirectory) -> KeptWatch:
     """What earlier runs have kept of a position."""
     path = directory.path / state_file(asked)
-    if not path.is_file():
-        return KeptWatch()
-    kept = from_npz(path.read_bytes(), str(path), asked.config.sha256)
-    return kept.anew() if asked.is_repaired else kept
+    kept = from_npz(path.read_bytes(), str(path), asked.config.sha256) if path.is_file() else KeptWatch()
+    return kept.in_run(directory.run, asked.is_repaired)
 
 
 def watched_position(run_length: float, asked: AskedPosition, kept: KeptWatch) -> WatchedPosition:

@@ -17,6 +17,7 @@ from tuning_tables.seal import seal_of, unsealed
 
 DEPENDS: Final = "config_sha256"
 OF_LOG: Final = "log."
+WHOLE: Final = ("first", "run", "new", "repaired")
 
 
 def to_npz(kept: KeptWatch, config_sha256: str) -> bytes:
@@ -26,7 +27,7 @@ def to_npz(kept: KeptWatch, config_sha256: str) -> bytes:
         "seen": kept.seen,
         "value_keys": np.array(list(kept.values), dtype=np.str_),
         "values": np.array(list(kept.values.values()), dtype=np.float64),
-        "first": np.array(kept.first),
+        **{name: np.array(getattr(kept, name)) for name in WHOLE},
         "names": np.array(kept.names, dtype=np.str_),
         "sums": kept.sums,
         "limit": np.array(kept.limit),
@@ -50,10 +51,10 @@ def from_npz(content: bytes, source: str, config_sha256: str) -> KeptWatch:
                     dict(zip(arrays["value_keys"].tolist(), arrays["values"].tolist(), strict=True))
                 ),
                 log=log_in(arrays),
-                first=int(arrays["first"]),
                 names=tuple(arrays["names"].tolist()),
                 sums=arrays["sums"],
                 limit=float(arrays["limit"]),
+                **{name: int(arrays[name]) for name in WHOLE},
             )
             require_fitting(kept)
             return kept if str(arrays[DEPENDS]) == config_sha256 else kept.anew()

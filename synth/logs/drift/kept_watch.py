@@ -40,6 +40,7 @@ class KeptWatch:
     `values`: the numbers that drifts are counted from. `log`: the last passes, of which the first is number `first`
     of all that were watched; None before there are any. `sums` (m, charts) after each, by `names`. `limit`: where a
     sum gave the alarm; NaN while none has. `seen`: digests of all passes that were ever read, each once, rising.
+    `run`: the number of the run that read the last `new` of them; `repaired`: of the last one told of a repair.
     """
 
     seen: NDArray[np.uint64] = field(default_factory=lambda: np.empty(0, np.uint64))
@@ -49,6 +50,9 @@ class KeptWatch:
     names: tuple[str, ...] = ()
     sums: Floats = field(default_factory=lambda: np.empty((0, 0)))
     limit: float = float("nan")
+    run: int = 0
+    new: int = 0
+    repaired: int = -1
 
     @property
     def watched(self) -> int:
@@ -63,7 +67,13 @@ class KeptWatch:
 
     def anew(self) -> KeptWatch:
         """After a repair, or with other numbers: passes that were read stay read, and nothing else is kept."""
-        return KeptWatch(self.seen)
+        return KeptWatch(self.seen, run=self.run, repaired=self.repaired)
+
+    def in_run(self, run: int, is_repaired: bool) -> KeptWatch:
+        """What run number `run` begins with; it has read something where it was killed and goes on."""
+        begun = self.anew() if is_repaired and self.repaired != run else self
+        repaired = run if is_repaired else self.repaired
+        return replace(begun, run=run, new=begun.new if self.run == run else 0, repaired=repaired)
 
     def sums_by(self, names: Sequence[str]) -> Floats:
         """The sums of charts `names`, 0 of those that are new, (m, charts)."""
@@ -76,12 +86,16 @@ class KeptWatch:
 
 @dataclass(frozen=True, eq=False)
 class WatchedNight:
-    """What a run makes of a position: what is `kept`, how many passes were `new`, and what has drifted, if anything."""
+    """What a run makes of a position: what is `kept`, and what has drifted, if anything."""
 
     kept: KeptWatch
-    new: int
     limit: float
     found: Watch | None
+
+    @property
+    def new(self) -> int:
+        """How many passes were new."""
+        return self.kept.new
 
     @property
     def highest(self) -> float:
@@ -118,19 +132,16 @@ def watched_night(
         own = digests(log)
         _, once = np.unique(own, return_index=True)
         is_new = np.isin(np.arange(len(log)), once) & ~np.isin(own, kept.seen)
-        kept = replace(kept, seen=np.union1d(kept.seen, own))
+        kept = replace(kept, seen=np.union1d(kept.seen, own), new=kept.new + int(is_new.sum()))
         numbers = np.flatnonzero(is_new & ~log.stopped_by_hand)
         if alarm is not None:
             numbers = numbers[: max(0, alarm + FURTHER + 1 - len(kept.sums))]
-        new = int(is_new.sum())
         kept = with_passes(kept, log.taken(numbers), config, place) if len(numbers) else kept
-    else:
-        new = 0
     limit = limit_of(len(kept.names), run_length) if alarm is None and kept.names else kept.limit
     kept = replace(kept, limit=limit)
     if kept.alarm is None:
-        return WatchedNight(trimmed(replace(kept, limit=float("nan"))), new, limit, None)
-    return WatchedNight(kept, new, limit, found_in(kept, config, place))
+        return WatchedNight(trimmed(replace(kept, limit=float("nan"))), limit, None)
+    return WatchedNight(kept, limit, found_in(kept, config, place))
 
 
 def with_passes(kept: KeptWatch, log: PassLog, config: ResolvedConfig, place: str) -> KeptWatch:

@@ -69,10 +69,21 @@ def test_a_pass_that_comes_twice_counts_once(yard: Yard, passes: FittingPasses) 
     one = watched_night(KeptWatch(), passes.log, yard.config, "the test", RUN_LENGTH)
     assert (one.new, one.found) == (len(passes), None)
     renamed = replace(passes.log, cut_id=tuple(f"again/{each}" for each in passes.log.cut_id))
-    two = watched_night(one.kept, renamed, yard.config, "the test", RUN_LENGTH)
+    begun = one.kept.in_run(1, is_repaired=False)
+    two = watched_night(begun, renamed, yard.config, "the test", RUN_LENGTH)
     assert two.new == 0
-    assert to_npz(two.kept, "sha") == to_npz(one.kept, "sha")
+    assert to_npz(two.kept, "sha") == to_npz(begun, "sha")
     assert watched_night(two.kept, None, yard.config, "the test", RUN_LENGTH).highest == one.highest
+
+
+def test_a_run_that_goes_on_counts_what_the_killed_one_has_read() -> None:
+    kept = replace(KeptWatch(), first=7, new=40, run=3)
+    assert (kept.in_run(3, False).new, kept.in_run(4, False).new) == (40, 0)
+    repaired = kept.in_run(4, True)
+    assert (repaired.watched, repaired.run, repaired.new) == (0, 4, 0)
+    stored = replace(repaired, first=5, new=20)
+    assert stored.in_run(4, True).watched == stored.watched == 5
+    assert (stored.in_run(4, True).new, stored.in_run(5, True).watched) == (20, 0)
 
 
 def test_what_is_kept_is_whole_or_refused(yard: Yard, passes: FittingPasses) -> None:

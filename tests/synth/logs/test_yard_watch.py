@@ -43,6 +43,7 @@ def test_a_yard_is_watched_night_by_night(
     passes: FittingPasses, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     for name, text in (("yard.toml", YARD), ("trial.toml", SMALL), ("knp-5.toml", text_of_classes())):
         Path(name).write_text(text, encoding="utf-8")
 
@@ -55,6 +56,8 @@ def test_a_yard_is_watched_night_by_night(
     night(tmp_path, 0, passes, 0.0)
     code, told = watched()
     assert (code, told["figures"]["drifted"], told["figures"]["new_passes"]) == (0, 0, 80)
+    Path("out/summary.json").unlink()  # as if it had been killed just before: every position is stored
+    assert watched() == (code, told)
     night(tmp_path, 1, passes, 0.1)
     code, told = watched()
     assert (code, told["figures"]["drifted"], told["figures"]["new_passes"]) == (1, 1, 80)

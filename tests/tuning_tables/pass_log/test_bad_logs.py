@@ -133,6 +133,14 @@ def test_a_file_that_is_no_table_is_refused(tmp_path: Path, change: Callable[[Ta
     assert str(path) in str(refused.value)
 
 
+def test_cells_that_stand_apart_by_another_sign_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    write_log(sample_log(passes=2, rows=ROWS), path)
+    path.write_text(path.read_text(encoding="utf-8").replace(",", ";"), encoding="utf-8")
+    with pytest.raises(InvalidLog, match=r"only cut_id;time_s;.*; give delimiter = ';' in a mapping"):
+        read_logs([path], None, 2)
+
+
 @pytest.mark.requirement("LOG-02")
 @pytest.mark.parametrize(
     ("column", "factor", "words"),
@@ -140,6 +148,7 @@ def test_a_file_that_is_no_table_is_refused(tmp_path: Path, change: Callable[[Ta
         ("speed_m_s", 3.6, 'column speed_m_s: the measured speed is 3.6 times the path in time; speed_m_s seems'),
         ("speed_m_s", 1 / 3.6, "divided by 3.6 once too often"),
         ("path_m", 1 / 0.3048, "path_m seems to be in feet"),
+        ("time_s", 0.001, "time_s seems to be divided by 1000 once too often"),
         ("pressure_kpa", 0.01, "if it is in bar"),
     ],
 )  # fmt: skip

@@ -65,7 +65,7 @@ def test_a_log_of_quoted_cells_is_the_same(tmp_path: Path) -> None:
 
 def test_a_foreign_log_is_read_by_a_mapping(tmp_path: Path) -> None:
     log = sample_log(gauge=True)
-    lines = ["nr;t;Weg;v;p;Stufe;Gewicht;Klasse"]
+    lines = ["nr;t;Weg, ft;v;p;Stufe;Gewicht;Klasse"]
     for number in range(len(log)):
         for row in range(log.rows(number).start, log.rows(number).stop):
             lines.append(
@@ -75,10 +75,10 @@ def test_a_foreign_log_is_read_by_a_mapping(tmp_path: Path) -> None:
                     f"{log.mass_t[number] * 1000:.6f}", "Т",
                 ]).replace(".", ",")
             )  # fmt: skip
-    (tmp_path / "log.csv").write_bytes(("\ufeff" + "\r\n".join(lines) + "\r\n").encode())
+    (tmp_path / "log.csv").write_bytes(("\ufeff" + "\r\n".join(lines) + "\r\n;;;;;;;" * 2).encode())
     (tmp_path / "mapping.toml").write_text(
         'delimiter = ";"\ndecimal = ","\npath = "from speed"\n'
-        '[columns]\ncut_id = "nr"\ntime_s = "t"\npath_m = "Weg"\nspeed_m_s = "v"\npressure_kpa = "p"\n'
+        '[columns]\ncut_id = "nr"\ntime_s = "t"\npath_m = "Weg, ft"\nspeed_m_s = "v"\npressure_kpa = "p"\n'
         'stage = "Stufe"\nmass_t = "Gewicht"\ncategory = "Klasse"\n'
         '[units]\ntime_s = "ms"\npath_m = "ft"\nspeed_m_s = "km/h"\npressure_kpa = "bar"\nmass_t = "kg"\n'
         "[constant]\naxles = 4\ntarget_m_s = 2.0\n",

@@ -41,8 +41,9 @@ def couplings(found: TrainOutcomes, limits: CouplingLimits = USUAL_COUPLINGS) ->
         11.0,
         5.0,
         "Coupling speeds and gaps",
-        f"Of {counted(judged, 'cut')} that reached a track undisturbed, {speeds.sum()} coupled and {gaps.sum()} left a "
-        f"gap; {found.gap_m.sum() / max(judged, 1):.1f} m of gap a cut",
+        f"Of {counted(judged, 'cut')} that reached a track undisturbed, {speeds.sum()} coupled, {gaps.sum()} left a "
+        f"gap, {judged - speeds.sum() - gaps.sum()} did neither; "
+        f"{found.gap_m.sum() / max(judged, 1):.1f} m of gap a cut",
     )
     place(figure, left=0.7, right=0.25, bottom=1.3, top=0.9, w=0.24)
     of_speeds, of_gaps = figure.subplots(1, 2)

@@ -51,14 +51,14 @@ def in_hundred(share: float) -> str:
 
 SHARES: Final = (
     Column("title", "of all cuts", words=True),
-    Column("name", "name", words=True, detail=True),
+    Column("name", "name", words=True, code=True),
     Column("share", "share", "%", in_hundred),
     Column("n", "cuts", spare=1),
     Column("enough_n", "cuts for ±0.5 %", spare=2, form=lambda number: f"{math.ceil(number):,}"),
 )
 MEANS: Final = (
     Column("title", "of all trains", words=True),
-    Column("name", "name", words=True, detail=True),
+    Column("name", "name", words=True, code=True),
     Column("mean", "mean"),
     Column("unit", "unit", words=True),
 )

@@ -58,7 +58,7 @@ def couplings_tile(told: dict[str, TrainFigure], result: HumpedTrial) -> Tile:
     kept = kept_within(over, result.config.settings.acceptance.overspeed or 1.0)
     return Tile(
         f"{three_figures(100.0 * over.value)} %",
-        f"of the couplings are faster than {limits.allowed_m_s:.3g} m/s ({KM_H * limits.allowed_m_s:.3g} km/h); "
+        f"of the cuts couple faster than {limits.allowed_m_s:.3g} m/s ({KM_H * limits.allowed_m_s:.3g} km/h); "
         f"{three_figures(100.0 * harmful.value)} % faster than {limits.harmful_m_s:.3g} m/s "
         f"({KM_H * limits.harmful_m_s:.3g} km/h)",
         kept,
@@ -92,7 +92,7 @@ def where_caught(result: HumpedTrial) -> str:
     if not counts.any():
         return "No cut caught up."
     places = told_most(counts, [routes.graph.element_called(number) for number in routes.numbers])
-    return f"Where cuts were misrouted, or ran into the cut ahead: {places}."
+    return f"Where cuts caught up, misrouted or in contact ahead of the last position: {places}."
 
 
 def where_closest(result: HumpedTrial) -> str:

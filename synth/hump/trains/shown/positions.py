@@ -38,9 +38,9 @@ POSITIONS: Final = (
     Column("strokes_per_pass", "commands to valves a pass", spare=3),
 )
 HOW_TO_READ: Final = (
-    "For want of brake: the full brake, at mean friction, leaves these cuts faster than commanded. Told: the standard "
-    f"deviation of the exit speed that the hump file, the configuration or the book has. Above {100 * MOST_SHORT:g} % "
-    "the position is too weak for these cuts: its figures are not those of its regulator."
+    "For want of brake: the full brake, at mean friction, leaves these cuts faster than commanded. Stated: the "
+    f"standard deviation of the exit speed that the hump file, the configuration or the book has. Above "
+    f"{100 * MOST_SHORT:g} % the position is too weak for these cuts: its figures are not those of its regulator."
 )
 AIMS: Final = (
     Column("tracks", "tracks", words=True, once=True),

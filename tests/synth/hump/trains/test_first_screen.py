@@ -104,6 +104,9 @@ def test_tiles_promise_no_more_than_the_figures(full: tuple[HumpedTrial, TrainCu
     assert isinstance(exits, Table)
     caught = result.found.caught.sum() / result.found.cuts.sum()
     assert tiles.tiles[1].figure == f"one cut in {one_in(caught)}"
+    over = result.found.overspeed.sum() / result.found.judged.sum()  # of cuts, whether they coupled or left a gap
+    assert tiles.tiles[2].figure == f"{100.0 * over:.3g} %"
+    assert tiles.tiles[2].of.startswith("of the cuts couple faster than 1.39 m/s")
     (row,) = exits.rows
     assert row["L_m_s"] is None
     assert row["T_m_s"].value == pytest.approx(result.found.commands_m_s.sum() / result.found.passes.sum())

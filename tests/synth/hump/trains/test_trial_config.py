@@ -95,10 +95,11 @@ def test_what_changes_trains_changes_their_hash(text: str) -> None:
 
 
 def test_what_a_plan_at_one_speed_depends_on_is_in_the_hash() -> None:
-    """Exit speeds of such a plan come from a first sweep that keeps `early_s`; the least interval has no part in it."""
+    """Exit speeds of such a plan come from a first sweep that keeps `early_s`; no slower step has a part in it."""
     one = "[hump_speed]\nconstant_m_s = 2.2\n"
     assert resolved(f"{one}early_s = 4.0").trains_sha256 != resolved(one).trains_sha256
     assert resolved(f"{one}least_s = 4.0").trains_sha256 == resolved(one).trains_sha256
+    assert resolved(f"{one}slow_down_s = 4.0").trains_sha256 == resolved(one).trains_sha256
 
 
 def test_the_same_hump_by_name_path_and_in_a_configuration(tmp_path: Path) -> None:
