@@ -6,11 +6,14 @@ import json
 import os
 import platform
 import shutil
+import subprocess
 import sys
+import time
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+import psutil
 import pytest
 
 from synth.cli.qualification import structured_text
@@ -148,6 +151,29 @@ one.join(20.0)
 print(one.is_alive())
 """
     assert process([sys.executable, "-c", text, str(tmp_path)], tmp_path).out == "False\n"
+
+
+def test_the_program_ends_with_a_command_that_is_killed(tmp_path: Path) -> None:
+    text = """\
+import sys
+from pathlib import Path
+from synth.cli.qualification import program
+waits = "import os, time; from pathlib import Path; Path('pid').write_text(f'{os.getpid()}.'); time.sleep(60)"
+program.ENTRY = (*program.ENTRY[:3], f"{program.WATCH}; {waits}")
+program.program("", Path(sys.argv[1]))
+"""
+    command = subprocess.Popen([sys.executable, "-c", text, str(tmp_path)])
+    told = tmp_path / "pid"
+    while not (told.exists() and told.read_text().endswith(".")):
+        assert command.poll() is None
+        time.sleep(0.01)
+    one = psutil.Process(int(told.read_text().rstrip(".")))
+    command.kill()
+    command.wait()
+    patience = time.monotonic() + 20.0
+    while one.is_running() and one.status() != psutil.STATUS_ZOMBIE:  # nobody may be there to bury it
+        assert time.monotonic() < patience
+        time.sleep(0.01)
 
 
 def test_one_number_is_changed(books: Books) -> None:
