@@ -16,7 +16,8 @@ from pathlib import Path
 import psutil
 import pytest
 
-from synth.cli.qualification import structured_text
+from synth.cli.qualification import any_time, structured_text
+from synth.cli.qualification.any_time import any_time_checks, any_time_tables
 from synth.cli.qualification.c_code import COMPILERS, c_checks, compiler_check, fault_check, self_test
 from synth.cli.qualification.check import Outcome
 from synth.cli.qualification.golden import ELSEWHERE, LIBRARIES, golden_check, golden_of, kept
@@ -32,6 +33,7 @@ from synth.cli.qualification.second_program import (
     with_other_number,
 )
 from synth.cli.qualification.tuned import ESTIMATED, KINDS, MEASURED, Tuned
+from tuning_tables import Decisions, Status, TableBook, from_json
 
 Books = Mapping[str, Tuned]
 FAILED = Tuned(ESTIMATED, Path("nowhere"), Ran(70, "", "a fault"), {})
@@ -99,7 +101,7 @@ def test_a_tune_that_failed_is_told_and_nothing_is_said_of_its_book() -> None:
     assert (check.outcome, check.found) == (Outcome.FAILED, "exit code 70: a fault")
     others = [
         *plain_checks([FAILED], [FAILED]), prediction_check(FAILED), verify_check(FAILED), loop_check(FAILED),
-        *planted_checks(FAILED), *c_checks(FAILED), *structured_text.st_checks(FAILED),
+        *planted_checks(FAILED), *any_time_checks(FAILED), *c_checks(FAILED), *structured_text.st_checks(FAILED),
     ]  # fmt: skip
     assert {check.outcome for check in others} == {Outcome.NOT_CHECKED}
 
@@ -109,6 +111,20 @@ def test_the_second_program_confirms_a_book_and_finds_what_is_planted(books: Boo
         assert check.outcome is Outcome.PASSED, check.found
     unchanged = planted("nothing", "", books[ESTIMATED], {})
     assert unchanged.outcome is Outcome.FAILED
+
+
+def test_the_book_at_any_time_reaches_what_the_small_tunes_do_not(books: Books, tmp_path: Path) -> None:
+    measured = replace(books[MEASURED], folder=tmp_path / MEASURED)
+    for check in any_time_checks(measured):
+        assert check.outcome is Outcome.PASSED, check.found
+    made = TableBook(tuple(any_time_tables(from_json(next(iter(measured.tables.values()))))))
+    assert all(table.has_gauge and table.decisions is Decisions.AT_ANY_TIME for table in made.tables)
+    # Before the entrance another stage is the highest than behind it.
+    assert all(table.stages[table.entrance_stage].upper is not None for table in made.tables)
+    first = made.tables[0].target_speed_m_s
+    category, axles = made.tables[0].cut.category, len(made.tables[0].cut.axle_offsets_m)
+    between = [made.choose(category, axles, first + part * any_time.APART_M_S).status for part in (0.5, 1.5)]
+    assert between == [Status.BETWEEN, Status.SLOWER]
 
 
 def test_a_prediction_outside_its_limits_fails(books: Books) -> None:
