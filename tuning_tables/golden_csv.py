@@ -1,57 +1,42 @@
-"""The golden vectors and tracks of a book as CSV, for controllers in other languages."""
+"""Golden rows as CSV, for controllers in other languages."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
-from tuning_tables.golden_tracks import GoldenTrack
-from tuning_tables.golden_vectors import Floats, GoldenVectors
-from tuning_tables.table_book import TableBook
-
-VECTORS_FILE = "golden_vectors.csv"
-TRACKS_FILE = "golden_tracks.csv"
-
-VECTOR_COLUMNS = "s_bits,v_bits,s_m,v_m_s"
-VECTOR_COLUMNS_OF_GAUGE = "s_bits,v_bits,p_bits,s_m,v_m_s,pressure_kpa"
+Columns: TypeAlias = Mapping[str, npt.NDArray[Any]]
+"""Arrays (n,) by name: texts, whole numbers, or float32."""
 
 
-def vectors_csv(book: TableBook, vectors: list[GoldenVectors]) -> bytes:
-    """All golden vectors, CR LF: table number and id, stage, path and speed as bits and as numbers, answer.
+def golden_csv(columns: Columns) -> bytes:
+    """n rows below the names of their columns, CR LF.
 
-    If a table of the book has a gauge, the pressure stands behind the speed, as bits and as a number.
+    In the place of a column NAME of float32 are its bits, as NAME_bits; its numbers are behind all columns, as NAME.
     """
-    gauge = any(table.has_gauge for table in book.tables)
-    rows = [f"table,id,stage,{VECTOR_COLUMNS_OF_GAUGE if gauge else VECTOR_COLUMNS},answer"]
-    for number, (table, each) in enumerate(zip(book.tables, vectors, strict=True)):
-        name = '"' + table.id.replace('"', '""') + '"'
-        columns = reading_columns(each, gauge)
-        bits = zip(*(values.view(np.uint32) for values in columns), strict=True)
-        for k, words, values, answer in zip(each.stage, bits, zip(*columns, strict=True), each.answer, strict=True):
-            fields = [*(f"{word:08x}" for word in words), *(f"{value:.9g}" for value in values)]
-            rows.append(f"{number},{name},{k},{','.join(fields)},{answer}")
-    return ("\r\n".join(rows) + "\r\n").encode("utf-8")
+    exact: dict[str, Sequence[object]] = {}
+    numbers: dict[str, Sequence[object]] = {}
+    for name, column in columns.items():
+        if column.dtype == np.float32:
+            exact[f"{name}_bits"] = [f"{word:08x}" for word in column.view(np.uint32)]
+            numbers[name] = [f"{value:.9g}" for value in column]
+        else:
+            exact[name] = column.tolist()
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow([*exact, *numbers])
+    writer.writerows(zip(*exact.values(), *numbers.values(), strict=True))
+    return text.getvalue().encode("utf-8")
 
 
-def reading_columns(vectors: GoldenVectors, gauge: bool) -> Sequence[Floats]:
-    """Path and speed, and the pressure if a table of the book has a gauge."""
-    return (vectors.s_m, vectors.v_m_s, *((vectors.pressure_kpa,) if gauge else ()))
-
-
-def tracks_csv(book: TableBook, tracks: Sequence[GoldenTrack]) -> bytes:
-    """All golden tracks, CR LF: track, table number and id, readings and estimate as bits and as numbers.
-
-    Path in m, speeds in m/s, overpressure in kPa; then the number of samples since the last reading that was believed,
-    and the alarm word. A track begins with a cut of which nothing is known.
-    """
-    columns = ("s", "v", "overpressure", "estimate")
-    units = ("s_m", "v_m_s", "overpressure_kpa", "estimate_m_s", "unseen_samples", "alarms")
-    rows = [",".join(("track", "table", "id", *(f"{name}_bits" for name in columns), *units))]
-    for number, track in enumerate(tracks):
-        name = '"' + book.tables[track.number].id.replace('"', '""') + '"'
-        bits = zip(*(values.view(np.uint32).tolist() for values in track.samples[: len(columns)]), strict=True)
-        for words, values in zip(bits, zip(*track.samples, strict=True), strict=True):
-            fields = [*(f"{word:08x}" for word in words), *(f"{value:.9g}" for value in values)]
-            rows.append(f"{number},{track.number},{name},{','.join(fields)}")
-    return ("\r\n".join(rows) + "\r\n").encode("utf-8")
+def golden_csv_of_tables(ids: Sequence[str], golden: Sequence[Columns]) -> bytes:
+    """The golden rows of each table, behind its number and id."""
+    lengths = [len(next(iter(each.values()))) for each in golden]
+    told = {"table": np.arange(len(ids)), "id": np.array(ids)}
+    rows = {name: np.concatenate([each[name] for each in golden]) for name in golden[0]}
+    return golden_csv({**{name: np.repeat(column, lengths) for name, column in told.items()}, **rows})

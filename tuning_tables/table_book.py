@@ -123,6 +123,10 @@ class TableBook:
     def __repr__(self) -> str:
         return f"TableBook({len(self.tables)} tables of {self.tables[0].retarder.name})"
 
+    def __reduce__(self) -> tuple[type[TableBook], tuple[tuple[ControllerTable, ...]]]:
+        """For pickle and copy: the tables; what follows from them is worked out anew."""
+        return TableBook, (self.tables,)
+
     @cached_property
     def category_numbers(self) -> Mapping[str, int | None]:
         """The number of every weight category, None for one without, in order of first appearance."""

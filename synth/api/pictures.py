@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING
 
 from synth.api.as_a_command import as_a_command
 from synth.frame.exhibits import Chart, exhibits_of
@@ -92,6 +92,11 @@ def figures(result: Identified | HumpedTrial | AimTables) -> dict[str, Figure]:
     dict of matplotlib.figure.Figure
         By the names that the files of the command have.
 
+    Raises
+    ------
+    TypeError
+        Something else was given.
+
     Examples
     --------
     >>> import synth
@@ -113,5 +118,5 @@ def figures(result: Identified | HumpedTrial | AimTables) -> dict[str, Figure]:
 
             return dict(aim_figures(result.tables))
         case _:
-            assert_never(result)
+            raise TypeError(f"{type(result).__name__} is no result with pictures; see help(synth.figures)")
     return {each.name: each.draw() for each in exhibits if isinstance(each, Chart)}

@@ -12,8 +12,8 @@ from synth.checker.float32 import decide, from_bits, rises
 from synth.checker.source_file import rows_below
 from synth.checker.table_reading import Table
 
-HEAD: Final = ["table", "id", "stage", "s_bits", "v_bits", "s_m", "v_m_s", "answer"]
-HEAD_WITH_GAUGE: Final = [*HEAD[:5], "p_bits", *HEAD[5:7], "pressure_kpa", "answer"]
+HEAD: Final = ["table", "id", "stage", "s_m_bits", "v_m_s_bits", "answer", "s_m", "v_m_s"]
+HEAD_WITH_GAUGE: Final = [*HEAD[:5], "pressure_kpa_bits", *HEAD[5:], "pressure_kpa"]
 """Where a table has slopes."""
 
 
@@ -27,7 +27,7 @@ def differences(content: bytes, tables: Sequence[Table]) -> Iterator[tuple[str, 
     for place, row in enumerate(rows, start=2):
         try:
             number, name, stage = int(row[0]), row[1], int(row[2])
-            s, v, answer = from_bits(int(row[3], 16)), from_bits(int(row[4], 16)), int(row[len(head) - 1])
+            s, v, answer = from_bits(int(row[3], 16)), from_bits(int(row[4], 16)), int(row[head.index("answer")])
             kpa = from_bits(int(row[5], 16)) if has_gauge else math.nan
             table = tables[number] if number >= 0 else None
         except (ValueError, IndexError, struct.error) as fault:

@@ -14,9 +14,9 @@ from synth.checker.float32 import bits, from_bits
 from synth.checker.source_file import rows_below
 from synth.checker.table_reading import Table
 
-WORDS: Final = ("s_bits", "v_bits", "overpressure_bits", "estimate_bits")
-VALUES: Final = ("s_m", "v_m_s", "overpressure_kpa", "estimate_m_s", "unseen_samples", "alarms")
-HEAD: Final = ["track", "table", "id", *WORDS, *VALUES]
+READINGS: Final = ("s_m", "v_m_s", "overpressure_kpa", "estimate_m_s")
+WORDS: Final = tuple(f"{name}_bits" for name in READINGS)
+HEAD: Final = ["track", "table", "id", *WORDS, "unseen_samples", "alarms", *READINGS]
 
 Sample = tuple[int, int, int, int, float, float]
 
@@ -50,7 +50,7 @@ def sample_of(row: Sequence[str]) -> Sample:
         words = [int(cell, 16) for cell in row[3:7]]
         for word in words:
             from_bits(word)
-        unseen, alarms = float(row[-2]), float(row[-1])
+        unseen, alarms = float(row[7]), float(row[8])
     except (ValueError, struct.error) as fault:
         raise DamagedError(f"{shown(row)} is no sample: {fault}") from None
     return words[0], words[1], words[2], words[3], unseen, alarms

@@ -23,8 +23,7 @@ from tests.controller_code.sample_book import approaching_book
 from tests.st_files import st_files
 from tests.tuning_tables.forged_book import forge, put
 from tuning_tables import Approach, TableBook, read_book, to_json, write_book
-from tuning_tables.c_source import c_files
-from tuning_tables.golden_csv import vectors_csv
+from tuning_tables.c_source import c_files, vectors_csv
 from tuning_tables.golden_vectors import GoldenVectors, golden_vectors
 from tuning_tables.rule import decide_many
 from tuning_tables.st_source import TABLE_FILE

@@ -121,15 +121,15 @@ def change_text(file: Path, pattern: str, replacement: str) -> None:
     [
         (
             "c/golden_tracks.csv",
-            r'\n(0,0,"[^"]*",\w+,\w+,\w+),\w+,',
+            r"\n(0,0(?:,[^,]*){4}),\w+,",
             r"\n\1,40000000,",
             r"the estimate at sample \d+ of track '0'",
         ),
-        ("c/golden_tracks.csv", r",0,(\d\r\n)", r",1,\1", r"the estimate at sample \d+ of track '0'"),
-        ("c/golden_tracks.csv", r",0(\r\n)", r",2\1", r"the estimate at sample \d+ of track '0'"),
+        ("c/golden_tracks.csv", r"(\n(?:[^,\n]*,){7})0,", r"\g<1>1,", r"the estimate at sample \d+ of track '0'"),
+        ("c/golden_tracks.csv", r"(\n(?:[^,\n]*,){8})0,", r"\g<1>2,", r"the estimate at sample \d+ of track '0'"),
         ("c/golden_tracks.csv", r"\n1,0,", "\n1,7,", "track '1' is of table '7'"),
         ("c/golden_tracks.csv", r"(?s)\n.*", "\n", "its estimator has no golden track"),
-        ("c/golden_tracks.csv", r'\n(0,0,"[^"]*"),\w+,', r"\n\1,x,", "is no sample"),
+        ("c/golden_tracks.csv", r"\n(0,0,[^,]*),\w+,", r"\n\1,x,", "is no sample"),
     ],
 )
 def test_a_wrong_golden_track_is_found(estimated: Path, name: str, pattern: str, replacement: str, words: str) -> None:

@@ -67,7 +67,7 @@ def change_text(file: Path, pattern: str, replacement: str) -> None:
     [
         ("c/retarder_table.c", r"\S+, /\* mass_t", "0x1.8p+1f, /* mass_t", "the crc32 of table 0"),
         ("c/retarder_table.c", r"retarder_table_count = 2", "retarder_table_count = 1", "retarder_table_count is 1"),
-        ("c/golden_vectors.csv", r"(?m),0\r$", ",1\r", r"golden_vectors.csv: row \d+ says 1"),
+        ("c/golden_vectors.csv", r"(?m)^(0(?:,[^,]*){4}),0,", r"\1,1,", r"golden_vectors.csv: row \d+ says 1"),
         ("st/retarder_table.st", r"(-?\d\.\d{8})\d(E-\d\d)", r"\g<1>X\2", "something else than REAL"),
         ("st/retarder_table.st", r"MassOf : ARRAY(.*?)\[(\s*)2", r"MassOf : ARRAY\1[\g<2>3", r"masst of table 0 is"),
     ],

@@ -10,8 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scripts.studies.in_the_loop.held_words import held_record, held_words, places
-from tests.controller_code.conftest import Built
+from scripts.studies.in_the_loop.builds import Build
+from scripts.studies.in_the_loop.controller_process import COMMAND, Controller, sources_of
+from scripts.studies.in_the_loop.held_words import held_record, held_words, places, table_words
+from synth.cli.qualification.second_program import with_other_number
+from tests.controller_code.built_program import built as built_of
+from tests.controller_code.conftest import Built, Tool
+from tests.controller_code.sample_book import sample_book
 from tuning_tables import decide_for, from_json, read_book, to_json, write_book
 from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.line_code import line_code
@@ -42,6 +47,21 @@ def test_every_changed_byte_of_a_table_is_found(book: TableBook, built: Built) -
     place, change = np.divmod(np.arange(len(damaged)), len(CHANGES))
     damaged[np.arange(len(damaged)), place] ^= CHANGES[change]
     assert not controller.intact(damaged.view(np.uint32)).any()
+
+
+@pytest.mark.requirement("CODE-07")
+@pytest.mark.parametrize("number", [0, 1])
+def test_between_a_damaged_table_and_a_sound_one_is_a_damaged_one(number: int, tmp_path: Path, tool: Tool) -> None:
+    book = sample_book()
+    files = dict(sources_of(book, SMALL))
+    before, mark, table = files["retarder_table.c"].partition(f"/* {number}: {book.tables[number].id} */".encode())
+    files["retarder_table.c"] = before + mark + with_other_number(table)
+    process = files.pop("controller_process.c").decode("ascii")
+    command = tuple(built_of(files, process, tmp_path, Build(tool("gcc"), ("-O0",))))
+    controller = Controller(command, table_words(book))
+    statuses, chosen = controller.select(np.array([(1, 4, 2.0), (1, 4, 2.5), (1, 4, 3.3)], COMMAND))
+    assert statuses.tolist() == [0, 1, 0]
+    assert controller.intact(chosen).tolist() == [number == 1, False, number == 0]
 
 
 @pytest.mark.requirement("FILE-05")
@@ -77,9 +97,8 @@ def test_json_book_and_c_hold_the_same_bits(book: TableBook, tmp_path: Path, bui
 def test_golden_vectors_as_csv_are_answered_as_they_say(book: TableBook) -> None:
     rows = list(csv.DictReader(io.StringIO(c_files(book)["golden_vectors.csv"].decode("utf-8"), newline="")))
     assert len(rows) > 300 * len(book.tables)
-    columns = {"s_bits": "s_m", "v_bits": "v_m_s"} | (
-        {"p_bits": "pressure_kpa"} if held_record(book).room["gauge"] else {}
-    )
+    names = ["s_m", "v_m_s", *(["pressure_kpa"] if held_record(book).room["gauge"] else [])]
+    columns = {f"{name}_bits": name for name in names}
     assert {*rows[0]} == {"table", "id", "stage", *columns, *columns.values(), "answer"}
     for row in rows:
         reading = [np.array([int(row[key], 16)], np.uint32).view(np.float32)[0] for key in columns]

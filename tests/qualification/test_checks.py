@@ -6,14 +6,18 @@ import json
 import os
 import platform
 import shutil
+import subprocess
 import sys
+import time
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+import psutil
 import pytest
 
-from synth.cli.qualification import structured_text
+from synth.cli.qualification import any_time, structured_text
+from synth.cli.qualification.any_time import any_time_checks, any_time_tables
 from synth.cli.qualification.c_code import COMPILERS, c_checks, compiler_check, fault_check, self_test
 from synth.cli.qualification.check import Outcome
 from synth.cli.qualification.golden import ELSEWHERE, LIBRARIES, golden_check, golden_of, kept
@@ -29,6 +33,7 @@ from synth.cli.qualification.second_program import (
     with_other_number,
 )
 from synth.cli.qualification.tuned import ESTIMATED, KINDS, MEASURED, Tuned
+from tuning_tables import Decisions, Status, TableBook, from_json
 
 Books = Mapping[str, Tuned]
 FAILED = Tuned(ESTIMATED, Path("nowhere"), Ran(70, "", "a fault"), {})
@@ -96,7 +101,7 @@ def test_a_tune_that_failed_is_told_and_nothing_is_said_of_its_book() -> None:
     assert (check.outcome, check.found) == (Outcome.FAILED, "exit code 70: a fault")
     others = [
         *plain_checks([FAILED], [FAILED]), prediction_check(FAILED), verify_check(FAILED), loop_check(FAILED),
-        *planted_checks(FAILED), *c_checks(FAILED), *structured_text.st_checks(FAILED),
+        *planted_checks(FAILED), *any_time_checks(FAILED), *c_checks(FAILED), *structured_text.st_checks(FAILED),
     ]  # fmt: skip
     assert {check.outcome for check in others} == {Outcome.NOT_CHECKED}
 
@@ -106,6 +111,20 @@ def test_the_second_program_confirms_a_book_and_finds_what_is_planted(books: Boo
         assert check.outcome is Outcome.PASSED, check.found
     unchanged = planted("nothing", "", books[ESTIMATED], {})
     assert unchanged.outcome is Outcome.FAILED
+
+
+def test_the_book_at_any_time_reaches_what_the_small_tunes_do_not(books: Books, tmp_path: Path) -> None:
+    measured = replace(books[MEASURED], folder=tmp_path / MEASURED)
+    for check in any_time_checks(measured):
+        assert check.outcome is Outcome.PASSED, check.found
+    made = TableBook(tuple(any_time_tables(from_json(next(iter(measured.tables.values()))))))
+    assert all(table.has_gauge and table.decisions is Decisions.AT_ANY_TIME for table in made.tables)
+    # Before the entrance another stage is the highest than behind it.
+    assert all(table.stages[table.entrance_stage].upper is not None for table in made.tables)
+    first = made.tables[0].target_speed_m_s
+    category, axles = made.tables[0].cut.category, len(made.tables[0].cut.axle_offsets_m)
+    between = [made.choose(category, axles, first + part * any_time.APART_M_S).status for part in (0.5, 1.5)]
+    assert between == [Status.BETWEEN, Status.SLOWER]
 
 
 def test_a_prediction_outside_its_limits_fails(books: Books) -> None:
@@ -148,6 +167,29 @@ one.join(20.0)
 print(one.is_alive())
 """
     assert process([sys.executable, "-c", text, str(tmp_path)], tmp_path).out == "False\n"
+
+
+def test_the_program_ends_with_a_command_that_is_killed(tmp_path: Path) -> None:
+    text = """\
+import sys
+from pathlib import Path
+from synth.cli.qualification import program
+waits = "import os, time; from pathlib import Path; Path('pid').write_text(f'{os.getpid()}.'); time.sleep(60)"
+program.ENTRY = (*program.ENTRY[:3], f"{program.WATCH}; {waits}")
+program.program("", Path(sys.argv[1]))
+"""
+    command = subprocess.Popen([sys.executable, "-c", text, str(tmp_path)])
+    told = tmp_path / "pid"
+    while not (told.exists() and told.read_text().endswith(".")):
+        assert command.poll() is None
+        time.sleep(0.01)
+    one = psutil.Process(int(told.read_text().rstrip(".")))
+    command.kill()
+    command.wait()
+    patience = time.monotonic() + 20.0
+    while one.is_running() and one.status() != psutil.STATUS_ZOMBIE:  # nobody may be there to bury it
+        assert time.monotonic() < patience
+        time.sleep(0.01)
 
 
 def test_one_number_is_changed(books: Books) -> None:

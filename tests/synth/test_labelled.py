@@ -148,6 +148,8 @@ def test_figures_of_aim_tables_are_those_of_the_command() -> None:
 
 
 def test_what_cannot_be_is_told_in_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(TypeError, match="str is no result with pictures"):
+        synth.figures("x")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="str is neither a table nor passes"):
         synth.to_xarray("table")  # type: ignore[arg-type]
     monkeypatch.setitem(sys.modules, "xarray", None)

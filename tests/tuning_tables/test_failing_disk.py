@@ -82,24 +82,25 @@ def test_a_full_disk_is_an_os_error_that_names_the_book(book: Path, tmp_path: Pa
     assert sorted(os.listdir(tmp_path)) == ["book.h5", "whole.h5"]
 
 
-def with_a_gap(content: bytes) -> bytes:
-    """`content` with nothing in its second quarter, as where a write was lost."""
+def with_a_gap(content: bytes, at: int) -> bytes:
+    """`content` with nothing in one of its quarters, as where a write was lost."""
     quarter = len(content) // 4
-    return content[:quarter] + bytes(quarter) + content[2 * quarter :]
+    return content[: at * quarter] + bytes(quarter) + content[(at + 1) * quarter :]
 
 
+@pytest.mark.parametrize("lost", [0, 1])
 @pytest.mark.parametrize("lost_before_the_seal", [True, False])
 def test_what_was_written_is_read_back_before_it_takes_the_name(
-    table: ControllerTable, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lost_before_the_seal: bool
+    table: ControllerTable, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lost_before_the_seal: bool, lost: int
 ) -> None:
     path = tmp_path / "book.h5"
     path.write_bytes(b"old")
     body, write = book_image.image_of, Path.write_bytes
     with monkeypatch.context() as patched:
         if lost_before_the_seal:
-            patched.setattr(hdf5_file, "image_of", lambda *parts: with_a_gap(body(*parts)))
+            patched.setattr(hdf5_file, "image_of", lambda *parts: with_a_gap(body(*parts), lost))
         else:
-            patched.setattr(Path, "write_bytes", lambda part, content: write(part, with_a_gap(content)))
+            patched.setattr(Path, "write_bytes", lambda part, content: write(part, with_a_gap(content, lost)))
         with pytest.raises(OSError, match="does not read back") as caught:
             write_book([table], path)
     assert caught.value.filename == str(path)

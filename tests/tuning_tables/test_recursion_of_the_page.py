@@ -32,7 +32,7 @@ STATE = (
     "begun", "s", "v", "xi", "x", "P11", "P12", "P13", "P22", "P23", "P33", "unseen", "reading", "repeated", "count",
     "doubted",
 )  # fmt: skip
-READINGS = {"path": "s_bits", "speed": "v_bits", "overpressure": "overpressure_bits"}
+READINGS = {"path": "s_m_bits", "speed": "v_m_s_bits", "overpressure": "overpressure_kpa_bits"}
 
 Row = dict[str, str]
 
@@ -113,7 +113,7 @@ def agreements(book: TableBook, tracks: list[tuple[int, list[Row]]], sample: str
             with np.errstate(all="ignore"):
                 readings = {name: number_of(row[column]) for name, column in READINGS.items()}
                 answer, unseen, alarms = filtered.observe(readings)
-            due = number_of(row["estimate_bits"])
+            due = number_of(row["estimate_m_s_bits"])
             same = answer.tobytes() == due.tobytes() or bool(np.isnan(answer) and np.isnan(due))
             yield same and (unseen, alarms) == (int(row["unseen_samples"]), int(row["alarms"]))
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -10,9 +13,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import ControllerTable, CutId, InvalidTable, Stage, decide_for
 from tuning_tables.active_table import active, between
 from tuning_tables.golden_vectors import line_speeds
+from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.programs.decide import decide
 from tuning_tables.stage import round_coefficients
 from tuning_tables.table_book import Choice, Status, TableBook
@@ -220,3 +225,13 @@ def test_the_ends_of_an_interpolation(table: ControllerTable) -> None:
     assert np.allclose(
         between(slower, faster, np.float32(3.0)).coefficients, active(faster).coefficients, rtol=1e-6, equal_nan=True
     )
+
+
+@pytest.mark.parametrize("through", [lambda book: pickle.loads(pickle.dumps(book)), copy.deepcopy])
+def test_a_book_that_was_asked_goes_to_another_process(
+    book: TableBook, through: Callable[[TableBook | PassageBook], TableBook | PassageBook]
+) -> None:
+    passages = PassageBook((table_of(),))
+    for each in (book, passages):
+        assert each.choose("medium", 4, 2.5) is not None
+        assert through(each) == each

@@ -49,9 +49,12 @@ int32_t {select}(int32_t category, int32_t axles, float commanded_m_s, {type} *c
 """
 
 BLENDED: Final = """\
-        if (blend(chosen, &{tables}[faster], commanded_m_s)) {{
+        const {type} *const other = &{tables}[faster];
+        /* Not 0 where either is damaged: then what lies between them is told as damaged, too. */
+        const uint32_t damage = (table_crc32(chosen) ^ chosen->crc32) | (table_crc32(other) ^ other->crc32);
+        if (blend(chosen, other, commanded_m_s)) {{
             chosen->target_m_s = commanded_m_s;
-            chosen->crc32 = table_crc32(chosen);
+            chosen->crc32 = table_crc32(chosen) ^ damage;
         }} else {{
             status = RETARDER_SLOWER;
         }}"""
@@ -81,5 +84,5 @@ def select_note(code: ControllerCode) -> str:
 
 def select(code: ControllerCode) -> str:
     """The function that chooses a table."""
-    between = BLENDED.format(tables=tables_of(code)) if code.blends else SLOWER
+    between = BLENDED.format(type=table_type(code), tables=tables_of(code)) if code.blends else SLOWER
     return SELECT.format(select=select_of(code), type=table_type(code), tables=tables_of(code), between=between)

@@ -83,6 +83,10 @@ class PassageBook:
     def __repr__(self) -> str:
         return f"PassageBook({len(self.tables)} tables of {self.tables[0].retarder.name})"
 
+    def __reduce__(self) -> tuple[type[PassageBook], tuple[tuple[PassageTable, ...]]]:
+        """For pickle and copy: the tables; what follows from them is worked out anew."""
+        return PassageBook, (self.tables,)
+
     @cached_property
     def by_class(self) -> Mapping[tuple[str, int], tuple[int, ...]]:
         """The candidates of every class (category, axles), by rising target."""

@@ -16,7 +16,7 @@ from synth.checker.source_file import rows_below
 
 COLUMNS: Final = ("cars", "free_distance_m", "resistance_n_per_kn", "exit_speed_m_s", *FIGURES)
 GOLDEN_HEAD: Final = [
-    "table", "id", "cars", "distance_bits", "resistance_bits", "speed_bits",
+    "table", "id", "cars", "free_distance_m_bits", "resistance_n_per_kn_bits", "exit_speed_m_s_bits",
     "free_distance_m", "resistance_n_per_kn", "exit_speed_m_s",
 ]  # fmt: skip
 

@@ -12,7 +12,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-ENTRY: Final = (sys.executable, "-P", "-c", "from synth.cli import script; script()")
+WATCH: Final = (
+    "import os, threading; threading.Thread(target=lambda: os.read(0, 1) or os._exit(1), daemon=True).start()"
+)
+"""Ends a process once the other end of its standard input is closed: where its parent was killed, too."""
+
+ENTRY: Final = (sys.executable, "-P", "-c", f"{WATCH}; from synth.cli import script; script()")
 """What the installed command `retarder-synth` calls."""
 
 EPOCH: Final = "1700000000"
@@ -49,14 +54,21 @@ class Ran:
 
 
 def process(
-    words: list[str], folder: Path, surroundings: Mapping[str, str] | None = None, longest_s: float = BUILD_S
+    words: list[str],
+    folder: Path,
+    surroundings: Mapping[str, str] | None = None,
+    longest_s: float = BUILD_S,
+    given: int = subprocess.DEVNULL,
 ) -> Ran:
-    """Run `words` in `folder`; what does not start, or has not ended after `longest_s`, has the exit code -1."""
+    """Run `words` in `folder` with the standard input `given`.
+
+    What does not start, or has not ended after `longest_s`, has the exit code -1.
+    """
     environment = {**os.environ, **(surroundings or {})}
     try:
         child = subprocess.Popen(
             words, cwd=folder, env=environment, text=True, errors="replace",
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            stdin=given, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         )  # fmt: skip
     except OSError as fault:
         return Ran(-1, "", str(fault))
@@ -73,5 +85,11 @@ def process(
 
 
 def program(line: str, folder: Path, surroundings: Mapping[str, str] | None = None) -> Ran:
-    """Run `retarder-synth` with the words of `line` in `folder`."""
-    return process([*ENTRY, *line.split()], folder, {"SOURCE_DATE_EPOCH": EPOCH, **(surroundings or {})}, LONGEST_S)
+    """Run `retarder-synth` with the words of `line` in `folder`; it ends with this process, however that ends."""
+    environment = {"SOURCE_DATE_EPOCH": EPOCH, **(surroundings or {})}
+    watched, held = os.pipe()
+    try:
+        return process([*ENTRY, *line.split()], folder, environment, LONGEST_S, watched)
+    finally:
+        os.close(watched)
+        os.close(held)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from synth.cli.qualification.any_time import any_time_checks
 from synth.cli.qualification.c_code import c_checks
 from synth.cli.qualification.check import Check, Outcome
 from synth.cli.qualification.golden import golden_checks
@@ -58,7 +59,8 @@ def qualified(done: Callable[[str], None]) -> Qualified:
         add("kernels", (*tune_checks(usual), *golden_checks(usual), *plain_checks(usual, plain)))
         measured, estimated = books[MEASURED], books[ESTIMATED]
         add("second simulator", (prediction_check(measured), *pool.map(loop_check, usual)))
-        add("second program", (*pool.map(verify_check, usual), *planted_checks(estimated)))
+        at_any_time = pool.submit(lambda: tuple(any_time_checks(measured)))
+        add("second program", (*pool.map(verify_check, usual), *planted_checks(estimated), *at_any_time.result()))
         add("C code", c_checks(estimated))
         add("Structured Text", st_checks(estimated))
     files = {f"{book.kind}/{name}": content for book in usual for name, content in book.content.items()}

@@ -41,7 +41,7 @@ def c_costs() -> CallCosts:
     return CallCosts(
         observe=791,
         decide=440,
-        select=34_703,
+        select=101_798,
         aim=451,
         intact=33_570,
         source="instructions on x86-64, gcc 12 -Os, callgrind: study controller-cost; aim counted apart",

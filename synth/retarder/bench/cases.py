@@ -11,6 +11,7 @@ from synth.simulation.closed_loop import ClosedLoop, TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import random_passes
+from synth.simulation.sampled_pass import sampled_pass
 from tuning_tables import ControllerTable
 
 ORDER, CLASSES = 0, 1
@@ -40,7 +41,10 @@ def bench_case(table: ControllerTable, category: int, served: ServedClass, seed:
     """The first `passes` of the row of `seed`; `PlantError` where valves cannot be commanded at any moment."""
     served.plant.drive_at_any_time()
     common = common_passes(served.plant, random_passes(seed, 0, passes))
-    return BenchCase(table, served.label, category, common, common.run(TableController(table)))
+    case = BenchCase(table, served.label, category, common, common.run(TableController(table)))
+    rolling = sampled_pass(case.loop, common.draws.part(0, 1))
+    rolling.send(next(rolling).stage)  # loads its kernels, as clients may leave the run no file to open
+    return case
 
 
 def class_seeds(seed: int, cases: int) -> list[int]:

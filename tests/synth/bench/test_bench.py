@@ -6,6 +6,8 @@ import asyncio
 import json
 import socket
 import struct
+import subprocess
+import sys
 import threading
 import urllib.request
 from collections.abc import Sequence
@@ -23,6 +25,7 @@ from synth.retarder.bench.clock import Cycles, RealTime
 from synth.retarder.bench.exchange import Exchange
 from synth.retarder.bench.options import Address
 from synth.retarder.bench.wires import COMMANDS_AT, OPC_UA_FOLDER, OPC_UA_NAMESPACE, TOLD_WIRES
+from tests.corpus import ROOT
 from tests.synth.bench.played import HOST, TableClient, beside, free_port, played, the_case
 
 TOLERANCE = 1e-10
@@ -82,6 +85,27 @@ def test_a_table_over_modbus_is_the_simulator_while_others_talk_nonsense(capfd: 
     assert traffic.connections > 3
     assert {each["passes"] for each in documents} == {3}
     assert "Traceback" not in capfd.readouterr().err
+
+
+def test_a_run_opens_no_file() -> None:
+    """Clients may leave it no descriptor; in a process of its own, where no kernel is loaded yet."""
+    text = """\
+import sys
+from synth.simulation.sampled_pass import sampled_pass
+from tests.synth.bench.played import the_case
+
+def refuse(event, words):
+    if event == "open":
+        raise OSError(f"it opens {words[0]}")
+
+case = the_case()
+sys.addaudithook(refuse)
+rolling = sampled_pass(case.loop, case.common.draws.part(1, 2))
+next(rolling)
+rolling.send(2)
+rolling.send(1)
+"""
+    subprocess.run([sys.executable, "-c", text], cwd=ROOT, check=True)
 
 
 def test_a_controller_that_vanishes_is_told_and_the_stage_before_stands() -> None:

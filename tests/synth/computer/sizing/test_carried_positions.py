@@ -58,7 +58,7 @@ def served_one_by_one(controller: TracksideController, positions: int) -> tuple[
     return answer_s, table_s
 
 
-@pytest.mark.parametrize("positions", [1, 8, 38, 150])
+@pytest.mark.parametrize("positions", [1, 8, 38, 50])
 def test_without_a_scan_the_last_position_waits_for_all_others(positions: int) -> None:
     # as long as all is done before the next sample
     for controller in (cortex_m4(), industrial_pc()):
@@ -71,9 +71,9 @@ def test_without_a_scan_the_last_position_waits_for_all_others(positions: int) -
 
 def test_a_new_sample_interrupts_the_choice_of_tables() -> None:
     controller = replace(cortex_m4(), latency_s=0.0)
-    found = carried(controller, PositionTimes(), 250)
-    work_s = 250 * controller.cut_s  # 0.14 s: two rounds of samples come before it is done
-    assert found.table_s == pytest.approx(work_s + 2 * 250 * controller.sample_s, rel=1e-12)
+    found = carried(controller, PositionTimes(), 80)
+    work_s = 80 * controller.cut_s  # 0.15 s: two rounds of samples come before it is done
+    assert found.table_s == pytest.approx(work_s + 2 * 80 * controller.sample_s, rel=1e-12)
 
 
 @pytest.mark.parametrize("controller", usual_controllers(), ids=lambda each: each.name)
