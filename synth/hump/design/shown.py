@@ -270,7 +270,7 @@ def profile_picture(found: FoundDesign) -> Figure:
 
 def triple_picture(found: FoundDesign) -> Figure:
     """The time–path diagram of the three."""
-    from synth.hump.trains.pictures import time_path
+    from synth.hump.trains.pictures.time_path import time_path
     from synth.kernels.cache import guarded
 
     bad, good = map(graph_of(found).track_called, found.worst.tracks)

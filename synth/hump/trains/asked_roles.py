@@ -11,6 +11,7 @@ import numpy as np
 from plant_models.errors import PlantError, require
 from plant_models.frozen_arrays import Bools
 from plant_models.library import SourcedValue, WeightCategories
+from synth.frame.printed_numbers import ranges
 from synth.frame.settings.numbers import sourced
 from synth.hump.configuration.position_settings import (
     ALL,
@@ -19,7 +20,6 @@ from synth.hump.configuration.position_settings import (
     HumpPositionSettings,
     RoleName,
 )
-from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.forecast import SpeedRange
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.position_choice import PositionChoice
