@@ -14,7 +14,6 @@ from synth.frame.exhibits import Chapter, Sentence, Tiles, exhibits_of
 from synth.frame.input_error import InputError
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.hump_file import hump_text
-from synth.hump.trains import simulate_command
 from synth.hump.trains.controlled_train import controlled_train
 from synth.hump.trains.hump_routes import Mark
 from synth.hump.trains.humped_trial import humped_trial
@@ -107,7 +106,7 @@ def test_cuts_that_stand_are_told_and_figures_come_before_the_train_that_is_show
     def fails(*_: object) -> OneTrain:
         raise ZeroDivisionError
 
-    monkeypatch.setattr(simulate_command, "one_train", fails)
+    monkeypatch.setattr("synth.hump.trains.simulate_command.one_train", fails)
     chapters = show(result)
     made: list[Chapter] = []
     with pytest.raises(ZeroDivisionError):
