@@ -14,7 +14,7 @@ from synth.hump.limits_of_use import CHANCE_ONLY, MODEL_ONLY, NO_SAFETY
 from synth.hump.trains.asked_trial import AskedTrial, asked_trial
 from synth.hump.trains.batch import batches
 from synth.hump.trains.chosen_trains import chosen_trains
-from synth.hump.trains.humped_trial import HumpedTrial, humped_trial
+from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.shift_sums import in_shifts
@@ -86,7 +86,7 @@ def compute(asked: AskedTrains, work: Work) -> HumpedTrial:
     trial = guarded(made_trial, config)
     found = humped(asked, trial, work)
     work.progress.note(f"{asked.number} trains humped after {time.monotonic() - started:.1f} s")
-    return humped_trial(config, trial, found)
+    return HumpedTrial(config, trial, found)
 
 
 def humped(asked: AskedTrains, trial: HumpTrial, work: Work) -> TrainOutcomes:

@@ -16,7 +16,7 @@ from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.hump_file import hump_text
 from synth.hump.trains.controlled_train import controlled_train
 from synth.hump.trains.hump_routes import Mark
-from synth.hump.trains.humped_trial import humped_trial
+from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.outcome_file import TRAINS
 from synth.hump.trains.resolved_trial import resolve_trial
@@ -98,7 +98,7 @@ def test_cuts_that_stand_are_told_and_figures_come_before_the_train_that_is_show
     text = 'hump = "rising.toml"\n[trains]\nnumber = 2\ncuts = 6\n[aim]\ndesign_cuts = 200\n'
     config = resolve_trial(parse_trial_file(text + "[output]\nplots = false\nreport = false\n", str(place)))
     trial = made_trial(config)
-    result = humped_trial(config, trial, trial.batch(0, 2))
+    result = HumpedTrial(config, trial, trial.batch(0, 2))
     told = [each for each in exhibits_of(tuple(show(result))) if isinstance(each, Sentence) and each.brief]
     assert "5 of the 6 cuts of train 1 stand before element 1; the track falls by -0.18 m up to there" in told[1].text
     assert told[1].figures == {"standing_cuts": 5}
