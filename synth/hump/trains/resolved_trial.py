@@ -80,7 +80,6 @@ class ResolvedTrial:
     settings: HumpTrialSettings
     library: Library
     parameters: tuple[SourcedValue, ...]
-    notes: tuple[str, ...]
     warnings: tuple[str, ...]
     names: dict[str, Any]
 
@@ -176,7 +175,6 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         settings=settings,
         library=library,
         parameters=parameters,
-        notes=(*file.hump.notes, *mix.notes),
         warnings=(
             *range_warnings(parameters),
             *aim_warnings(aims, routes, settings),
