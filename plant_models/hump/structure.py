@@ -235,8 +235,7 @@ def length_faults(
     for lead in leads:
         if not longest[lead] <= LONGEST_TRACK_M:
             yield fault_of(
-                lead,
-                f"a route from it is {longest[lead]:g} m long; routes must have at most {LONGEST_TRACK_M:g} m",
+                lead, f"a route from it is {longest[lead]:g} m long; routes must have at most {LONGEST_TRACK_M:g} m"
             )
 
 

@@ -53,11 +53,6 @@ class TrackSection:
         return self.next.to is None
 
     @property
-    def free_m(self) -> float:
-        """From the beginning of the section to the standing cars, or to its end."""
-        return self.length_m - self.standing_m
-
-    @property
     def edges(self) -> tuple[Edge, ...]:
         """The one edge."""
         return (self.next,)

@@ -7,7 +7,7 @@ from pathlib import Path
 from synth.api.as_a_command import as_a_command
 from synth.frame.input_error import InputError
 from synth.hump.configuration.trial_file import read_trial_file
-from synth.hump.trains.humped_trial import HumpedTrial, humped_trial
+from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.outcomes import joined
 from synth.hump.trains.resolved_trial import ResolvedTrial, resolve_trial
@@ -82,4 +82,4 @@ def hump_trains(trial: ResolvedTrial, trains: int = 100) -> HumpedTrial:
         raise InputError(f"trains is {trains}; one is needed at least")
     made = made_trial(trial)
     batches = [made.batch(first, min(BATCH, trains - first)) for first in range(0, trains, BATCH)]
-    return humped_trial(trial, made, joined(batches))
+    return HumpedTrial(trial, made, joined(batches))

@@ -7,10 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from synth.frame.printed_numbers import ranges
 from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.printed_page import Exhibit
 from synth.frame.terminal.telling import OK
-from synth.hump.control.number_ranges import ranges
 
 if TYPE_CHECKING:
     from plant_models.hump import HumpGraph, Route

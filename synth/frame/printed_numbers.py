@@ -36,6 +36,17 @@ def span(values: Sequence[float], form: str = ".2f") -> str:
     return low if low == high else f"from {low} to {high}"
 
 
+def ranges(numbers: Sequence[int]) -> str:
+    """Increasing numbers with runs as '401 to 408'."""
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][1] + 1:
+            runs[-1][1] = number
+        else:
+            runs.append([number, number])
+    return ", ".join(str(first) if first == last else f"{first} to {last}" for first, last in runs)
+
+
 def counted(number: int, noun: str, plural: str = "") -> str:
     """'1 case', '3 cases'."""
     return f"{number} {noun}" if number == 1 else f"{number} {plural or noun + 's'}"

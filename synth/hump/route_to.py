@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from plant_models.hump import HumpGraph, Route
 from synth.frame.input_error import InputError
-from synth.hump.control.number_ranges import ranges
+from synth.frame.printed_numbers import ranges
 
 
 def route_to(graph: HumpGraph, track: int) -> Route:

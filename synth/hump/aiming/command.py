@@ -13,9 +13,9 @@ from synth.aim.configuration.aim_file import AimFile, parse_aim_file
 from synth.aim.resolved_aim import ResolvedAim
 from synth.frame.command import Asked, Command
 from synth.frame.input_error import InputError
+from synth.frame.printed_numbers import ranges
 from synth.hump.aiming.hump_track import hump_track
 from synth.hump.aiming.options import AimOptions
-from synth.hump.control.number_ranges import ranges
 from synth.hump.hump_file import load_hump
 from synth.hump.route_to import route_to
 from synth.hump.trains.aim_choice import last_retarder

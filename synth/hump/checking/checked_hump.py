@@ -11,10 +11,9 @@ from plant_models.hump import HumpGraph, Signal
 from plant_models.library.hump_entry import HumpEntry
 from plant_models.library.sourced_value import SourcedValue
 from synth.frame.exhibits import Column, Exhibit, Sentence, Table
-from synth.frame.printed_numbers import decimals
+from synth.frame.printed_numbers import decimals, ranges
 from synth.hump.checking.hump_warnings import HumpWarning, of_grades, warnings_of
 from synth.hump.checking.places import Place, RolledRoute, places_of, rolled_routes
-from synth.hump.control.number_ranges import ranges
 from synth.hump.design_runners import HUMP_SPEED_M_S
 
 PLACES: Final = (

@@ -15,10 +15,10 @@ from plant_models.library.hump_entry import HumpEntry
 from plant_models.library.library import BUILT_IN
 from plant_models.library.near_miss import near_miss
 from plant_models.library.type_file import POSITIONS
+from synth.frame.printed_numbers import ranges
 from synth.hump.checking.places import RolledRoute
 from synth.hump.configuration.design_settings import DesignSettings
 from synth.hump.configuration.settings import TrainSettings
-from synth.hump.control.number_ranges import ranges
 from synth.hump.design_runners import CAR, HUMP_SPEED_M_S
 
 MOST_RISE_M: Final = 0.3

@@ -78,7 +78,7 @@ def share_columns(more: str) -> tuple[Column, ...]:
 
 def row_of(figure: FigureOf, run: HumpedRun, first: HumpedRun) -> Row:
     """One figure of one run."""
-    found = figure.figure(run.found, 0.005)
+    found = figure.figure(run.found)
     return {
         "title": titles_of(first.config.settings.couplings)[figure.name],
         "name": figure.name,

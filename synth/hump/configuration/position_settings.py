@@ -101,8 +101,7 @@ class HumpPositionSettings(Section):
             )
         low, high = self.lowest_m_s, self.highest_m_s
         require(
-            low is None or high is None or low <= high,
-            f"lowest_m_s is {low}; it must not be above highest_m_s, {high}",
+            low is None or high is None or low <= high, f"lowest_m_s is {low}; it must not be above highest_m_s, {high}"
         )
         return self
 

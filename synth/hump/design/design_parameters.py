@@ -11,13 +11,7 @@ from synth.hump.configuration.design_settings import DesignSettings
 from synth.hump.trains.resolved_trial import ResolvedTrial
 from tuning_tables.canonical import canonical_json
 
-OF_TRIAL: Final = (
-    "hump.",
-    "position.",
-    "exit_speeds.usable_share",
-    "couplings.allowed_m_s",
-    "hump_speed.early_s",
-)
+OF_TRIAL: Final = ("hump.", "position.", "exit_speeds.usable_share", "couplings.allowed_m_s", "hump_speed.early_s")
 """Beginnings of the keys of a trial that count for its hump."""
 
 

@@ -130,11 +130,7 @@ def highest(found: FoundDesign) -> Sentence:
             f"Exit speeds are compared in {found.hump.choices} steps; twice as many change the least margin by "
             f"{worst.grid_s:+.2f} s."
         )
-    figures = {
-        "highest_hump_speed_m_s": speed,
-        "least_margin_s": finite(worst.least_s),
-        "grid_error_s": worst.grid_s,
-    }
+    figures = {"highest_hump_speed_m_s": speed, "least_margin_s": finite(worst.least_s), "grid_error_s": worst.grid_s}
     return Sentence(text.rstrip(), figures, brief=True)
 
 
@@ -270,7 +266,7 @@ def profile_picture(found: FoundDesign) -> Figure:
 
 def triple_picture(found: FoundDesign) -> Figure:
     """The time–path diagram of the three."""
-    from synth.hump.trains.pictures import time_path
+    from synth.hump.trains.pictures.time_path import time_path
     from synth.kernels.cache import guarded
 
     bad, good = map(graph_of(found).track_called, found.worst.tracks)

@@ -16,7 +16,7 @@ from xml.etree import ElementTree as Xml
 
 from plant_models.library.hump_entry import HumpEntry
 from synth.frame.input_error import InputError
-from synth.hump.railml.names import OWN, net_relation
+from synth.hump.railml.names import OWN, RAILML, net_relation
 from synth.hump.railml.tree import RailmlTree, local
 from synth.hump.railml.write import railml_of
 from tuning_tables.excerpt import excerpt
@@ -104,7 +104,7 @@ def require_agreement(tree: RailmlTree, hump: HumpEntry, edges: Mapping[str, str
     root = railml_of(hump)
     keys = frozenset((local(each), key) for each in root.iter() for key in each.attrib)
     names = {name: name for name in edges.values()}
-    wanted = Sayings.of(RailmlTree.of_ours(root, tree.file), names, None).all()
+    wanted = Sayings.of(RailmlTree(root, tree.file, RAILML), names, None).all()
     sayings = Sayings.of(tree, edges, keys)
     found = sayings.all()
     missing = Counter(said for _, said in wanted)

@@ -12,7 +12,7 @@ from xml.etree import ElementTree as Xml
 
 from plant_models.library.hump_forms import LONGEST_NAME, short_text
 from synth.frame.input_error import InputError
-from synth.hump.railml.names import CONTAINERS, OWN, RAILML, READ, own
+from synth.hump.railml.names import CONTAINERS, OWN, READ, own
 from tuning_tables.excerpt import excerpt
 
 DEEPEST: Final = 30
@@ -26,11 +26,6 @@ class RailmlTree:
     root: Xml.Element
     file: str
     namespace: str
-
-    @classmethod
-    def of_ours(cls, root: Xml.Element, file: str) -> RailmlTree:
-        """A tree as `write` makes it."""
-        return cls(root, file, RAILML)
 
     def every(self, name: str) -> list[Xml.Element]:
         """All elements of railML with that name that are read."""

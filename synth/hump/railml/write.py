@@ -6,21 +6,10 @@ from collections.abc import Iterator
 from typing import Final
 from xml.etree import ElementTree as Xml
 
-from plant_models import PlantError
 from plant_models.hump import Edge, HumpGraph, Retarder, Signal, Switch, TrackSection, Vertex
-from plant_models.library.hump_elements import zones_of
 from plant_models.library.hump_entry import HumpEntry
-from synth.hump.railml.names import (
-    LIBRARY,
-    OWN,
-    OWN_ZONES,
-    RAILML,
-    SIDES,
-    net_element,
-    net_relation,
-    own,
-    railml,
-)
+from synth.hump.forms.hump_tree import is_of_library
+from synth.hump.railml.names import LIBRARY, OWN, OWN_ZONES, RAILML, SIDES, net_element, net_relation, own, railml
 
 LANGUAGE: Final = "en"
 
@@ -205,19 +194,11 @@ def write_retarder(parent: Xml.Element, retarder: Retarder) -> None:
         told.set("book", retarder.book)
     if retarder.exit_std_m_s is not None:
         told.set("exitStd", str(retarder.exit_std_m_s))
-    told.set("zones", LIBRARY if of_library(retarder) else OWN_ZONES)
+    told.set("zones", LIBRARY if is_of_library(retarder) else OWN_ZONES)
     for begin, end in retarder.zones_m:
         own_below(told, "zone", posBegin=begin, posEnd=end)
     for file in retarder.aim_tables:
         own_below(told, "aimTables", file=file)
-
-
-def of_library(retarder: Retarder) -> bool:
-    """Whether its zones are those of its position in the library."""
-    try:
-        return zones_of(retarder.position) == retarder.zones_m
-    except PlantError:
-        return False
 
 
 def named(element: Switch | Retarder | TrackSection) -> dict[str, str]:

@@ -10,8 +10,8 @@ from pathlib import Path
 from plant_models.errors import PlantError, require
 from plant_models.hump import Retarder, Route
 from plant_models.library.weight_category import WeightCategory
+from synth.frame.printed_numbers import ranges
 from synth.hump.configuration.settings import TrialAimSettings
-from synth.hump.control.number_ranges import ranges
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.position_roles import Roles
 from synth.retarder.forms.table_file import read_aims

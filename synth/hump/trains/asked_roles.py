@@ -11,15 +11,9 @@ import numpy as np
 from plant_models.errors import PlantError, require
 from plant_models.frozen_arrays import Bools
 from plant_models.library import SourcedValue, WeightCategories
+from synth.frame.printed_numbers import ranges
 from synth.frame.settings.numbers import sourced
-from synth.hump.configuration.position_settings import (
-    ALL,
-    EXIT_RANGE_M_S,
-    USUAL_RANGE,
-    HumpPositionSettings,
-    RoleName,
-)
-from synth.hump.control.number_ranges import ranges
+from synth.hump.configuration.position_settings import ALL, EXIT_RANGE_M_S, USUAL_RANGE, HumpPositionSettings, RoleName
 from synth.hump.trains.forecast import SpeedRange
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.position_choice import PositionChoice
@@ -123,10 +117,7 @@ def exit_range(asked: HumpPositionSettings, choice: PositionChoice) -> tuple[flo
     if choice.held is None:
         return low, high
     in_book = choice.held.within(low, high)
-    found = (
-        in_book[0] if asked.lowest_m_s is None else low,
-        in_book[1] if asked.highest_m_s is None else high,
-    )
+    found = (in_book[0] if asked.lowest_m_s is None else low, in_book[1] if asked.highest_m_s is None else high)
     return found if found[0] < found[1] else (low, high)
 
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from plant_models.errors import PlantError
 from plant_models.rolling.random_cuts import CutPopulation
+from synth.frame.printed_numbers import ranges
 from synth.hump.control.cut_record import CutRecord
-from synth.hump.control.number_ranges import ranges
 from synth.hump.control.sorting_list import SortingList
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.list_trains import list_trains

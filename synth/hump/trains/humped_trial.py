@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.resolved_trial import ResolvedTrial
@@ -12,17 +13,16 @@ from synth.hump.trains.trial import HumpTrial
 
 @dataclass(frozen=True)
 class HumpedTrial:
-    """`found`: the outcomes of all trains of `trial`, which was made of `config`; `figures`: what they tell."""
+    """`found`: the outcomes of all trains of `trial`, which was made of `config`."""
 
     config: ResolvedTrial
     trial: HumpTrial
     found: TrainOutcomes
-    figures: tuple[TrainFigure, ...]
 
     def __repr__(self) -> str:
         return f"HumpedTrial({self.config.title}: {len(self.found)} trains, {int(self.found.cuts.sum())} cuts)"
 
-
-def humped_trial(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes) -> HumpedTrial:
-    """The trains with their figures."""
-    return HumpedTrial(config, trial, found, train_figures(found))
+    @cached_property
+    def figures(self) -> tuple[TrainFigure, ...]:
+        """What the outcomes tell."""
+        return train_figures(self.found)

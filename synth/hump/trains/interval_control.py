@@ -75,12 +75,7 @@ class Feedback:
     """
 
     def __init__(
-        self,
-        planner: Planner,
-        known: KnownCuts,
-        plan: TrainPlan,
-        rollability: Rollability,
-        aim: AimControl,
+        self, planner: Planner, known: KnownCuts, plan: TrainPlan, rollability: Rollability, aim: AimControl
     ) -> None:
         self.planner, self.known, self.plan = planner, known, plan
         self.rollability, self.aim = rollability, aim

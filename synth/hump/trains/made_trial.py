@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from plant_models import PlantError
-from plant_models.cut import Car
 from plant_models.library import load_position
 from plant_models.library.position_entry import PositionEntry
 from synth.frame.input_error import InputError
@@ -55,11 +54,6 @@ def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
     )
 
 
-def usual_car(config: ResolvedTrial) -> Car:
-    """The most frequent car of the mix: axles stand as in it."""
-    return max(config.people.mix.cars, key=lambda each: each.share).car
-
-
 def site_of(choice: PositionChoice, config: ResolvedTrial) -> PositionEntry:
     """The position of the library that stands there."""
     try:
@@ -71,16 +65,17 @@ def site_of(choice: PositionChoice, config: ResolvedTrial) -> PositionEntry:
 
 
 def brake_of(choice: PositionChoice, config: ResolvedTrial) -> LibraryBrake:
-    """The full brake of a position."""
+    """The full brake of a position; axles stand as in the most frequent car of the mix."""
     share = 0.0 if choice.out_of_service else choice.supply_share
-    return LibraryBrake(site_of(choice, config).position, config.categories, usual_car(config), share)
+    usual = max(config.people.mix.cars, key=lambda each: each.share)
+    return LibraryBrake(site_of(choice, config).position, config.categories, usual.car, share)
 
 
 def position_of(choice: PositionChoice, brake: LibraryBrake, config: ResolvedTrial) -> HumpPosition:
-    """The model of a position."""
+    """The model of a position: of one with a book, the closed loops of its tables."""
     if choice.book is None or choice.out_of_service:
         return NormalHumpPosition(choice.exit_std_m_s or 0.0, brake)
-    return table_model(choice, config)
+    return TableHumpPosition(ClassChoice(classes_of(choice, config), config.categories))
 
 
 def classes_of(choice: PositionChoice, config: ResolvedTrial) -> tuple[TableClass, ...]:
@@ -88,11 +83,6 @@ def classes_of(choice: PositionChoice, config: ResolvedTrial) -> tuple[TableClas
     assert choice.book is not None
     named = f"{config.place}: position {choice.number}"
     return book_classes(named, choice.book, choice.tuned_with, choice.site, "what stands there")
-
-
-def table_model(choice: PositionChoice, config: ResolvedTrial) -> HumpPosition:
-    """The closed loops of the tables in the book of a position."""
-    return TableHumpPosition(ClassChoice(classes_of(choice, config), config.categories))
 
 
 def planner_of(config: ResolvedTrial) -> Planner:

@@ -50,11 +50,6 @@ class PositionChoice:
     std_set_by_user: bool
     held: HeldTables | None
 
-    @property
-    def files(self) -> tuple[Path, ...]:
-        """Files that it is made from."""
-        return tuple(path for path in (self.book, self.tuned_with) if path is not None)
-
 
 def retarders_at(routes: Sequence[Route]) -> list[list[Retarder]]:
     """The retarders of each position, each once, of the routes that have so many; `PlantError` where none has any."""

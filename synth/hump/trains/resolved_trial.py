@@ -32,12 +32,7 @@ from synth.hump.control.train_population import TrainPopulation
 from synth.hump.railml.write import to_railml
 from synth.hump.trains.aim_choice import AimChoice, aim_choices
 from synth.hump.trains.asked_roles import asked_roles, role_values, role_warnings, settings_of
-from synth.hump.trains.asked_trains import (
-    cars_of_cuts,
-    filled_trains,
-    population_of,
-    trains_of,
-)
+from synth.hump.trains.asked_trains import cars_of_cuts, filled_trains, population_of, trains_of
 from synth.hump.trains.car_warnings import car_warnings, list_warnings, skates_warnings, weather_warnings
 from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
 from synth.hump.trains.needed_tables import NeededTables, needed_tables, unfitting_tables
@@ -46,11 +41,7 @@ from synth.hump.trains.position_roles import Fixed, Roles
 from synth.hump.trains.rising_track import require_falling
 from synth.hump.trains.table_aim import aim_warnings, require_fitting
 from synth.hump.trains.trial_aim_range import book_warnings
-from synth.hump.trains.trial_parameters import (
-    CHANGES_NO_TRAIN,
-    position_values,
-    trial_numbers,
-)
+from synth.hump.trains.trial_parameters import CHANGES_NO_TRAIN, position_values, trial_numbers
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.plant_fault import in_file
 from synth.retarder.configuration.position_choice import require_held
@@ -89,7 +80,6 @@ class ResolvedTrial:
     settings: HumpTrialSettings
     library: Library
     parameters: tuple[SourcedValue, ...]
-    notes: tuple[str, ...]
     warnings: tuple[str, ...]
     names: dict[str, Any]
 
@@ -185,7 +175,6 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         settings=settings,
         library=library,
         parameters=parameters,
-        notes=(*file.hump.notes, *mix.notes),
         warnings=(
             *range_warnings(parameters),
             *aim_warnings(aims, routes, settings),

@@ -20,9 +20,8 @@ BEYOND_M = 1e6
 
 @dataclass(frozen=True, eq=False)
 class RouteWays:
-    """The tables of `routes` for the cars of `mix`, one below the other, from `first_m` on; from `route_ways`."""
+    """The tables of routes for the cars of `mix`, one below the other, from `first_m` on; from `route_ways`."""
 
-    routes: tuple[Route, ...]
     mix: CarMix
     way: Way
     rows: RouteRows
@@ -47,7 +46,7 @@ def route_ways(population: CutPopulation, routes: tuple[Route, ...], mix: CarMix
     tables = (np.concatenate(table) for table in zip(*(way[1:] for way in each), strict=True))
     way = Way(each[0].nodes_per_m, *tables)
     places = np.array([different.index(fall) for fall in falls])
-    return RouteWays(routes, of_mix, way, rows_of(population, routes, places * each[0].fall_m.size), first_m)
+    return RouteWays(of_mix, way, rows_of(population, routes, places * each[0].fall_m.size), first_m)
 
 
 def rows_of(population: CutPopulation, routes: tuple[Route, ...], rows_from: Ints) -> RouteRows:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 
 from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
@@ -14,13 +14,13 @@ from synth.hump.limits_of_use import CHANCE_ONLY, MODEL_ONLY, NO_SAFETY
 from synth.hump.trains.asked_trial import AskedTrial, asked_trial
 from synth.hump.trains.batch import batches
 from synth.hump.trains.chosen_trains import chosen_trains
-from synth.hump.trains.humped_trial import HumpedTrial, humped_trial
+from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.shift_sums import in_shifts
 from synth.hump.trains.shown.figures import figures
 from synth.hump.trains.shown.first_screen import first_screen
-from synth.hump.trains.shown.one_train import one_train_exhibits, traced_once
+from synth.hump.trains.shown.one_train import one_train_exhibits
 from synth.hump.trains.shown.places import catch_ups, couplings
 from synth.hump.trains.shown.positions import positions
 from synth.hump.trains.shown.program import program_exhibits, pushed_chart
@@ -86,7 +86,7 @@ def compute(asked: AskedTrains, work: Work) -> HumpedTrial:
     trial = guarded(made_trial, config)
     found = humped(asked, trial, work)
     work.progress.note(f"{asked.number} trains humped after {time.monotonic() - started:.1f} s")
-    return humped_trial(config, trial, found)
+    return HumpedTrial(config, trial, found)
 
 
 def humped(asked: AskedTrains, trial: HumpTrial, work: Work) -> TrainOutcomes:
@@ -107,7 +107,7 @@ def show(result: HumpedTrial) -> Iterator[Chapter]:
         yield Chapter("Shift", tuple(shift(result)))
     number = chosen_trains(result.found)[0].number
     shown = guarded(one_train, result.trial, number)
-    traced = traced_once(shown)
+    traced = cache(shown.traced)
     yield Chapter(f"Train {number + 1}", tuple(one_train_exhibits(result, shown, traced)))
     program = program_exhibits(guarded(speed_program, result.trial, number, shown.plan), brief=False)
     yield Chapter("Hump speed", (*program, pushed_chart(number, traced)))

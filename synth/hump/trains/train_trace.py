@@ -11,6 +11,7 @@ import numpy as np
 from synth.hump.trains.cut_trace import CutTrace, TracedTrain
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
 from synth.hump.trains.humping import Hump
+from synth.hump.trains.meeting import first_of
 from synth.hump.trains.outcomes import USUAL_COUPLINGS
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_memory import TrainMemory
@@ -210,8 +211,7 @@ def traced_cut(
 
 def stopped_early(routes: HumpRoutes, memory: TrainMemory, lane: int, cut: int) -> bool:
     """Whether a cut stopped of itself with its head ahead of the end of its last position."""
-    leaves = routes.exit_m[memory.route[lane, cut]]
-    return bool(memory.end_m[lane, cut] < leaves[np.isfinite(leaves)].max(initial=0.0))
+    return bool(memory.end_m[lane, cut] < routes.release_m[memory.route[lane, cut]])
 
 
 def passages(routes: HumpRoutes, memory: TrainMemory, lane: int, cut: int) -> Iterator[Passage]:
@@ -251,13 +251,14 @@ def alarms(
 
     `touch_s`: when cuts in contact touch those ahead of them.
     """
+    unseparated, foul = first_of(memory.unseparated[lane]), first_of(memory.foul[lane])
     for each in cuts:
         cut = each.cut
         met = (
             (AlarmKind.MISROUTED, int(memory.misrouted_at[lane, cut]), Mark.FIRST_IN),
             (AlarmKind.CONTACT, int(memory.contact_at[lane, cut]), Mark.FIRST_IN),
-            (AlarmKind.UNSEPARATED, first_true(memory.unseparated[lane, cut]), Mark.FIRST_IN),
-            (AlarmKind.FOUL, first_true(memory.foul[lane, cut]), Mark.FIRST_CLEAR),
+            (AlarmKind.UNSEPARATED, int(unseparated[cut]), Mark.FIRST_IN),
+            (AlarmKind.FOUL, int(foul[cut]), Mark.FIRST_CLEAR),
         )
         for kind, column, mark in met:
             if column < routes.elements:
@@ -275,8 +276,3 @@ def alarms(
             yield Alarm(AlarmKind.OVERSPEED, touch_s.get(cut, ends_s), cut, None, None)
         if stopped_early(routes, memory, lane, cut):
             yield Alarm(AlarmKind.STOPPED, ends_s, cut, None, None)
-
-
-def first_true(found: np.ndarray) -> int:
-    """Place of the first one, else how many there are."""
-    return int(found.argmax()) if found.any() else len(found)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
 from synth.frame.command import Limit
-from synth.hump.control.number_ranges import ranges
+from synth.frame.printed_numbers import ranges
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.outcomes import caught_at
 from synth.hump.trains.position_strength import strengths, weak

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Final
 
-from plant_models.library import SourcedValue, WeightCategories
+from plant_models.library import SourcedValue
 from plant_models.library.car_mix_entry import CarMixEntry
 from plant_models.library.hump_entry import HumpEntry
+from plant_models.library.weight_category import WeightCategories
 from synth.frame.settings.numbers import numbers_of, sourced
 from synth.hump.configuration.position_settings import HumpPositionSettings
 from synth.hump.configuration.settings import HumpSpeedSettings, HumpTrialSettings

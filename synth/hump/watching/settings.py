@@ -102,9 +102,7 @@ class YardWatchSettings(Section):
         return float(self.false_alarms.nights * self.false_alarms.passes * len(self.position))
 
 
-EXAMPLE: Final = YardWatchSettings(
-    position=(WatchedPositionSettings(name="401"), WatchedPositionSettings(name="402")),
-)
+EXAMPLE: Final = YardWatchSettings(position=(WatchedPositionSettings(name="401"), WatchedPositionSettings(name="402")))
 
 EXAMPLE_LINES = (
     "Two positions as an example:\n# put those of your yard in their place. A name is all that a position needs."

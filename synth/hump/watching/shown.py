@@ -197,7 +197,7 @@ def positions(found: WatchedYard) -> Iterator[Exhibit]:
     yield Table("positions", "All positions", POSITIONS, list(position_rows(found)))
     yield Sentence(
         "An alarm is where a sum reaches its limit. Every position has a sum for each drift that is supposed, up and "
-        "down; the highest one of now is told.",
+        "down; the highest one of now is told."
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -25,22 +26,18 @@ def plan_layout(graph: HumpGraph) -> PlanLayout:
     row: dict[int, int] = {}
     metres: dict[int, float] = {}
     end_m: dict[int, float] = {}
-    reached_by: dict[int, set[int]] = {}
+    rows: defaultdict[int, set[int]] = defaultdict(set)
+    reached_by: defaultdict[int, set[int]] = defaultdict(set)
+    leads_of_track: defaultdict[int, set[int]] = defaultdict(set)
     for lead in graph.leads:
         for route in sorted(graph.routes(lead).values(), key=lambda route: route.code):
-            row.setdefault(route.track, len(row))
+            place = row.setdefault(route.track, len(row))
             end_m.setdefault(route.track, route.length_m)
+            leads_of_track[route.track].add(lead)
             for element in route.elements:
                 metres.setdefault(element.number, element.at_m)
-                reached_by.setdefault(element.number, set()).add(lead)
-    rows: dict[int, list[int]] = {}
-    leads_of_track: dict[int, set[int]] = {}
-    for lead in graph.leads:
-        for route in graph.routes(lead).values():
-            leads_of_track.setdefault(route.track, set()).add(lead)
-            for element in route.elements:
-                if row[route.track] not in rows.setdefault(element.number, []):
-                    rows[element.number].append(row[route.track])
+                reached_by[element.number].add(lead)
+                rows[element.number].add(place)
     by_row = {place: track for track, place in row.items()}
     at: dict[int, tuple[float, float]] = {}
     for number, places in rows.items():

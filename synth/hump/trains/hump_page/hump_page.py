@@ -44,11 +44,7 @@ def hump_page(title: str, runs: Sequence[PlayedRun], trains: Sequence[str]) -> s
     """
     data = {"trains": list(trains), "runs": [run_data(run) for run in runs]}
     humps = "; ".join(f"{run.name}: {run.hump.title}" if run.name else run.hump.title for run in runs)
-    content = (
-        element("h1", title),
-        element("p", humps, class_="meta"),
-        Markup(text_of("player.html")),
-    )
+    content = (element("h1", title), element("p", humps, class_="meta"), Markup(text_of("player.html")))
     scripts = [SPEED_UNITS, *(text_of(name) for name in SCRIPTS)]
     return scripted_document(f"{title}: {humps}", text_of("player.css"), content, data, scripts)
 

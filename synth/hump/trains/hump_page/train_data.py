@@ -4,15 +4,13 @@ to the one before."""
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from plant_models.frozen_arrays import Floats
 from plant_models.hump import HumpGraph
+from synth.hump.trains.hump_page.plan_data import Data
 from synth.hump.trains.train_trace import Alarm, AlarmKind, TracedCut, TrainTrace
-
-Data = dict[str, Any]
 
 HUNDREDTHS = 100.0
 

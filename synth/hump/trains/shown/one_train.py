@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import cache
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 from synth.frame.exhibits import Chart, Exhibit, File, Sentence
 from synth.hump.control.event_log import to_log_csv
@@ -13,6 +12,9 @@ from synth.hump.trains.hump_page.hump_page import PLAYER, PlayedRun, hump_page
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.traced_train import OneTrain, some_trains
 from synth.hump.trains.train_trace import TrainTrace
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 LOG: Final = "events.csv"
 
@@ -25,16 +27,10 @@ SPEED_PATH: Final = (
     "Speed of each cut over the place of its head. Within a pass v² is drawn as falling evenly, whatever the position "
     "does. Vertical strokes: from the commanded exit speed to the actual one."
 )
-Traced = Callable[[], TrainTrace]
 
 
-def traced_once(shown: OneTrain) -> Traced:
-    """Its trace, made when it is first asked for."""
-    return cache(shown.traced)
-
-
-def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Traced) -> Iterator[Exhibit]:
-    """What happened to it: the page that plays it and others, its log, and pictures."""
+def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Callable[[], TrainTrace]) -> Iterator[Exhibit]:
+    """What happened to it: the page that plays it and others, its log, and pictures; `traced`: its trace, made once."""
     members = result.config.categories.members
     yield from standing_cuts(result, shown)
     if result.config.settings.output.report:
@@ -53,15 +49,20 @@ def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Traced) -> 
         "times.",
         {"points_lay_otherwise": otherwise},
     )
+
+    def times() -> Figure:
+        from synth.hump.trains.pictures.time_path import time_path
+
+        return time_path(traced())
+
+    def speeds() -> Figure:
+        from synth.hump.trains.pictures.speed_path import speed_path
+
+        return speed_path(traced(), members)
+
     number = shown.number + 1
-    yield Chart(
-        "hump-time-path", f"Time–path diagram of train {number}", TIME_PATH,
-        lambda: _pictures().time_path(traced()),
-    )  # fmt: skip
-    yield Chart(
-        "hump-speed-path", f"Speed over path of train {number}", SPEED_PATH,
-        lambda: _pictures().speed_path(traced(), members),
-    )  # fmt: skip
+    yield Chart("hump-time-path", f"Time–path diagram of train {number}", TIME_PATH, times)
+    yield Chart("hump-speed-path", f"Speed over path of train {number}", SPEED_PATH, speeds)
 
 
 def standing_cuts(result: HumpedTrial, shown: OneTrain) -> Iterator[Sentence]:
@@ -75,9 +76,3 @@ def standing_cuts(result: HumpedTrial, shown: OneTrain) -> Iterator[Sentence]:
             {"standing_cuts": standing},
             brief=True,
         )
-
-
-def _pictures() -> Any:
-    from synth.hump.trains import pictures  # matplotlib
-
-    return pictures

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, Final
+from functools import partial
+from typing import TYPE_CHECKING, Final
 
 from plant_models.frozen_arrays import Ints
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Table
@@ -11,6 +12,9 @@ from synth.hump.configuration.coupling_limits import CouplingLimits
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.outcomes import TrainOutcomes
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 COUNTS: Final = (
     Column("misrouted", "misrouted"),
@@ -39,22 +43,27 @@ def catch_ups(result: HumpedTrial) -> Iterator[Exhibit]:
     """The plan with misroutes and with contacts, and all counts."""
     hump, found = result.config.hump, result.found
     cuts = int(found.cuts.sum())
-    misrouted, contact = (by_element(result.config.routes, each) for each in (found.misrouted, found.contact))
-    yield Chart(
-        "hump-misroutes", "Misroutes by switch", MISROUTES,
-        lambda: _pictures().catch_ups(hump, misrouted, cuts, "misroutes"),
-    )  # fmt: skip
-    yield Chart(
-        "hump-contacts", "Contacts by element", CONTACTS,
-        lambda: _pictures().catch_ups(hump, contact, cuts, "contacts"),
-    )  # fmt: skip
+
+    def drawn(counts: Ints, what: str) -> Figure:
+        from synth.hump.trains.pictures.catch_ups import catch_ups as on_plan
+
+        return on_plan(hump, by_element(result.config.routes, counts), cuts, what)
+
+    yield Chart("hump-misroutes", "Misroutes by switch", MISROUTES, partial(drawn, found.misrouted, "misroutes"))
+    yield Chart("hump-contacts", "Contacts by element", CONTACTS, partial(drawn, found.contact, "contacts"))
     rows = element_rows(result.config.routes, found)
     yield Table("elements", "Cuts by element, where there was one", ELEMENTS, rows)
 
 
 def couplings(found: TrainOutcomes, limits: CouplingLimits) -> Iterator[Exhibit]:
     """How cuts ended."""
-    yield Chart("hump-couplings", "Coupling speeds and gaps", COUPLINGS, lambda: _pictures().couplings(found, limits))
+
+    def drawn() -> Figure:
+        from synth.hump.trains.pictures.couplings import couplings as histograms
+
+        return histograms(found, limits)
+
+    yield Chart("hump-couplings", "Coupling speeds and gaps", COUPLINGS, drawn)
 
 
 def by_element(routes: HumpRoutes, counts: Ints) -> dict[int, int]:
@@ -71,9 +80,3 @@ def element_rows(routes: HumpRoutes, found: TrainOutcomes) -> list[Row]:
         for number in routes.numbers
     )
     return [row for row in rows if any(row[column.key] for column in COUNTS)]
-
-
-def _pictures() -> Any:
-    from synth.hump.trains import pictures  # matplotlib
-
-    return pictures

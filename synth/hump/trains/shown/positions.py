@@ -11,8 +11,7 @@ import numpy as np
 from plant_models.frozen_arrays import Floats
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
-from synth.frame.printed_numbers import decimals
-from synth.hump.control.number_ranges import ranges
+from synth.frame.printed_numbers import decimals, ranges
 from synth.hump.trains.aim_choice import AimChoice
 from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.humped_trial import HumpedTrial

@@ -86,7 +86,7 @@ def chart_of(number: int, pushed: Callable[[], Sequence[tuple[float, float, floa
     """The picture of the train `number`, from 0; `pushed`: when each cut is at the crest, how fast, and its length."""
 
     def drawn() -> Figure:
-        from synth.hump.trains.pictures import PushedTrain, hump_speed_program
+        from synth.hump.trains.pictures.hump_speed_program import PushedTrain, hump_speed_program
 
         return hump_speed_program(PushedTrain(number, *map(np.array, zip(*pushed(), strict=True))))
 

@@ -52,4 +52,4 @@ def rows(found: TrainOutcomes) -> Iterator[Row]:
         told: dict[str, Any] = {"trains": f"{first}" if first == last else f"{first} to {last}"}
         chosen = some_of(found, np.flatnonzero(np.isin(place, places)))
         shown = {column.key for column in COLUMNS}
-        yield told | {each.name: each.figure(chosen, 0.005).told for each in figures_told(found) if each.name in shown}
+        yield told | {each.name: each.figure(chosen).told for each in figures_told(found) if each.name in shown}

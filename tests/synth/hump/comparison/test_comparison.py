@@ -13,9 +13,9 @@ from scipy.stats import ttest_rel
 
 from synth.cli import main
 from synth.frame.exhibits import File, Sentence
-from synth.hump.comparison import played
 from synth.hump.comparison.compared_runs import runs_in
 from synth.hump.comparison.compared_trains import compared_trains
+from synth.hump.comparison.played import as_told, humped_again, played
 
 TRIAL = """hump = "dumper"
 [trains]
@@ -70,7 +70,7 @@ def test_a_page_plays_the_train_with_the_largest_difference_in_both_runs(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     slow, _ = runs = runs_in([folder / "slow", folder / "fast"])
-    page, told = played.played(runs)
+    page, told = played(runs)
     assert isinstance(page, File)
     assert isinstance(told, Sentence)
     (text,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', page.content.decode(), re.DOTALL)
@@ -87,10 +87,10 @@ def test_a_page_plays_the_train_with_the_largest_difference_in_both_runs(
         cuts = run["trains"][0]["cuts"]
         assert (run["name"], len(cuts), sum(cut["caught_s"] is not None for cut in cuts)) == (name, 12, count)
 
-    of_slow = played.humped_again(slow, compared_trains(runs)[:1])
-    assert played.as_told(of_slow[0], slow.found)
-    monkeypatch.setattr(played, "humped_again", lambda run, chosen: of_slow)
-    (warning,) = played.played(runs)
+    of_slow = humped_again(slow, compared_trains(runs)[:1])
+    assert as_told(of_slow[0], slow.found)
+    monkeypatch.setattr("synth.hump.comparison.played.humped_again", lambda run, chosen: of_slow)
+    (warning,) = played(runs)
     assert isinstance(warning, Sentence)
     assert warning.text.startswith("Warning: fast was humped by another version of this program")
 

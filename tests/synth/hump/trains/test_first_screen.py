@@ -11,7 +11,7 @@ from synth.hump.control.cut_record import CutRecord
 from synth.hump.trains.car_warnings import list_warnings
 from synth.hump.trains.chosen_trains import chosen_trains
 from synth.hump.trains.hump_routes import HumpRoutes, Mark
-from synth.hump.trains.humped_trial import HumpedTrial, humped_trial
+from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.outcomes import TrainOutcomes, outcomes
 from synth.hump.trains.position_strength import strengths, weak
@@ -32,7 +32,7 @@ def humped(text: str) -> tuple[HumpedTrial, TrainCuts, TrainMemory]:
     trial = made_trial(config, 1)
     trains, _, memory = trial.humped(0, TRAINS)
     able = trial.able(trains, memory.route.ravel())
-    return humped_trial(config, trial, outcomes(trial.routes, trains, memory, able)), trains, memory
+    return HumpedTrial(config, trial, outcomes(trial.routes, trains, memory, able)), trains, memory
 
 
 @pytest.fixture(scope="module")

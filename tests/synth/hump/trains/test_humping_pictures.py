@@ -13,9 +13,12 @@ from matplotlib.text import Text
 from plant_models.library.hump_entry import load_hump
 from synth.frame.picture.figure_file import draw
 from synth.hump.trains.outcomes import TrainOutcomes, outcomes
-from synth.hump.trains.pictures import catch_ups, couplings, hump_speed_program, speed_path, time_path
+from synth.hump.trains.pictures.catch_ups import catch_ups
+from synth.hump.trains.pictures.couplings import couplings
 from synth.hump.trains.pictures.element_strip import levels
-from synth.hump.trains.pictures.hump_speed_program import PushedTrain
+from synth.hump.trains.pictures.hump_speed_program import PushedTrain, hump_speed_program
+from synth.hump.trains.pictures.speed_path import speed_path
+from synth.hump.trains.pictures.time_path import time_path
 from synth.hump.trains.shown.places import by_element
 from synth.hump.trains.train_trace import AlarmKind, TrainTrace, train_trace
 from tests.plant_models.rolling.populations import CATEGORIES

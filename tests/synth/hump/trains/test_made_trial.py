@@ -14,7 +14,7 @@ from synth.frame.exhibits import Table
 from synth.frame.input_error import InputError
 from synth.frame.results_directory import results_directory
 from synth.hump.configuration.trial_file import parse_trial_file
-from synth.hump.forms import hump_csv
+from synth.hump.forms.hump_csv import to_csv, to_xlsx
 from synth.hump.hump_file import hump_text
 from synth.hump.trains.hump_position import Arrivals
 from synth.hump.trains.hump_speed import pair_by_pair
@@ -150,7 +150,7 @@ def test_a_position_with_a_book_runs_its_tables(tmp_path: Path) -> None:
 @pytest.mark.parametrize("form", ["csv", "xlsx"])
 def test_a_hump_in_a_spreadsheet_can_be_repeated_from_the_inputs(tmp_path: Path, form: str) -> None:
     hump, table = load_hump("dumper"), tmp_path / f"my.{form}"
-    table.write_bytes(hump_csv.to_xlsx(hump) if form == "xlsx" else hump_csv.to_csv(hump).encode())
+    table.write_bytes(to_xlsx(hump) if form == "xlsx" else to_csv(hump).encode())
     file = parse_trial_file(f'hump = "{table.name}"', str(tmp_path / "trial.toml"))
     config = resolve_trial(file)
     with results_directory(tmp_path / "out", "hump simulate") as out:

@@ -14,10 +14,9 @@ from synth.frame.exhibits import Chapter, Sentence, Tiles, exhibits_of
 from synth.frame.input_error import InputError
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.hump_file import hump_text
-from synth.hump.trains import simulate_command
 from synth.hump.trains.controlled_train import controlled_train
 from synth.hump.trains.hump_routes import Mark
-from synth.hump.trains.humped_trial import humped_trial
+from synth.hump.trains.humped_trial import HumpedTrial
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.outcome_file import TRAINS
 from synth.hump.trains.resolved_trial import resolve_trial
@@ -99,7 +98,7 @@ def test_cuts_that_stand_are_told_and_figures_come_before_the_train_that_is_show
     text = 'hump = "rising.toml"\n[trains]\nnumber = 2\ncuts = 6\n[aim]\ndesign_cuts = 200\n'
     config = resolve_trial(parse_trial_file(text + "[output]\nplots = false\nreport = false\n", str(place)))
     trial = made_trial(config)
-    result = humped_trial(config, trial, trial.batch(0, 2))
+    result = HumpedTrial(config, trial, trial.batch(0, 2))
     told = [each for each in exhibits_of(tuple(show(result))) if isinstance(each, Sentence) and each.brief]
     assert "5 of the 6 cuts of train 1 stand before element 1; the track falls by -0.18 m up to there" in told[1].text
     assert told[1].figures == {"standing_cuts": 5}
@@ -107,7 +106,7 @@ def test_cuts_that_stand_are_told_and_figures_come_before_the_train_that_is_show
     def fails(*_: object) -> OneTrain:
         raise ZeroDivisionError
 
-    monkeypatch.setattr(simulate_command, "one_train", fails)
+    monkeypatch.setattr("synth.hump.trains.simulate_command.one_train", fails)
     chapters = show(result)
     made: list[Chapter] = []
     with pytest.raises(ZeroDivisionError):
