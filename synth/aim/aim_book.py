@@ -36,7 +36,6 @@ JUDGED_PART = 2
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class MadeAim:
     """An aim table as it is written, and the simulated figures behind it; `knowledge`: as a configuration calls it."""
 

@@ -14,8 +14,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.problem.requirement import FrictionRange
 from synth.problem.requirement_found import CERTIFIED_GAP, WorstCaseFound
 from synth.solver.backward_induction import Solution
@@ -71,7 +71,7 @@ def guard_worst_case(
             lines = polish(lines, fit.curvature, nodes, evaluate, ITERATIONS, TOLERANCE).best
         return lines
 
-    def bounded(lines: PolynomialLines) -> tuple[PolynomialLines, NDArray[np.float64], float]:
+    def bounded(lines: PolynomialLines) -> tuple[PolynomialLines, Floats, float]:
         costs = costs_of(lines.at(nodes)).cost
         weights = soft_weights(costs, SHARPNESS[-1] / float(costs.max()))
         mean = weighted_mean(costs_of, weights)
@@ -102,7 +102,7 @@ def guard_worst_case(
     )
 
 
-def weighted_mean(costs_of: Callable[[SwitchingLines], ScenarioCosts], weights: NDArray[np.float64]) -> Evaluate:
+def weighted_mean(costs_of: Callable[[SwitchingLines], ScenarioCosts], weights: Floats) -> Evaluate:
     """Σ w_i·J_i with its gradient."""
 
     def evaluate(lines: SwitchingLines) -> Gradient:
@@ -123,10 +123,10 @@ def smooth_maximum(costs_of: Callable[[SwitchingLines], ScenarioCosts], beta: fl
     return evaluate
 
 
-def soft_weights(cost: NDArray[np.float64], beta: float) -> NDArray[np.float64]:
+def soft_weights(cost: Floats, beta: float) -> Floats:
     """Weights ∝ exp(β·cost), which sum to one."""
     raw = np.exp(beta * (cost - cost.max()))
-    weights: NDArray[np.float64] = raw / raw.sum()
+    weights: Floats = raw / raw.sum()
     return weights
 
 

@@ -7,8 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.interval import Interval
 from synth.retarder.configuration.config_file import ConfigSource
 from synth.retarder.policy_map import PolicyMap
@@ -122,14 +122,14 @@ def judged_rule(problem: LayoutProblem, passes: PlanPasses, tell: Tell) -> Judge
     return found
 
 
-def told_radar(asked: AskedLayouts, number: int, passes: PlanPasses, tell: Tell) -> tuple[NDArray[np.float64], ...]:
+def told_radar(asked: AskedLayouts, number: int, passes: PlanPasses, tell: Tell) -> tuple[Floats, ...]:
     """`radar_errors` of the case `number`, and told of."""
     found = radar_errors(asked.problem.cases[number], asked.problem.resolution, (passes.choosing, passes.final))
     tell(f"the radar's lines for {asked.labels[number]} found")
     return found
 
 
-def radar_on(by_case: Sequence[tuple[NDArray[np.float64], ...]], passes: PlanPasses) -> tuple[ExitErrors, ExitErrors]:
+def radar_on(by_case: Sequence[tuple[Floats, ...]], passes: PlanPasses) -> tuple[ExitErrors, ExitErrors]:
     """The radar's errors over all cases, on the passes to choose on and on the final ones."""
     choosing, final = zip(*by_case, strict=True)
     return (
