@@ -44,7 +44,7 @@ SHARPNESS = (4.0, 16.0, 64.0, 256.0)
 ROUNDS = 3
 """The whole is repeated from the lines of the lower bound while the gap is open; the best lines are kept."""
 
-ITERATIONS, TOLERANCE = 40, 1e-4
+GUARD_ITERATIONS, GUARD_TOLERANCE = 40, 1e-4
 
 
 def guard_worst_case(
@@ -68,14 +68,14 @@ def guard_worst_case(
     def lowered(lines: PolynomialLines) -> PolynomialLines:
         for sharpness in SHARPNESS:
             evaluate = smooth_maximum(costs_of, sharpness / float(costs_of(lines.at(nodes)).cost.max()))
-            lines = polish(lines, fit.curvature, nodes, evaluate, ITERATIONS, TOLERANCE).best
+            lines = polish(lines, fit.curvature, nodes, evaluate, GUARD_ITERATIONS, GUARD_TOLERANCE).best
         return lines
 
     def bounded(lines: PolynomialLines) -> tuple[PolynomialLines, Floats, float]:
         costs = costs_of(lines.at(nodes)).cost
         weights = soft_weights(costs, SHARPNESS[-1] / float(costs.max()))
         mean = weighted_mean(costs_of, weights)
-        found = [polish(at, fit.curvature, nodes, mean, ITERATIONS, TOLERANCE) for at in (lines, start)]
+        found = [polish(at, fit.curvature, nodes, mean, GUARD_ITERATIONS, GUARD_TOLERANCE) for at in (lines, start)]
         lowest = min(found, key=lambda each: each.cost_after)
         return lowest.best, weights, 1.0 - lowest.cost_after / float(costs.max())
 

@@ -18,7 +18,7 @@ from plant_models.frozen_arrays import Floats
 from synth.simulation.closed_loop import ClosedLoop, LineController
 from synth.simulation.common_passes import CommonPasses
 from synth.solver.switching_lines import SwitchingLines
-from tuning_tables.decisions import Decisions
+from tuning_tables import Decisions
 
 LINE_NODES = 129
 """Nodes of the lines; only the energy rule's are not constant."""

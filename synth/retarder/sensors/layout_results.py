@@ -10,6 +10,7 @@ import numpy as np
 
 from plant_models.frozen_arrays import Floats
 from synth.frame.interval import Interval
+from synth.frame.workers.engine import Tell, silent
 from synth.retarder.configuration.config_file import ConfigSource
 from synth.retarder.policy_map import PolicyMap
 from synth.retarder.sensors.candidate_places import policy_anywhere
@@ -25,7 +26,6 @@ from synth.retarder.sensors.layout_plan import (
     steps_of_plan,
 )
 from synth.retarder.sensors.layout_tables import ExitErrors, radar_errors
-from synth.retarder.watcher import Tell, silent
 
 NEAR_RADAR = 1.1
 """Times the radar's rms is wanted where no rms is asked for."""
