@@ -109,7 +109,7 @@ def polish_surfaces(
 
 
 def whitening(terms: Terms, first: SurfaceCost) -> Floats:
-    """Of each line the matrix (·, T, T) of `polish.whitening`, with the exact second derivatives by each line value."""
+    """Of each line the matrix (·, T, T) of `whitening`, with the exact second derivatives by each line value."""
     bends = terms.bends(np.maximum(first.bends, 0.0) / first.cost_m2_s2)
     squares = terms.bends(np.ones_like(first.bends))
     loose = squares / (squares[:, :1, :1] * LOOSE_M_S**2)
