@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from plant_models.frozen_arrays import Floats
 
 LONGEST_PASS_S = 300.0
 """A cut that is still inside, at rest between two commands, after this time has stalled: it creeps."""
