@@ -78,8 +78,7 @@ def tune(
 def tell(case: TunedCase, watcher: Watcher) -> None:
     """What there is to say of a case with a table."""
     name, found = f"{case.label} to {case.target_speed_m_s:g} m/s", case.statistics
-    low, high = found.rms_ci95_m_s
-    watcher.done(f"{name}: rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {found.passes} passes")
+    watcher.done(f"{name}: {found.rms_text} in {found.passes} passes")
     for warning in case.warnings:
         watcher.note(f"warning: {name}: {warning}")
     for remark in case.remarks:

@@ -51,9 +51,7 @@ class Revalidation:
     @property
     def told(self) -> str:
         """The table and its rms in a sentence."""
-        low, high = self.statistics.rms_ci95_m_s
-        rms = f"rms {self.statistics.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s"
-        return f"{self.table.id}: {rms} in {self.statistics.passes} passes"
+        return f"{self.table.id}: {self.statistics.rms_text} in {self.statistics.passes} passes"
 
 
 @dataclass(frozen=True)
