@@ -12,6 +12,7 @@ from scripts.studies.markdown_table import MarkdownTable, around, table
 from scripts.studies.options import option
 from scripts.studies.study import Findings, Method, Tell
 from synth.frame.printed_numbers import ABSENT, few, percent
+from synth.frame.workers.engine import Teller
 from synth.retarder.acceptance import CaseVerdict, judged
 from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.config_file import load_config
@@ -20,7 +21,6 @@ from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.shown_case import ShownCase, shown_case
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
-from synth.retarder.watcher import Teller
 from synth.simulation.replicates import Interval
 
 SHOWN: Final = 52.0, 3.0

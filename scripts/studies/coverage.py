@@ -24,13 +24,13 @@ from synth.checker.plant import plant_of
 from synth.checker.statistics import figures_of
 from synth.checker.table_reading import read_table
 from synth.frame.input_error import InputError
+from synth.frame.workers.engine import Teller
 from synth.problem.aim import Aim
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.estimation.estimate_chain import estimate_chain
 from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back, solutions
-from synth.retarder.watcher import Teller
 from synth.simulation.closed_loop import LineController, TableController, simulate_many
 from synth.simulation.controllers import full_brake
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio

@@ -28,12 +28,12 @@ from synth.checker.statistics import figures_of
 from synth.checker.summary import read_summary
 from synth.checker.table_reading import Table, read_table
 from synth.frame.summary import plain, summary_head
+from synth.frame.workers.engine import Teller
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configured import head_of
 from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
-from synth.retarder.watcher import Teller
 from tuning_tables import write_json
 
 FACTORS = (1.0, 0.5, 0.8, 1.25)

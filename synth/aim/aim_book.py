@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -18,6 +17,7 @@ from synth.aim.knowledge import ByCategory, ByReading, Requirement
 from synth.aim.position_models import PositionModel
 from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.resolved_aim import BOUNDS_M_S, ResolvedAim
+from synth.frame.workers.engine import Tell
 from tuning_tables import Generator
 from tuning_tables.aim import (
     AimAxes,
@@ -29,14 +29,11 @@ from tuning_tables.aim import (
     Required,
 )
 
-Progress = Callable[[str], None]
-
 JUDGED_PART = 2
 """Speeds are judged on a half as many cuts as they are chosen on: these have one error, a choice has two."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class MadeAim:
     """An aim table as it is written, and the simulated figures behind it; `knowledge`: as a configuration calls it."""
 
@@ -44,6 +41,11 @@ class MadeAim:
     knowledge: str
     speeds: AimedSpeeds
     table: AimTable
+
+    @property
+    def known(self) -> str:
+        """What people call the knowledge."""
+        return {"category": "category alone", "measured": "resistance measured"}[self.knowledge]
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class AimBook:
     tables: tuple[MadeAim, ...]
 
 
-def aim_book(config: ResolvedAim, created: str, progress: Progress) -> AimBook:
+def aim_book(config: ResolvedAim, created: str, progress: Tell) -> AimBook:
     """All tables of `config`; `progress` is told a sentence for each category.
 
     Categories are worked out side by side: much of the work is that of numpy and scipy, which use one processor.

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.library.weight_category import WeightCategory
 from synth.aim.aim_table import AimOrder
 from synth.aim.limit_speed import thresholds_of
 from synth.aim.scene import AimScene
-
-Floats = NDArray[np.float64]
 
 CURVE_CUTS = 4000
 """Cuts that curves are of."""
@@ -29,7 +24,6 @@ RUNNERS = (0.05, 0.5, 0.95)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class AimCurves:
     """Cuts of `cars` cars of a category that are all told one speed: at `speed_m_s` (k,) and every free distance (d,)
     the share of `overspeed` (d, k) and the mean gap of a cut, `gap_m` (d, k), of `cuts` cuts."""
@@ -68,7 +62,6 @@ def aim_curves(scene: AimScene, order: AimOrder, cars: int) -> AimCurves:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Runners:
     """Single cars of a category that leave the bunch position and are not braked behind it.
 

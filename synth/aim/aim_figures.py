@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.aim.outcome import Couplings
-
-Floats = NDArray[np.float64]
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class AimFigures:
     """By cars and distance, each (cars, distances), of all judged cuts: share of over-speed with its exact 95 %
     interval; mean gap of a cut with its normal 95 % interval; share of cuts `without` a command.

@@ -5,18 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.library.weight_category import WeightCategory
 from synth.aim.aim_figures import AimFigures, aim_figures, figures_row
 from synth.aim.knowledge import ByCategory, ByReading, CommandsByReading, Requirement
 from synth.aim.outcome import Couplings, couplings
 from synth.aim.position_models import PositionModel
 from synth.aim.scene import AimScene, SceneCuts
-
-Floats = NDArray[np.float64]
 
 ROUNDED_M_S = 0.001
 """Commands are rounded down to this."""
@@ -50,7 +47,6 @@ class AimOrder:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class AimedSpeeds:
     """Commands of an order and what they give on cuts that they were not chosen on.
 
@@ -69,14 +65,13 @@ class AimedSpeeds:
     overspeed_low95: Floats
     overspeed_high95: Floats
     gap_per_car_m: Floats
-    cuts: NDArray[np.int64]
+    cuts: Ints
     above_m_s: float
     below_m_s: float
     of_all: AimFigures
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TableCuts:
     """Cuts of one number of cars for all kinds of knowledge: to choose on, to check interpolation on, to report on."""
 
@@ -153,11 +148,7 @@ def thresholds_at(order: AimOrder, cuts: SceneCuts, free_distances_m: Floats) ->
 
 
 def chosen(
-    order: AimOrder,
-    knowledge: ByCategory | ByReading,
-    cuts: SceneCuts,
-    thresholds_m_s: Floats,
-    nodes: Floats | None,
+    order: AimOrder, knowledge: ByCategory | ByReading, cuts: SceneCuts, thresholds_m_s: Floats, nodes: Floats | None
 ) -> Floats:
     """Commands (distances, readings); one column by category."""
     if nodes is None or isinstance(knowledge, ByCategory):
@@ -185,7 +176,7 @@ def errors_between(
     return float(found.max()), float(-found.min()) + 0.0  # no zero with a sign
 
 
-def nearest_node(knowledge: ByReading, cuts: SceneCuts, nodes: Floats) -> NDArray[np.int64]:
+def nearest_node(knowledge: ByReading, cuts: SceneCuts, nodes: Floats) -> Ints:
     """The node nearest to the reading of each cut, (n,)."""
     reading = knowledge.reading.of(cuts).with_error(cuts)
     return np.asarray(np.abs(reading[:, None] - nodes).argmin(axis=1))
@@ -197,11 +188,7 @@ def with_midways(places: Floats) -> Floats:
 
 
 def figures_of(
-    order: AimOrder,
-    knowledge: ByCategory | ByReading,
-    report: SceneCuts,
-    commands_m_s: Floats,
-    nodes: Floats | None,
+    order: AimOrder, knowledge: ByCategory | ByReading, report: SceneCuts, commands_m_s: Floats, nodes: Floats | None
 ) -> tuple[Floats, Floats]:
     """Over-speed with both ends of its interval, gap a car, cuts: (distances, readings, 5); figures of all cuts
     together: (distances, 7)."""

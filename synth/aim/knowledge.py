@@ -6,15 +6,12 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.aim.limit_speed import thresholds_of
 from synth.aim.readings import Reading
 from synth.aim.scene import SceneCuts
-
-Floats = NDArray[np.float64]
 
 NODES = 25
 """At which commands by a reading are worked out."""
@@ -46,7 +43,6 @@ class Knowledge(Protocol):
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class SameCommands:
     """`speeds_m_s` (k,) whatever the cut."""
 
@@ -67,7 +63,6 @@ class ByCategory:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class CommandsByReading:
     """`speeds_m_s` (nodes, k) at the readings `nodes` (nodes,), linear between, constant beyond; they do not fall with
     the reading."""

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
-
-Floats = NDArray[np.float64]
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Thresholds:
     """Commands above which n cuts couple too fast at k places: `sorted_m_s` (n, k), each column sorted, and `order`
     (n, k): whose they are. Build it with `thresholds_of`."""
 
     sorted_m_s: Floats
-    order: NDArray[np.int64]
+    order: Ints
 
     def overspeed(self, commanded_m_s: Floats) -> Floats:
         """Share of the cuts that couple too fast at place k when all are commanded `commanded_m_s` (k,)."""
@@ -45,7 +39,7 @@ def thresholds_of(thresholds_m_s: Floats) -> Thresholds:
     return Thresholds(np.take_along_axis(thresholds_m_s, order, axis=0), order)
 
 
-def place_beyond(limit: float, weights: Floats, order: NDArray[np.int64]) -> int:
+def place_beyond(limit: float, weights: Floats, order: Ints) -> int:
     """First place at which the weights (n,) in `order` (n,) add up to more than `limit`, or the last one.
 
     The first quarter of the places is added up first, as it mostly is enough.

@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
 from synth.aim.position_models import ExitSpeeds
 from synth.aim.scene import SceneCuts
 from synth.simulation.exit_statistics import NORMAL_95, clopper_pearson
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -25,7 +22,6 @@ class Figure:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Couplings:
     """n cuts that meet standing cars at one place: `speed_m_s` (n,) of coupling, 0 if they stop before; `gap_m` (n,)
     that then stays free, 0 if they couple; `cars` of each cut."""
@@ -46,7 +42,7 @@ class Couplings:
         low, high = clopper_pearson(hits, n)
         return Figure(hits / n, low, high)
 
-    def of(self, which: NDArray[np.bool_]) -> Couplings:
+    def of(self, which: Bools) -> Couplings:
         """Some of these."""
         return Couplings(self.speed_m_s[which], self.gap_m[which], self.limit_m_s, self.cars)
 

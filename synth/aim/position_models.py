@@ -6,15 +6,12 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from plant_models.errors import require_between
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.rolling.random_numbers import Purpose
 from synth.aim.scene import SceneCuts
-
-Floats = NDArray[np.float64]
 
 
 class ExitSpeeds(Protocol):
@@ -38,7 +35,6 @@ class PositionModel(Protocol):
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class AddedError:
     """Exit speed = command + error (n,), as published studies take it; at most `most_m_s` (n,)."""
 
@@ -75,7 +71,6 @@ class NormalPosition:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class SampledExits:
     """Exit speeds of n cuts simulated at `commands_m_s` (k,), `exits_m_s` (n, k); between two commands linear.
 

@@ -6,22 +6,18 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from plant_models.errors import require_between
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.rolling.random_numbers import Purpose
 from synth.aim.scene import SceneCuts
-
-Floats = NDArray[np.float64]
 
 MOST_N_PER_KN = 50.0
 """Resistance that stands for a cut that stopped on the stretch."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TrueReadings:
     """Of n cuts: the reading of a sensor without error, and the standard deviation of its error, each (n,)."""
 

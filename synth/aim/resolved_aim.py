@@ -40,8 +40,7 @@ from synth.frame.input_error import InputError
 from synth.frame.settings.numbers import range_warnings
 from synth.frame.settings.output import OutputSettings
 from synth.retarder.configuration.config_file import load_config
-from synth.retarder.configuration.plant_fault import in_file
-from synth.retarder.configuration.position_choice import require_held
+from synth.retarder.configuration.plant_fault import in_file, require_held
 from synth.retarder.forms.table_file import book_in
 from tuning_tables.canonical import canonical_json
 

@@ -7,19 +7,16 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from plant_models.errors import require, require_between
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
 from plant_models.rolling.roll_track import RollTrack
 from synth.aim.coupling_speed import COUPLING_SPEED_M_S
 from synth.simulation.free_roll import RollingCuts, rolling_cuts
-
-Floats = NDArray[np.float64]
 
 SLOWEST_M_S = 0.3
 """Speed at a bunch exit that no draw is below."""
@@ -96,7 +93,6 @@ class AimScene:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class SceneCuts:
     """Cuts of a scene, all of one category and number of cars; `stretch_speed_m_s` (n,): where the stretch begins.
 
@@ -118,7 +114,7 @@ class SceneCuts:
         """Where each head is when the last axle leaves the position, (n,)."""
         return self.scene.exit_m + self.rolling.cuts.last_axle_m
 
-    def resistance_at(self, speed_m_s: Floats, rows: NDArray[np.int64]) -> Floats:
+    def resistance_at(self, speed_m_s: Floats, rows: Ints) -> Floats:
         """Resistance of the cuts `rows` on straight track at `speed_m_s`, air and wind included, N/kN."""
         return self.rolling.cuts.resistance_at(self.scene.population.law, rows, speed_m_s)
 

@@ -20,9 +20,6 @@ from synth.retarder.case_names import file_stem
 from synth.retarder.forms.code_options import PLAIN
 from synth.retarder.forms.table_forms import FORMS
 
-KNOWN: Final = {"category": "category alone", "measured": "resistance measured"}
-"""What people call a kind of knowledge."""
-
 SHOWN: Final = 4
 """Free distances of a brief row."""
 
@@ -158,7 +155,7 @@ def table_row(made: MadeAim, judged: AimVerdict) -> Row:
     return {
         "id": made.table.id,
         "category": made.category.name,
-        "knowledge": KNOWN[made.knowledge],
+        "knowledge": made.known,
         "chosen_on_cuts": made.speeds.order.design_cuts,
         "judged_on_cuts": made.speeds.order.report_cuts,
         "worst": judged.worst,

@@ -8,17 +8,15 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import PlantError
+from plant_models.frozen_arrays import Floats, Ints
 from synth.aim.position_models import SampledExits
 from synth.aim.scene import SceneCuts
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.table_class import TableClass, draws, table_classes, taken
 from synth.simulation.random_passes import RandomPasses, random_passes
 from tuning_tables import ControllerTable
-
-Floats = NDArray[np.float64]
 
 CHUNK = 2000
 """Cuts whose random numbers are in memory at a time, for each thread."""
@@ -81,9 +79,7 @@ def entry_speeds_m_s(cuts: SceneCuts) -> Floats:
     return cuts.rolling.roll_on(cuts.begin_m, cuts.stretch_speed_m_s, entrance).speed_m_s[:, 0]
 
 
-def class_exits(
-    of_class: TableClass, passes: RandomPasses, cuts: SceneCuts, rows: NDArray[np.int64], entry_m_s: Floats
-) -> Floats:
+def class_exits(of_class: TableClass, passes: RandomPasses, cuts: SceneCuts, rows: Ints, entry_m_s: Floats) -> Floats:
     """Exits (rows, targets) of the cuts `rows`, all of one class."""
     mass_t = cuts.rolling.cuts.cut_mass_t[rows]
     brakes = of_class.brakes(passes, mass_t, np.full(len(rows), of_class.plant.cut.axles))

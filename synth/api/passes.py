@@ -69,9 +69,7 @@ class Simulated:
 
     def __repr__(self) -> str:
         found = self.statistics
-        low, high = found.rms_ci95_m_s
-        rms = f"rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s"
-        return f"Simulated({found.passes} passes, seed {self.seed}: {rms}, bias {found.bias_m_s:+.4f} m/s)"
+        return f"Simulated({found.passes} passes, seed {self.seed}: {found.rms_text}, bias {found.bias_m_s:+.4f} m/s)"
 
 
 @as_a_command

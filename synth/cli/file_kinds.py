@@ -71,7 +71,7 @@ def configuration_text(name: str) -> str:
     """The configuration of the position `name`."""
     from plant_models.library import BUILT_IN, POSITIONS
     from synth.retarder.configuration.config_template import default_config_toml
-    from synth.retarder.configuration.position_choice import require_held
+    from synth.retarder.configuration.plant_fault import require_held
 
     if not name:
         return default_config_toml()
@@ -82,7 +82,7 @@ def point_sensors_text(name: str) -> str:
     """A configuration with point sensors, of the position `name` or as the file `name` has it."""
     from plant_models.library import BUILT_IN, POSITIONS
     from synth.retarder.configuration.config_template import default_sensors_toml, filled_sensors_toml
-    from synth.retarder.configuration.position_choice import require_held
+    from synth.retarder.configuration.plant_fault import require_held
 
     if name.endswith(".toml"):
         return filled_sensors_toml(Path(name))

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats
 from synth.problem.requirement import Requirement
 from synth.problem.terminal_cost import SquaredError, TerminalCost
 
@@ -59,7 +57,7 @@ class Criterion:
             "criterion: a chance constraint or a worst case goes with the squared error only; leave out one of the two",
         )
 
-    def exit_costs(self, speed_m_s: NDArray[np.float64], target_speed_m_s: float) -> tuple[NDArray[np.float64], float]:
+    def exit_costs(self, speed_m_s: Floats, target_speed_m_s: float) -> tuple[Floats, float]:
         """What exits cost.
 
         Parameters

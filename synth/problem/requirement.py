@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class FrictionRange:
             f"criterion: worst_friction_low is {self.low!r}; it must be below worst_friction_high = {self.high:g}",
         )
 
-    def factors(self, count: int) -> NDArray[np.float64]:
+    def factors(self, count: int) -> Floats:
         """`count` equally spaced friction factors, both ends included."""
         return np.linspace(self.low, self.high, count)
 

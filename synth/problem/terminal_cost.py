@@ -10,15 +10,15 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require_between
+from plant_models.frozen_arrays import Floats
 
 
 class TerminalCost(Protocol):
     """Cost of leaving the position with a speed."""
 
-    def at_exit(self, speed_m_s: NDArray[np.float64], target_speed_m_s: float) -> NDArray[np.float64]:
+    def at_exit(self, speed_m_s: Floats, target_speed_m_s: float) -> Floats:
         """Cost in m²/s² of the grid's exit speeds (E,), which are even in v²/2 and begin at 0, a stall."""
         ...
 
@@ -32,9 +32,9 @@ class TerminalCost(Protocol):
 class SquaredError:
     """(V_exit − V_target)²."""
 
-    def at_exit(self, speed_m_s: NDArray[np.float64], target_speed_m_s: float) -> NDArray[np.float64]:
+    def at_exit(self, speed_m_s: Floats, target_speed_m_s: float) -> Floats:
         """See `TerminalCost`."""
-        square: NDArray[np.float64] = (speed_m_s - target_speed_m_s) ** 2
+        square: Floats = (speed_m_s - target_speed_m_s) ** 2
         return square
 
     @property
@@ -52,7 +52,7 @@ class AsymmetricSquare:
     def __post_init__(self) -> None:
         require_between("criterion: overspeed_factor", self.overspeed_factor, 0.01, 1000.0)
 
-    def at_exit(self, speed_m_s: NDArray[np.float64], target_speed_m_s: float) -> NDArray[np.float64]:
+    def at_exit(self, speed_m_s: Floats, target_speed_m_s: float) -> Floats:
         """See `TerminalCost`."""
         error = speed_m_s - target_speed_m_s
         return np.where(error > 0.0, self.overspeed_factor, 1.0) * error**2
@@ -74,7 +74,7 @@ class PenalisedOverspeed:
     price_m2_s2: float
     margin_m_s: float
 
-    def at_exit(self, speed_m_s: NDArray[np.float64], target_speed_m_s: float) -> NDArray[np.float64]:
+    def at_exit(self, speed_m_s: Floats, target_speed_m_s: float) -> Floats:
         """See `TerminalCost`."""
         above = share_above(speed_m_s, target_speed_m_s + self.margin_m_s)
         return (speed_m_s - target_speed_m_s) ** 2 + self.price_m2_s2 * above
@@ -88,9 +88,9 @@ class PenalisedOverspeed:
         )
 
 
-def share_above(speed_m_s: NDArray[np.float64], limit_m_s: float) -> NDArray[np.float64]:
+def share_above(speed_m_s: Floats, limit_m_s: float) -> Floats:
     """Share (E,) of the cell of every grid speed that lies above `limit_m_s`; the grid is even in v²/2."""
     energy = 0.5 * speed_m_s**2
     step = energy[1] - energy[0]
-    above: NDArray[np.float64] = np.clip((energy - 0.5 * limit_m_s**2) / step + 0.5, 0.0, 1.0)
+    above: Floats = np.clip((energy - 0.5 * limit_m_s**2) / step + 0.5, 0.0, 1.0)
     return above

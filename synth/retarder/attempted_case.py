@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
-from typing import Final, TypeVar
+from typing import Final
 
 from plant_models import PlantError
 from plant_models.library.data_file import keyed
 from synth.frame.input_error import InputError
 from synth.retarder.configuration.plant_fault import KEY_OF_PLANT_MESSAGE, LONGEST_SENTENCE
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.failed_case import FailedCase
+from synth.retarder.failed_case import FailedCase, Made
 from synth.solver.coarse_grid import STEPS, CoarseGridError
 from tuning_tables import InvalidTable
 from tuning_tables.excerpt import excerpt
-
-Made = TypeVar("Made")
 
 KEYS_OF_LINES: Final = (*STEPS, "fit.degree")
 """Keys of a configuration that lines depend on."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +25,6 @@ LINE_NODES = 301
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class CaseResult(TunedCase):
     """One case of tables with lines or surfaces, and beside its closed loop everything that it is compared with.
 

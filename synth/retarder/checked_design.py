@@ -79,7 +79,6 @@ Judge = Callable[[PolynomialLines], Verdict]
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class CheckedDesign(Generic[Verdict]):
     """Polished lines for one aim, decided at rest.
 

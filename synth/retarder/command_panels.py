@@ -10,6 +10,7 @@ from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.frame.picture.house_style import new_figure, place
 
 if TYPE_CHECKING:
@@ -43,11 +44,7 @@ def label_panels(grid: Any, stages: int) -> None:
 
 
 def command_image(
-    policy: PolicyMap,
-    stage: int,
-    ends_m: tuple[float, float],
-    speeds_m_s: tuple[float, float],
-    pixels: tuple[int, int],
+    policy: PolicyMap, stage: int, ends_m: tuple[float, float], speeds_m_s: tuple[float, float], pixels: tuple[int, int]
 ) -> NDArray[np.uint8]:
     """The map of one stage as colours (speed, path, 4) on an even mesh of `pixels`, path by speed; slowest first."""
     width, height = pixels
@@ -63,6 +60,6 @@ def command_image(
     return image
 
 
-def nearest(nodes: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.int64]:
+def nearest(nodes: Floats, values: Floats) -> Ints:
     """Index of the node nearest to each value; `nodes` increase."""
     return np.searchsorted(0.5 * (nodes[1:] + nodes[:-1]), values)

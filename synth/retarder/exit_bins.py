@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.problem.aim import OVERSPEED_M_S
 from synth.retarder.tuned_case import TunedCase
 from synth.solver.exit_density import ExitDensity
@@ -29,13 +29,13 @@ def prediction_origin(cases: Sequence[TunedCase]) -> str:
     return f"{EXACT}; with an estimator from other simulated passes" if any(estimated) else EXACT
 
 
-def predicted_density(exits: ExitDensity) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def predicted_density(exits: ExitDensity) -> tuple[Floats, Floats]:
     """Speeds, and the density there in 1/(m/s); the grid's first energy stands for cuts next to a stall."""
     speed, probability = exits.speed_m_s[1:], exits.probability[1:]
     return speed, probability * speed / (0.5 * exits.speed_m_s[1] ** 2)
 
 
-def bin_edges_m_s(target_m_s: float, highest_m_s: float) -> NDArray[np.float64]:
+def bin_edges_m_s(target_m_s: float, highest_m_s: float) -> Floats:
     """Edges of the bins from 0 to beyond `highest_m_s`; the target is one of them."""
     half = round(OVERSPEED_M_S / NARROW_M_S)
     narrow = NARROW_M_S * np.arange(-half, half + 1)

@@ -40,8 +40,7 @@ def judgement(
     honest, ratio_ci95 = prediction_ratio_of(predicted.rms_m_s, predicted.passes, found)
     low, high = limits.prediction_ratio_low, limits.prediction_ratio_high
     figures = (
-        (found.rms_ci95_m_s, (0.0, limits.rms_m_s),
-         f"rms {found.rms_m_s:.4f} {interval_text(found.rms_ci95_m_s)} m/s, allowed {limits.rms_m_s:g}"),
+        (found.rms_ci95_m_s, (0.0, limits.rms_m_s), f"{found.rms_text}, allowed {limits.rms_m_s:g}"),
         (overspeed[1], (0.0, limits.p_overspeed),
          f"over-speed in {share_text(overspeed)} of the cuts, allowed {limits.p_overspeed:.3%}"),
         (found.stalled_ci95, (0.0, limits.p_stall),

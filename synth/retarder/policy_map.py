@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
 from synth.solver.backward_induction import TIE_M2_S2, Solution
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PolicyMap:
     """Best command and indifferent region on the solver's grid, by stage.
 
@@ -20,10 +17,10 @@ class PolicyMap:
     (K + 1, N, E): several commands cost the same within the tolerance.
     """
 
-    path_m: NDArray[np.float64]
-    speed_m_s: NDArray[np.float64]
+    path_m: Floats
+    speed_m_s: Floats
     command: NDArray[np.int8]
-    indifferent: NDArray[np.bool_]
+    indifferent: Bools
 
 
 def policy_map(solution: Solution, tolerance_m2_s2: float) -> PolicyMap:
@@ -48,7 +45,7 @@ def share_of_ties(solution: Solution) -> float:
     return float(tied.mean())
 
 
-def gains(solution: Solution) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def gains(solution: Solution) -> tuple[Floats, Floats]:
     """What a change down and one up gain, (K + 1, N, E) each; −inf where there is none."""
     down, up = (np.moveaxis(gain, 1, 0) for gain in (solution.gain_down, solution.gain_up))
     down, up = np.where(available(down), down, -np.inf), np.where(available(up), up, -np.inf)
@@ -56,7 +53,7 @@ def gains(solution: Solution) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     return down, up
 
 
-def available(gain: NDArray[np.float64]) -> NDArray[np.bool_]:
+def available(gain: Floats) -> Bools:
     """Which commands a stage has at all: the sweep leaves the gain of a missing one exactly zero everywhere."""
-    exists: NDArray[np.bool_] = np.any(gain != 0.0, axis=(1, 2), keepdims=True)
+    exists: Bools = np.any(gain != 0.0, axis=(1, 2), keepdims=True)
     return np.broadcast_to(exists, gain.shape)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.retarder.any_time.surface_table import surface_density
@@ -23,7 +23,6 @@ def rounded(setup: ClassSetup, lines: PolynomialLines | PolynomialSurfaces, targ
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PredictedTable:
     """A rounded table with its prediction, and the exit density behind it."""
 

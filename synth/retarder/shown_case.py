@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.problem.aim import OVERSPEED_M_S
 from synth.retarder.exit_bins import bin_edges_m_s, predicted_density
 from synth.simulation.passes import TRACE_FACTORS, PassTrace
@@ -107,7 +107,7 @@ def stage_parts(run: PassTrace, lines: SwitchingLines, pressures_kpa: tuple[floa
     return parts
 
 
-def line_of(path_m: NDArray[np.float64], speed_m_s: NDArray[np.float64]) -> SwitchingLine:
+def line_of(path_m: Floats, speed_m_s: Floats) -> SwitchingLine:
     """What there is of a line."""
     known = np.isfinite(speed_m_s)
     return SwitchingLine(numbers(path_m[known]), numbers(speed_m_s[known]))
@@ -127,6 +127,6 @@ def exit_densities(case: CaseResult) -> ExitDensities:
     )  # fmt: skip
 
 
-def numbers(values: NDArray[np.float64]) -> PlainNumbers:
+def numbers(values: Floats) -> PlainNumbers:
     """As plain numbers."""
     return tuple(float(each) for each in values)

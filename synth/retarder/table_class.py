@@ -8,12 +8,11 @@ from functools import cached_property
 from itertools import groupby
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, PressingForce
 from plant_models.cut import ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.kernels.loop.motion import brake_rows
 from synth.kernels.loop.passes import Draws
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -23,9 +22,6 @@ from synth.simulation.controllers import Controller, TableController, fixed
 from synth.simulation.lost_readings import readings_z
 from synth.simulation.random_passes import RandomPasses
 from tuning_tables import ControllerTable
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SLOWEST_ENTRY_M_S = 0.05
 """Entry speed of cuts that come slower, or not at all: the kernel divides by it."""
@@ -71,7 +67,6 @@ class TableClass:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Brakes:
     """Friction factor of n cuts (n,), and deceleration by one kPa in each path cell of each of them (n, cells)."""
 

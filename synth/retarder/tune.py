@@ -9,13 +9,13 @@ from typing import Generic, TypeVar
 
 from plant_models import Plant
 from synth.frame.creation_time import creation_time
+from synth.frame.workers.engine import Watcher
 from synth.retarder.attempted_case import attempted
 from synth.retarder.class_setup import origin_of, validation_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.epochs import Epochs, Ground, Store, Table
 from synth.retarder.failed_case import FailedCase, parted, require_none
 from synth.retarder.tuned_case import Case, TunedCase
-from synth.retarder.watcher import Watcher
 from synth.retarder.work_queue import run_nested
 from synth.solver.chain.grid import require_memory
 from synth.solver.one_blas_thread import one_blas_thread
@@ -78,8 +78,7 @@ def tune(
 def tell(case: TunedCase, watcher: Watcher) -> None:
     """What there is to say of a case with a table."""
     name, found = f"{case.label} to {case.target_speed_m_s:g} m/s", case.statistics
-    low, high = found.rms_ci95_m_s
-    watcher.done(f"{name}: rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {found.passes} passes")
+    watcher.done(f"{name}: {found.rms_text} in {found.passes} passes")
     for warning in case.warnings:
         watcher.note(f"warning: {name}: {warning}")
     for remark in case.remarks:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.retarder.comparison.measured import Measured
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics
 from synth.simulation.passes import PassTrace
@@ -20,7 +20,6 @@ from tuning_tables.table_kinds import StageTable
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Feasibility:
     """From which entry speeds the position can keep `limit_m_s`, the rms that is accepted.
 
@@ -29,8 +28,8 @@ class Feasibility:
     """
 
     limit_m_s: float
-    entry_m_s: NDArray[np.float64]
-    entry_rms_m_s: NDArray[np.float64]
+    entry_m_s: Floats
+    entry_rms_m_s: Floats
     served_m_s: tuple[float, float] | None
 
 
@@ -63,7 +62,6 @@ MOST_ESCAPED = 1e-4
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TunedCase:
     """One cut class and target: the table as read back, its prediction, and what the closed loop says of it.
 
@@ -80,7 +78,7 @@ class TunedCase:
     predicted: ExitDensity
     polish: Descent[object]
     exit_speeds_m_s: NDArray[np.float32]
-    exit_weight: NDArray[np.float64]
+    exit_weight: Floats
     statistics: ExitStatistics
     brake_power: BrakePower
     unavoidable: UnavoidableError

@@ -52,7 +52,6 @@ class Designed(Generic[Lines]):
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TunedTable:
     """The rounded table with its prediction, not yet simulated.
 

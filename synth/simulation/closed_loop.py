@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.pads import overpressure_kpa
 from plant_models.stage_regulator import resting_modes, stage_locked_actuator
 from synth.kernels.any_time.any_time_law import AnyTimeLaw
@@ -72,7 +73,7 @@ class ClosedLoop:
         return len(self.path.gravity_m_s2) - self.path.approach_cells
 
     @property
-    def stage_overpressures_kpa(self) -> NDArray[np.float64]:
+    def stage_overpressures_kpa(self) -> Floats:
         """max(0, P_k − P0) of the stages, shape (K + 1,)."""
         position = self.plant.position
         nominal = np.asarray(position.stage_pressures_kpa[: self.stages])
@@ -97,7 +98,7 @@ class ClosedLoop:
             fixed(weight, np.float64),
         )
 
-    def resistance_n_kn(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    def resistance_n_kn(self, u: Floats) -> Floats:
         """w0 for uniform `u`: the quantiles of its gamma law."""
         law = self.plant.resistance
         if law.std_n_per_kn == 0.0:
@@ -145,7 +146,7 @@ class ClosedLoop:
         return sample_of(exits, draws)
 
 
-def pad_slopes(path: Path, factor: NDArray[np.float64], path_z: NDArray[np.float32]) -> NDArray[np.float64]:
+def pad_slopes(path: Path, factor: Floats, path_z: NDArray[np.float32]) -> Floats:
     """Slope of the pads in every cell of n passes, (n, C): deceleration by one kPa of overpressure, m/s² per kPa.
 
     Its mean depends on the number N of braked wheel pairs (`path_coefficients`); `factor` (n,) is ξ_cut, `path_z` the
@@ -198,7 +199,7 @@ def sample_of(exits: Exits, draws: Draws) -> ExitSample:
     return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight)
 
 
-def trace_of(events: NDArray[np.float64], stalled: bool) -> PassTrace:
+def trace_of(events: Floats, stalled: bool) -> PassTrace:
     """The events that a kernel has noted of one pass, (events, `EVENT_FIELDS`), for reading."""
     time, path, speed, overpressure, stage, measured = np.ascontiguousarray(events.T)
     return PassTrace(time, path, speed, overpressure, stage.astype(np.int64), measured, stalled)
@@ -232,7 +233,7 @@ def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> Closed
     )
 
 
-def picked(draws: Draws, which: NDArray[np.int64]) -> Draws:
+def picked(draws: Draws, which: Ints) -> Draws:
     """Some passes of `draws`, in this order; of the path they keep what follows from `path_z`, not the numbers."""
     kept = draws._replace(path_z=draws.path_z[:, :0])
     return Draws._make(fixed(each[which], each.dtype.type) for each in kept)
@@ -245,12 +246,7 @@ def simulate(plant: Plant, controller: Controller, passes: RandomPasses, cut_fac
 
 
 def simulate_many(
-    plant: Plant,
-    controller: Controller,
-    seed: int,
-    count: int,
-    first_pass: int = 0,
-    threads: int = 1,
+    plant: Plant, controller: Controller, seed: int, count: int, first_pass: int = 0, threads: int = 1
 ) -> ExitSample:
     """`many_passes` of `plant` under `controller`."""
     loop = close_loop(plant, controller.stages)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
+from plant_models.frozen_arrays import Floats
 from plant_models.motion import path_breaks_m
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.kernels.loop import regulator
@@ -148,7 +149,7 @@ def stage_by_table(law: regulator.Rule, stage: int, s_m: float, v_m_s: float) ->
     return int(regulator.stage_by_table(law.table, stage, s_m, v_m_s, math.nan))
 
 
-def regulator_start(plant: Plant, controller: Controller) -> NDArray[np.float64]:
+def regulator_start(plant: Plant, controller: Controller) -> Floats:
     """The state of `regulator_system` before the first sample: at rest as the plant has it, nothing measured."""
     stage = plant.approach.initial_stage
     mode = regulated_actuator(plant, controller).mode_of(stage)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.kernels.any_time.driven_period import SampledDrive
 from synth.kernels.any_time.played_periods import PlayedPeriods
 from synth.kernels.loop.drive import Drive, Pieces
@@ -58,7 +58,7 @@ def drive_pieces(drive: Drive, period_s: float) -> Pieces:
     )
 
 
-def period_means(played_kpa: NDArray[np.float64], substeps: int) -> NDArray[np.float64]:
+def period_means(played_kpa: Floats, substeps: int) -> Floats:
     """Mean overpressure of every period, summed up from its first part to its last, as the kernel does it."""
     parts = played_kpa.reshape(-1, substeps)
     return np.asarray(np.cumsum(parts, axis=1)[:, -1] / substeps)

@@ -89,14 +89,19 @@ class ExitStatistics:
     time_s: float
     time_ci95_s: Interval
 
+    @property
+    def rms_text(self) -> str:
+        """The rms and its interval, in words."""
+        low, high = self.rms_ci95_m_s
+        return f"rms {self.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s"
+
     def __repr__(self) -> str:
         figures = (
-            ("rms", self.rms_m_s, self.rms_ci95_m_s),
             ("bias", self.bias_m_s, self.bias_ci95_m_s),
             ("95 % within", self.p95_m_s, self.p95_ci95_m_s),
         )
         told = (f"{name} {value:.4f} [{low:.4f}, {high:.4f}] m/s" for name, value, (low, high) in figures)
-        return f"ExitStatistics({self.passes} passes: {', '.join(told)})"
+        return f"ExitStatistics({self.passes} passes: {', '.join((self.rms_text, *told))})"
 
 
 @dataclass(frozen=True)

@@ -11,14 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.rolling.car_mix import CarMix
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from plant_models.rolling.roll_track import Bend, RollTrack
 from synth.kernels.roll import free_roll as kernel
 from synth.kernels.roll.felt_track import LANES, Cuts, Way
-
-Floats = NDArray[np.float64]
 
 STEP_M = 6.0
 """Longest step of a single car; its error is in the tests and in `study rolling`."""
@@ -34,7 +32,6 @@ TOGETHER = 512
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Rolled:
     """How n cuts rolled over k stations: `speed_m_s` and `time_s` (n, k), 0 and infinite behind a stop; `stop_m` (n,):
     where the head stopped, infinite where it rolls at the last station."""
@@ -164,7 +161,7 @@ def arrays_of(population: CutPopulation, bends: tuple[Bend, ...], cuts: DrawnCut
     )
 
 
-def long_steps(cars: NDArray[np.int64]) -> Floats:
+def long_steps(cars: Ints) -> Floats:
     """Longest steps of cuts of so many cars, over that of a single car."""
     return np.asarray(np.minimum(np.sqrt(cars), LONGEST_STEPS))
 

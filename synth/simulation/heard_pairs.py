@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, PointSensors, every_axle
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.point_sensors import deciding_passages
 from synth.kernels.loop.passage_pulses import BASE_COLUMN, MOST_BASES, Heard, Pulses
 from synth.simulation.controllers import fixed
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 BY_THE_CLOCK = -1
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class HeardPairs:
     """R rows, each a pulse pair that may be heard in each of n passes.
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.pressure_gauge import PressureGauge
 from plant_models.stage_regulator import stage_locked_actuator
 from synth.kernels.loop.passes import Draws
@@ -18,9 +18,6 @@ from synth.simulation.controllers import Controller
 from synth.simulation.random_passes import random_passes
 from tuning_tables.pass_log.join_logs import join_logs, one_after_the_other
 from tuning_tables.pass_log.pass_log import PassLog
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 GAP_S = 30.0
 """From the last row of a pass to the first of the next."""

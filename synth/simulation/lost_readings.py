@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor
+from plant_models.frozen_arrays import Bools, Ints
 from plant_models.rolling.keyed_numbers import keyed_uniform
 from plant_models.rolling.random_numbers import Purpose
 from synth.simulation.random_passes import RandomPasses
@@ -39,7 +40,7 @@ def readings_z(passes: RandomPasses, sensor: DopplerSensor) -> NDArray[np.float3
     return np.where(lost, np.float32(np.nan), np.tile(passes.noise_z, (1, turns)))
 
 
-def lost_readings(keys: NDArray[np.int64], sensor: DopplerSensor, samples: int) -> NDArray[np.bool_]:
+def lost_readings(keys: Ints, sensor: DopplerSensor, samples: int) -> Bools:
     """Which of `samples` readings are lost in passes with these `keys` (n,), (n, samples)."""
     stay = 1.0 - 1.0 / sensor.missed_readings
     begin = (1.0 - stay) * sensor.missed_share / (1.0 - sensor.missed_share)

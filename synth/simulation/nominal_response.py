@@ -19,10 +19,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, RetarderPosition
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.pads import overpressure_kpa
 from plant_models.stage_regulator import reaches_valves_s
 from synth.kernels.loop.passes import LONGEST_PASS_S
@@ -52,18 +51,17 @@ SOLVER = {"method": "RK45", "rtol": 1e-9, "atol": 1e-10, "max_step": 0.02}
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class NominalResponse:
     """One nominal pass, arrays of shape (points,), from where the regulator acts to the exit or to the stall.
 
     `stage` is the commanded stage, `pressure_kpa` the gauge pressure in the cylinders.
     """
 
-    time_s: NDArray[np.float64]
-    path_m: NDArray[np.float64]
-    speed_m_s: NDArray[np.float64]
-    pressure_kpa: NDArray[np.float64]
-    stage: NDArray[np.int64]
+    time_s: Floats
+    path_m: Floats
+    speed_m_s: Floats
+    pressure_kpa: Floats
+    stage: Ints
     stalled: bool
 
     @property
@@ -104,7 +102,7 @@ def nominal_response(plant: Plant, controller: Controller, entry_speed_m_s: floa
     return to_the_end(np.hstack(parts), np.concatenate(stages), plant.exit_m)
 
 
-def mean_overpressure_kpa(points: NDArray[np.float64], touch_kpa: float) -> float:
+def mean_overpressure_kpa(points: Floats, touch_kpa: float) -> float:
     """Mean of max(0, P − P0) over the time that `points` (4, n) of a response cover."""
     time, over = points[0], overpressure_kpa(points[3], touch_kpa)
     return float(np.trapezoid(over, time) / (time[-1] - time[0]))
@@ -122,13 +120,7 @@ def valve_schedule(position: RetarderPosition, rests_kpa: float, stage: int, com
     return (*resting_train(CLOSED), *zip((command_s + history.starts_s).tolist(), valves.tolist(), strict=True))
 
 
-def played(
-    loop: InterconnectedSystem,
-    state: NDArray[np.float64],
-    start_s: float,
-    end_s: float,
-    schedule: ImpulseTrain,
-) -> NDArray[np.float64]:
+def played(loop: InterconnectedSystem, state: Floats, start_s: float, end_s: float, schedule: ImpulseTrain) -> Floats:
     """Response from `start_s` to `end_s`, columns (time, s, v, p), one stretch of constant valve position at a time."""
     import control
 
@@ -147,7 +139,7 @@ def played(
     return np.hstack(parts)
 
 
-def to_the_end(points: NDArray[np.float64], stages: NDArray[np.float64], exit_m: float) -> NominalResponse:
+def to_the_end(points: Floats, stages: Floats, exit_m: float) -> NominalResponse:
     """The response cut off at the exit, where v² is linear in s between two points, or at the stall."""
     time, path, speed, pressure = points
     stalled = bool(path[-1] < exit_m)

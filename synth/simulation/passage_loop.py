@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, PointSensors
+from plant_models.frozen_arrays import Floats
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.kernels.loop import passage_loop as kernel
 from synth.kernels.loop import passage_pulses
@@ -81,13 +82,8 @@ class PassageLoop:
         return self.heard if controller.tracks else self.deciding
 
     def _alone(
-        self,
-        controller: PassageController,
-        draws: Draws,
-        faults: Faults | None,
-        events: NDArray[np.float64],
-        seen: NDArray[np.float64],
-    ) -> tuple[PassageSample, NDArray[np.float64], NDArray[np.float64]]:
+        self, controller: PassageController, draws: Draws, faults: Faults | None, events: Floats, seen: Floats
+    ) -> tuple[PassageSample, Floats, Floats]:
         """One pass after the other, with the events and pulse pairs of the last."""
         self._require_fit(controller, faults)
         every, passes = self.pulses_of(controller), len(draws.cut_factor)
@@ -190,7 +186,7 @@ def pass_memory(sources: int, rows: int) -> passage_pulses.Memory:
     )  # fmt: skip
 
 
-def readings_of(seen: NDArray[np.float64]) -> PassReadings:
+def readings_of(seen: Floats) -> PassReadings:
     """The pulse pairs that the kernel has noted, (pairs, `READING_FIELDS`), for reading."""
     time, middle, told, passage, believed, reading, outcome, stage = np.ascontiguousarray(seen.T)
     told, passage, believed, stage = (each.astype(np.int64) for each in (told, passage, believed, stage))

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from plant_models.stage_regulator import Actuator, reaches_valves_s, stage_locked_actuator
 from synth.kernels.loop.passage_loop import WATCHED_FROM_S
 from synth.kernels.loop.passage_pulses import Pulses, coils_of, read_speed_m_s
@@ -81,7 +82,7 @@ def passage_regulator_system(loop: PassageLoop, controller: PassageController) -
     )
 
 
-def passage_regulator_start(loop: PassageLoop, controller: PassageController) -> NDArray[np.float64]:
+def passage_regulator_start(loop: PassageLoop, controller: PassageController) -> Floats:
     """The state of `passage_regulator_system` before the first pulse: at rest as the plant has it."""
     stage, known = loop.plant.approach.initial_stage, np.zeros(TRACKED, dtype=np.float32)
     begin_cut(known)
@@ -167,9 +168,7 @@ def pulses_before(met: list[Coil], start_m: float, free_m_s2: float, speed_m_s: 
     return found
 
 
-def rolled(
-    motion: InterconnectedSystem, point: NDArray[np.float64], to_m: float, schedule: ImpulseTrain
-) -> NDArray[np.float64]:
+def rolled(motion: InterconnectedSystem, point: Floats, to_m: float, schedule: ImpulseTrain) -> Floats:
     """Response from `point` (time, s, v, p) to where s is `to_m`, or to where the cut stops; `point` is its first."""
     parts = [point[:, None]]
     while parts[-1][1, -1] < to_m and parts[-1][2, -1] > 0.0 and parts[-1][0, -1] < LONGEST_PASS_S:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.kernels.loop.passage_regulator import DECIDED, NO_DECISION, NOT_BELIEVED, NOT_HEARD, UNFINISHED
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.replicates import Interval, share_of
@@ -39,7 +38,6 @@ HEARD: Final = (*TAKEN, *MISTAKEN)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PassageSample(ExitSample):
     """Exits of n passes, and `outcome` uint8 (n, M): what came of the first pulse pair of each deciding passage.
 
@@ -52,7 +50,6 @@ class PassageSample(ExitSample):
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PassReadings:
     """The pulse pairs that the regulator heard in one pass, in their order, arrays (pairs,).
 
@@ -62,18 +59,17 @@ class PassReadings:
     commanded from then on.
     """
 
-    time_s: NDArray[np.float64]
-    middle_s: NDArray[np.float64]
-    told_sensor: NDArray[np.int64]
-    passage: NDArray[np.int64]
-    believed: NDArray[np.int64]
-    reading_m_s: NDArray[np.float64]
+    time_s: Floats
+    middle_s: Floats
+    told_sensor: Ints
+    passage: Ints
+    believed: Ints
+    reading_m_s: Floats
     outcome: NDArray[np.uint8]
-    stage: NDArray[np.int64]
+    stage: Ints
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PassageTrace(PassTrace):
     """One pass event by event, and what the regulator heard; `measured_m_s` is that of a pulse pair, else NaN."""
 

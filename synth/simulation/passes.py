@@ -2,30 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 
 TRACE_FACTORS = (0.8, 1.0, 1.2)
 """Friction factors ξ_cut of the few passes that are shown of every table, event by event."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ExitSample:
     """How n passes ended, arrays of shape (n,); a stalled pass has exit speed 0.
 
     `weight`: how many cuts each pass stands for (`RandomPasses`).
     """
 
-    exit_speed_m_s: NDArray[np.float64]
-    stalled: NDArray[np.bool_]
+    exit_speed_m_s: Floats
+    stalled: Bools
     switchings: NDArray[np.int32]
-    transit_time_s: NDArray[np.float64]
-    weight: NDArray[np.float64]
+    transit_time_s: Floats
+    weight: Floats
 
     def __repr__(self) -> str:
         return f"ExitSample({len(self)} passes)"
@@ -35,7 +32,6 @@ class ExitSample:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PassTrace:
     """One pass, event by event; the last of n events is the end of the pass.
 
@@ -66,12 +62,12 @@ class PassTrace:
     True
     """
 
-    time_s: NDArray[np.float64]
-    path_m: NDArray[np.float64]
-    speed_m_s: NDArray[np.float64]
-    overpressure_kpa: NDArray[np.float64]
-    stage: NDArray[np.int64]
-    measured_m_s: NDArray[np.float64]
+    time_s: Floats
+    path_m: Floats
+    speed_m_s: Floats
+    overpressure_kpa: Floats
+    stage: Ints
+    measured_m_s: Floats
     stalled: bool
 
     def __repr__(self) -> str:

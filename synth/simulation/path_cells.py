@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
+from plant_models.frozen_arrays import Floats
 from plant_models.motion import path_breaks_m
 from synth.kernels.loop.motion import Path
 from synth.simulation.controllers import fixed
@@ -37,7 +37,7 @@ def path_cells(plant: Plant) -> Path:
     )
 
 
-def cell_edges_m(plant: Plant) -> NDArray[np.float64]:
+def cell_edges_m(plant: Plant) -> Floats:
     """Edges of at most 512 cells of at most 0.5 m, none of them with a change of N(s) or grade inside.
 
     Long cuts get longer cells; if their axles alone make too many breaks, cells take the mean over a break. Before the
@@ -47,7 +47,7 @@ def cell_edges_m(plant: Plant) -> NDArray[np.float64]:
     return np.concatenate([ahead[ahead < 0.0], braked_edges_m(plant)])
 
 
-def braked_edges_m(plant: Plant) -> NDArray[np.float64]:
+def braked_edges_m(plant: Plant) -> Floats:
     """Edges of the cells from the entrance to the exit."""
     breaks = path_breaks_m(plant.position, plant.cut, plant.profile)
     if breaks.size > PATH_CELLS // 2:

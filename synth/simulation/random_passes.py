@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.kernels.loop.normal_numbers import normal_rows
 
 BLOCK_PASSES = 1000
@@ -30,7 +30,6 @@ LOSSES = 3
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class RandomPasses:
     """Standard random numbers of n passes; what they mean physically is decided by the plant.
 
@@ -41,14 +40,14 @@ class RandomPasses:
     `weight` (n,): how many cuts each pass stands for; 1 where passes are drawn as cuts come.
     """
 
-    cut_z: NDArray[np.float64]
-    entry_u: NDArray[np.float64]
-    phase_u: NDArray[np.float64]
-    resistance_u: NDArray[np.float64]
+    cut_z: Floats
+    entry_u: Floats
+    phase_u: Floats
+    resistance_u: Floats
     path_z: NDArray[np.float32]
     noise_z: NDArray[np.float32]
-    loss_key: NDArray[np.int64]
-    weight: NDArray[np.float64]
+    loss_key: Ints
+    weight: Floats
 
     def __post_init__(self) -> None:
         for array in vars(self).values():
@@ -119,7 +118,7 @@ def block_of_passes(seed: int, block: int, path_cells: int) -> RandomPasses:
     )
 
 
-def loss_keys(seed: int, block: int) -> NDArray[np.int64]:
+def loss_keys(seed: int, block: int) -> Ints:
     """Keys of one block, (1000,), of a stream of their own: they move none of its other numbers."""
     stream = np.random.SFC64(np.random.SeedSequence(seed, spawn_key=(block, LOSSES)))
     return (stream.random_raw(BLOCK_PASSES) >> np.uint64(1)).astype(np.int64)

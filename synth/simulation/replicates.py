@@ -13,7 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import Bools, Floats
 
 REPLICATE_PASSES = 100
 """Passes of one replicate; ten of them, 1000 passes, are the fewest that a user's interval is told from."""
@@ -39,13 +40,13 @@ class Mean:
         return self.value - self.half_width, self.value + self.half_width
 
 
-def mean_of(values: NDArray[np.float64], weight: NDArray[np.float64]) -> Mean:
+def mean_of(values: Floats, weight: Floats) -> Mean:
     """Weighted mean of `values` (n,), its interval from the replicates; `ValueError` for fewer than two of these."""
     value = float(weight @ values / weight.sum())
     return Mean(value, half_width(weight * (values - value), weight))
 
 
-def half_width(deviations: NDArray[np.float64], weight: NDArray[np.float64]) -> float:
+def half_width(deviations: Floats, weight: Floats) -> float:
     """Half the 95 % interval of Σ `deviations` / Σ `weight`, where the deviations (n,) sum to 0.
 
     A last replicate that is cut short counts as one of its own.
@@ -67,7 +68,7 @@ def student_quantile(freedom: int) -> float:
     return float(stdtrit(freedom, 1.0 - UPPER_TAIL))
 
 
-def rms_of(errors: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[float, Interval]:
+def rms_of(errors: Floats, weight: Floats) -> tuple[float, Interval]:
     """Root mean square of `errors` (n,), and its 95 % interval.
 
     The interval is that of the logarithm of the mean square (delta method), so its low end is never negative.
@@ -80,7 +81,7 @@ def rms_of(errors: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[fl
     return rms, (rms / spread, rms * spread)
 
 
-def share_of(hits: NDArray[np.bool_], weight: NDArray[np.float64]) -> tuple[float, Interval]:
+def share_of(hits: Bools, weight: Floats) -> tuple[float, Interval]:
     """Share of all cuts that `hits` (n,) marks, and its 95 % interval.
 
     The interval is that of log(p / (1 − p)). Where no pass is marked, or every one: the event has at least p / (largest
@@ -97,9 +98,7 @@ def share_of(hits: NDArray[np.bool_], weight: NDArray[np.float64]) -> tuple[floa
     return p, (low / (1.0 + low), high / (1.0 + high))
 
 
-def quantiles_of(
-    values: NDArray[np.float64], weight: NDArray[np.float64], levels: Sequence[float]
-) -> list[tuple[float, Interval]]:
+def quantiles_of(values: Floats, weight: Floats, levels: Sequence[float]) -> list[tuple[float, Interval]]:
     """Quantiles of `values` (n,) over all cuts, with 95 % intervals (Woodruff 1952: from that of the share below)."""
     order = np.argsort(values)
     share = np.cumsum(weight[order])
@@ -116,9 +115,7 @@ def quantiles_of(
     return found
 
 
-def rms_quotient(
-    errors: NDArray[np.float64], others: NDArray[np.float64], weight: NDArray[np.float64]
-) -> tuple[float, Interval]:
+def rms_quotient(errors: Floats, others: Floats, weight: Floats) -> tuple[float, Interval]:
     """rms of `errors` / rms of `others`, both (n,) and of the same passes, with its 95 % interval (paired)."""
     a, b = errors**2, others**2
     mean_a, mean_b = float(weight @ a), float(weight @ b)

@@ -19,8 +19,8 @@ from dataclasses import fields, replace
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import BLOCK_PASSES, PATH_CELLS, RandomPasses, block_of_passes, row_of_passes
 from synth.simulation.replicates import REPLICATE_PASSES
@@ -71,14 +71,14 @@ def stratified_block(seed: int, block: int, path_cells: int) -> RandomPasses:
     )
 
 
-def weight_of(z: NDArray[np.float64]) -> NDArray[np.float64]:
+def weight_of(z: Floats) -> Floats:
     """Density of `z` as cuts come / density of `z` in a replicate."""
     excess = np.exp(0.5 * (z**2 - ((z - LOW_MEAN) / LOW_STD) ** 2)) / LOW_STD
     share = AS_THEY_COME / REPLICATE_PASSES
     return 1.0 / (share + (1.0 - share) * excess)
 
 
-def permutations(rng: np.random.Generator) -> NDArray[np.int64]:
+def permutations(rng: np.random.Generator) -> Ints:
     """The numbers of the strata of a replicate in random order, for each replicate of a block, (1000,)."""
     rows = rng.permuted(np.tile(np.arange(REPLICATE_PASSES), (BLOCK_PASSES // REPLICATE_PASSES, 1)), axis=1)
     return rows.ravel()

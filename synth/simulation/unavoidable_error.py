@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import Interval, rms_of
 
@@ -44,9 +44,7 @@ def unavoidable_error(slowest: ExitSample, fastest: ExitSample, target_m_s: floa
     return UnavoidableError(*rms_of(excess + lack, slowest.weight), too_fast)
 
 
-def excess_and_lack_m_s(
-    slowest: ExitSample, fastest: ExitSample, target_m_s: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def excess_and_lack_m_s(slowest: ExitSample, fastest: ExitSample, target_m_s: float) -> tuple[Floats, Floats]:
     """What each pass (n,) leaves too fast by at the least, and too slow by; of a pass one at most is above 0."""
     excess = np.maximum(slowest.exit_speed_m_s - target_m_s, 0.0)
     return excess, np.maximum(target_m_s - fastest.exit_speed_m_s, 0.0)

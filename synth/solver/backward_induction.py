@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.kernels.sweep.bellman import Entrance, sweep
 from synth.kernels.sweep.drawn_lines import Readings
 from synth.kernels.sweep.pass_time import Costs, Prices
@@ -29,7 +28,6 @@ is beyond help, at 26 nodes of the default book where switchings have no price."
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Solution:
     """The best policy on a grid.
 
@@ -57,8 +55,8 @@ class Solution:
 
     chain: Chain
     aim: Aim
-    lines_m_s: NDArray[np.float64]
-    gain: NDArray[np.float64]
+    lines_m_s: Floats
+    gain: Floats
     values: NDArray[np.floating[Any]]
 
     def __repr__(self) -> str:
@@ -72,15 +70,15 @@ class Solution:
         return SwitchingLines(self.chain.grid.path_m, lower, upper)
 
     @property
-    def gain_down(self) -> NDArray[np.float64]:
+    def gain_down(self) -> Floats:
         """Of going one stage down, (R, K + 1, E)."""
-        gain: NDArray[np.float64] = self.gain[0]
+        gain: Floats = self.gain[0]
         return gain
 
     @property
-    def gain_up(self) -> NDArray[np.float64]:
+    def gain_up(self) -> Floats:
         """Of going one stage up, (R, K + 1, E)."""
-        gain: NDArray[np.float64] = self.gain[1]
+        gain: Floats = self.gain[1]
         return gain
 
 
@@ -94,7 +92,7 @@ def solve_all(
     aims: Sequence[Aim],
     nodes_kept: int | None = None,
     value_type: type[np.floating[Any]] = np.float32,
-    heard: NDArray[np.float64] | None = None,
+    heard: Floats | None = None,
 ) -> tuple[Solution, ...]:
     """Backward induction for several aims in one sweep: they share all motion.
 
@@ -152,17 +150,15 @@ def in_packs_of_targets(by_target: ArrayLike, value_type: type[np.floating[Any]]
     return np.pad(numbers, [(0, 0)] * (numbers.ndim - 1) + [(0, missing)])
 
 
-def hidden_prior(c: Chain) -> NDArray[np.float64]:
+def hidden_prior(c: Chain) -> Floats:
     """Prior weights (I, H, L) of scenario, resting mode within its stage, and noise level."""
     stage = c.actuator.mode_stage
     per_mode = 1.0 / np.bincount(stage)[stage]
-    prior: NDArray[np.float64] = np.einsum("i,h,l->ihl", c.scenarios.weight, per_mode, c.path_noise.stationary)
+    prior: Floats = np.einsum("i,h,l->ihl", c.scenarios.weight, per_mode, c.path_noise.stationary)
     return prior
 
 
-def true_speed_weights(
-    speed_m_s: NDArray[np.float64], readings: NDArray[np.float64], noise: float
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def true_speed_weights(speed_m_s: Floats, readings: Floats, noise: float) -> tuple[Ints, Floats]:
     """Bands of P(true speed | measured speed) on the grid: first index (E,) and weights (E, W).
 
     Flat prior in speed: weight φ((y' − y)/σ)·dv', cut at four standard deviations, y = `readings` of the speeds.
@@ -178,6 +174,6 @@ def true_speed_weights(
     return start, weights / weights.sum(axis=1, keepdims=True)
 
 
-def with_exit_node(lines: NDArray[np.float64]) -> NDArray[np.float64]:
+def with_exit_node(lines: Floats) -> Floats:
     """(N, K + 1) per quantum start → (K + 1, N + 1) with the last row repeated at S_exit."""
     return np.concatenate([lines, lines[-1:]]).T.copy()

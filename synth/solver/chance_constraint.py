@@ -40,7 +40,7 @@ FINER = 2.0
 NARROW = 1.02
 """As does a bracket whose ends differ by less than this factor."""
 
-ITERATIONS, TOLERANCE = 40, 1e-3
+PRICED_ITERATIONS, PRICED_TOLERANCE = 40, 1e-3
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,9 @@ def keep_overspeed_limit(
     def candidate(price: float, *begin: PolynomialLines) -> Candidate:
         priced = replace(criterion.squared(), terminal=PenalisedOverspeed(price, limit.margin_m_s))
         evaluate = Evaluation(ground, Aim(target_speed_m_s, priced)).gradient
-        ends = [polish(at, fit.curvature, ground.grid.path_m, evaluate, ITERATIONS, TOLERANCE) for at in begin]
+        ends = [
+            polish(at, fit.curvature, ground.grid.path_m, evaluate, PRICED_ITERATIONS, PRICED_TOLERANCE) for at in begin
+        ]
         return judged(price, min(ends, key=lambda end: end.cost_after).best)
 
     def judged(price: float, lines: PolynomialLines) -> Candidate:

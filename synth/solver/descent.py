@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 
-Vector = NDArray[np.float64]
-CostAndSlopes = tuple[float, Vector]
+CostAndSlopes = tuple[float, Floats]
 Best = TypeVar("Best", covariant=True)
 Other = TypeVar("Other")
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Descent(Generic[Best]):
     """What a descent came to: cost of its start and of the best, evaluations used, whether and why it ended well.
 
@@ -38,13 +34,13 @@ class Descent(Generic[Best]):
 
 
 def descend(
-    evaluate: Callable[[Vector], CostAndSlopes],
+    evaluate: Callable[[Floats], CostAndSlopes],
     first: CostAndSlopes,
     constraints: Sequence[Any],
     max_iterations: int,
     tolerance: float,
-    allowed: Callable[[Vector], bool] = lambda _: True,
-) -> Descent[Vector]:
+    allowed: Callable[[Floats], bool] = lambda _: True,
+) -> Descent[Floats]:
     """Minimise `evaluate` from 0, where it gives `first`, under `constraints` of scipy.
 
     It ends when a step changes the cost by less than `tolerance` of the first cost. Coordinates should be such that the
@@ -55,7 +51,7 @@ def descend(
     from scipy.optimize import minimize  # start-up: scipy only where it is needed
 
     before = first[0]
-    best: list[tuple[float, Vector]] = [(before, np.zeros(len(first[1])))]
+    best: list[tuple[float, Floats]] = [(before, np.zeros(len(first[1])))]
     calls = 0
 
     def objective(y: Any) -> Any:

@@ -9,9 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.kernels.sweep.pass_time import Costs, Prices
 from synth.kernels.sweep.policy_value import backward
 from synth.problem.aim import Aim
@@ -28,19 +27,18 @@ from synth.solver.policy_density import (
     slopes_of_commands,
 )
 
-Gradient = tuple[float, NDArray[np.float64]]
+Gradient = tuple[float, Floats]
 """A cost, and its derivatives by what the policy consists of: by the lower and upper lines, (2, R, K + 1)."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ScenarioCosts:
     """Cost of a policy in every hidden scenario (I,), and its derivatives as of `Gradient`, (I, ·)."""
 
-    cost: NDArray[np.float64]
-    by_lines: NDArray[np.float64]
+    cost: Floats
+    by_lines: Floats
 
-    def weighted(self, weight: NDArray[np.float64]) -> Gradient:
+    def weighted(self, weight: Floats) -> Gradient:
         """Sum over the scenarios."""
         cost, by_lines = 0.0, np.zeros(self.by_lines.shape[1:])
         for one, share in enumerate(weight):
@@ -48,13 +46,13 @@ class ScenarioCosts:
             by_lines += share * self.by_lines[one]
         return float(cost), by_lines
 
-    def grouped(self, weight: NDArray[np.float64]) -> ScenarioCosts:
+    def grouped(self, weight: Floats) -> ScenarioCosts:
         """The mean over every group of scenarios that stand side by side, by the groups' own `weight` (G, members)."""
         groups, members = weight.shape
 
-        def mean(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        def mean(values: Floats) -> Floats:
             apart = values.reshape(groups, members, *values.shape[1:])
-            over_group: NDArray[np.float64] = np.einsum("gm,gm...->g...", weight, apart)
+            over_group: Floats = np.einsum("gm,gm...->g...", weight, apart)
             return over_group
 
         return ScenarioCosts(mean(self.cost), mean(self.by_lines))
@@ -108,12 +106,7 @@ class Evaluation:
         return ScenarioCosts(cost, lines.slopes(c.decisions, by_command))
 
     def _backward(
-        self,
-        policy: CommandChances,
-        slopes: CommandChances,
-        i: int,
-        density: NDArray[np.float64],
-        band: NDArray[np.int64],
+        self, policy: CommandChances, slopes: CommandChances, i: int, density: Floats, band: Ints
     ) -> Gradient:
         """Backward recursion in scenario `i`; with derivatives by command if `density`, `band` are its forward ones."""
         c, criterion = self.chain, self.aim.criterion

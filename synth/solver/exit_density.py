@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
-
-Vector = NDArray[np.float64]
+from plant_models.frozen_arrays import Floats, frozen_arrays
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ExitDensity:
     """Distribution at the exit: `probability` (E,) at `speed_m_s` (E,), the rest as probabilities or means.
 
     `escaped` is mass that ran off the top of the grid somewhere; it should be zero.
     """
 
-    speed_m_s: NDArray[np.float64]
-    probability: NDArray[np.float64]
+    speed_m_s: Floats
+    probability: Floats
     stalled: float
     escaped: float
     switchings: float
@@ -43,11 +39,11 @@ class ExitDensity:
         return min(max(float(self.probability @ share), 0.0), 1.0)
 
 
-def share_beyond(cells: Vector) -> Vector:
+def share_beyond(cells: Floats) -> Floats:
     """Integral from `cells` to infinity of the cubic Lagrange function, by which four points of a grid interpolate."""
     near = np.minimum(np.abs(cells), 1.0)
     far = np.clip(np.abs(cells) - 1.0, 0.0, 1.0)
-    within: Vector = near * (1.0 - near * (0.25 + near * (1.0 / 3.0 - 0.125 * near)))
+    within: Floats = near * (1.0 - near * (0.25 + near * (1.0 / 3.0 - 0.125 * near)))
     within = within - far**2 * (1.0 - far * (1.0 - 0.25 * far)) / 6.0
     return np.where(cells < 0.0, 0.5 + within, 0.5 - within)
 
@@ -79,13 +75,13 @@ def without_negative(density: ExitDensity) -> ExitDensity:
     return replace(density, probability=positive)
 
 
-def tilted(weight: NDArray[np.float64], powers: NDArray[np.float64], moments: NDArray[np.float64]) -> Vector:
+def tilted(weight: Floats, powers: Floats, moments: Floats) -> Floats:
     """`weight` (E,) times exp(λ·`powers`), λ such that the sums with `powers` (3, E) are `moments`: Newton's method.
 
     The λ sought minimises the convex Σ weight·exp(λ·powers) − λ·moments; a step that does not lower it is halved.
     """
 
-    def at(place: Vector) -> tuple[Vector, float]:
+    def at(place: Floats) -> tuple[Floats, float]:
         found = weight * np.exp(np.minimum(place @ powers, 100.0))
         return found, float(found.sum() - place @ moments)
 

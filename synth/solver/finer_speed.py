@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import Floats
 from synth.solver.chain.chain import Chain, chain_of
 from synth.solver.chain.scenarios import Scenarios, resistance_scenarios
 
@@ -18,7 +18,7 @@ def finer_in_speed(chain: Chain, times: float, scenarios: Scenarios) -> Chain:
     return replace(chain_of(chain.plant, resolution, scenarios), measurement=chain.measurement)
 
 
-def known_factors(plant: Plant, factors: NDArray[np.float64], resistance_nodes: int) -> Scenarios:
+def known_factors(plant: Plant, factors: Floats, resistance_nodes: int) -> Scenarios:
     """Every friction factor (F,) with each of W values of the running resistance, which is innermost; the factors are
     weighted equally, the resistance by its law."""
     extra, weight = resistance_scenarios(plant, resistance_nodes)

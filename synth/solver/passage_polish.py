@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Bools, Floats
 from synth.solver.backward_induction import Solution
 from synth.solver.coarse_grid import require_positive
 from synth.solver.descent import CostAndSlopes, Descent, descend
@@ -40,7 +40,7 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
         tolerance *= Evaluation(solution.chain, solution.aim.timeless).gradient(start)[0] / cost
     unit = np.minimum(np.sqrt(cost / (off + 1e-12)), LOOSE_M_S)
 
-    def policy(y: NDArray[np.float64]) -> PassageSpeeds:
+    def policy(y: Floats) -> PassageSpeeds:
         t = np.array(start.switching_m_s)
         t[free] += unit * y
         return PassageSpeeds(ordered(t))
@@ -57,7 +57,7 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
     return found.ending(policy(found.best) if found.best.any() else start, found.cost_after)
 
 
-def being_off(solution: Solution, speeds: PassageSpeeds) -> NDArray[np.float64]:
+def being_off(solution: Solution, speeds: PassageSpeeds) -> Floats:
     """Second derivative of the cost by every switching speed, (M, K + 1, K), about the policy of the solution."""
     _, occupancy = density_and_occupancy(solution.chain, speeds)
     chain = solution.chain
@@ -72,7 +72,7 @@ def being_off(solution: Solution, speeds: PassageSpeeds) -> NDArray[np.float64]:
     return found
 
 
-def order_of(free: NDArray[np.bool_]) -> NDArray[np.float64]:
+def order_of(free: Bools) -> Floats:
     """One row for every two neighbours of a row that are both free, over the free ones: their difference."""
     number = np.cumsum(free.ravel()).reshape(free.shape) - 1
     both = free[:, :, 1:] & free[:, :, :-1]

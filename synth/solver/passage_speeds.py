@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.solver.chain.decisions import Decisions, steps_of
 
 SMALLEST_GAP_M_S = 1e-3
@@ -16,14 +14,13 @@ SMALLEST_GAP_M_S = 1e-3
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PassageSpeeds:
     """`switching_m_s` (M, K + 1, K): at passage m with stage k in force, t[j] parts wanting stage j from stage j + 1.
 
     No row falls; −∞ for j < k: never lower so far, +∞ for j ≥ k: never raise so far (`programs.at_pulse`).
     """
 
-    switching_m_s: NDArray[np.float64]
+    switching_m_s: Floats
 
     def __post_init__(self) -> None:
         t = self.switching_m_s
@@ -37,7 +34,7 @@ class PassageSpeeds:
         """Number of stages K + 1."""
         return int(self.switching_m_s.shape[1])
 
-    def at_decisions(self, decisions: Decisions) -> NDArray[np.float64]:
+    def at_decisions(self, decisions: Decisions) -> Floats:
         """The lines (C, R, K + 1) of commands by up to K stages."""
         lines = np.empty((decisions.commands, *self.switching_m_s.shape[:2]))
         lines[0::2], lines[1::2] = -np.inf, np.inf
@@ -45,7 +42,7 @@ class PassageSpeeds:
             lines[command, :, stage] = self.switching_m_s[:, stage, parted]
         return lines
 
-    def slopes(self, decisions: Decisions, by_command: NDArray[np.float64]) -> NDArray[np.float64]:
+    def slopes(self, decisions: Decisions, by_command: Floats) -> Floats:
         """Derivatives by the switching speeds, (I, M, K + 1, K)."""
         found = np.zeros((len(by_command), *self.switching_m_s.shape))
         for command, stage, parted in parted_by(decisions.commands, self.stages):
@@ -63,7 +60,7 @@ def parted_by(commands: int, stages: int) -> Iterator[tuple[int, int, int]]:
                 yield command, stage, parted
 
 
-def passage_speeds(lines_m_s: NDArray[np.float64]) -> PassageSpeeds:
+def passage_speeds(lines_m_s: Floats) -> PassageSpeeds:
     """The policy of lines (C, R, K + 1); where a line to go down reaches the one to go up, both make room."""
     commands, passages, stages = lines_m_s.shape
     t = np.empty((passages, stages, stages - 1))
@@ -74,7 +71,7 @@ def passage_speeds(lines_m_s: NDArray[np.float64]) -> PassageSpeeds:
     return PassageSpeeds(ordered(t))
 
 
-def ordered(switching_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
+def ordered(switching_m_s: Floats) -> Floats:
     """(M, K + 1, K) with no row falling and a gap around the stage in force."""
     t = np.array(switching_m_s)
     stages = t.shape[1]

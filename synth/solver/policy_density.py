@@ -7,12 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.kernels.sweep.commands import command_probabilities, command_slopes
 from synth.kernels.sweep.policy_density import forward
 from synth.kernels.vector.packs import EIGHT
@@ -22,23 +20,23 @@ from synth.solver.chain.epochs import Policy
 from synth.solver.chain.kernel_arrays import chain_arrays, scenario_arrays
 from synth.solver.exit_density import ExitDensity
 
-CommandChances = NDArray[np.float64]
+CommandChances = Floats
 """Of each command at every decision, stage and true speed, (C, R, K + 1, E); or their slopes by the lines."""
 
 
-def commands(chain: Chain, lines_m_s: NDArray[np.float64]) -> CommandChances:
+def commands(chain: Chain, lines_m_s: Floats) -> CommandChances:
     """Probability of each command by `lines_m_s` (C, R, K + 1) under the chain's measurement."""
     return by_lines(command_probabilities, chain, lines_m_s)
 
 
-def slopes_of_commands(chain: Chain, lines_m_s: NDArray[np.float64]) -> CommandChances:
+def slopes_of_commands(chain: Chain, lines_m_s: Floats) -> CommandChances:
     """How fast the probability to go as far as each command or farther changes with its line."""
     slopes = by_lines(command_slopes, chain, lines_m_s)
     slopes *= chain.measurement.slopes(lines_m_s)[..., None]
     return slopes
 
 
-def by_lines(kernel: Callable[..., None], chain: Chain, lines_m_s: NDArray[np.float64]) -> CommandChances:
+def by_lines(kernel: Callable[..., None], chain: Chain, lines_m_s: Floats) -> CommandChances:
     """What `kernel` gives for the lines as the measurement has them."""
     lines, noise = chain.measurement.thresholds(lines_m_s)
     lines = np.array(lines)
@@ -56,19 +54,18 @@ def commands_of(chain: Chain, policy: Policy) -> CommandChances:
     return commands(chain, policy.at_decisions(chain.decisions))
 
 
-def before_a_pack(shape: tuple[int, ...]) -> NDArray[np.float64]:
+def before_a_pack(shape: tuple[int, ...]) -> Floats:
     """An array of `shape`, all 0, behind which kernels may read a whole pack."""
     return np.zeros(math.prod(shape) + EIGHT)[: math.prod(shape)].reshape(shape)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Occupancy:
     """Where a policy takes the cut: `samples` (I, R, H, L, E) expected decisions in every hidden state, weighted
     by the scenarios; `band` (I, N, 2) range of energies met at a node."""
 
-    samples: NDArray[np.float64]
-    band: NDArray[np.int64]
+    samples: Floats
+    band: Ints
 
 
 def exit_density(chain: Chain, lines: Policy) -> ExitDensity:
@@ -94,15 +91,13 @@ def scenario_densities(chain: Chain, lines: Policy) -> tuple[ExitDensity, ...]:
     return tuple(scenario_density(chain, exits, totals) for exits, totals in found)
 
 
-def scenario_density(chain: Chain, exits: NDArray[np.float64], totals: NDArray[np.float64]) -> ExitDensity:
+def scenario_density(chain: Chain, exits: Floats, totals: Floats) -> ExitDensity:
     """The density of one scenario from what the recursion gives for it."""
     stalled, escaped = max(float(totals[0]), 0.0), float(totals[1])
     return ExitDensity(chain.grid.speed_m_s, exits, stalled, escaped, float(totals[2] + totals[3]))
 
 
-def forward_pass(
-    c: Chain, policy: CommandChances, samples: NDArray[np.float64]
-) -> tuple[ExitDensity, NDArray[np.int64]]:
+def forward_pass(c: Chain, policy: CommandChances, samples: Floats) -> tuple[ExitDensity, Ints]:
     """Forward recursion over all scenarios; `samples` (I, R, H, L, E) is filled unless its length R is 0."""
     weights, points = c.scenarios.weight, len(c.grid.speed_m_s)
     band = np.empty((len(weights), len(c.drive_m_s2), 2), dtype=np.int64)
@@ -117,17 +112,15 @@ def forward_pass(
     return total, band
 
 
-def forward_one(
-    c: Chain, policy: CommandChances, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def forward_one(c: Chain, policy: CommandChances, i: int, density: Floats, band: Ints) -> tuple[Floats, Floats]:
     """Forward recursion in scenario `i`: exit probabilities (E,) and the kernel's totals (4,)."""
     exits, totals = forward_all(c, policy, slice(i, i + 1), density[None], band[None])
     return exits[0], totals[0]
 
 
 def forward_all(
-    c: Chain, policy: CommandChances, scenarios: slice, density: NDArray[np.float64], band: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    c: Chain, policy: CommandChances, scenarios: slice, density: Floats, band: Ints
+) -> tuple[Floats, Floats]:
     """Forward recursion in several scenarios: exit probabilities (I, E) and the kernel's totals (I, 4)."""
     hidden = scenario_arrays(c, scenarios)
     exits, totals = np.empty((len(hidden.factor), len(c.grid.speed_m_s))), np.empty((len(hidden.factor), 4))

@@ -10,8 +10,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.solver.coarse_grid import require_positive
 from synth.solver.descent import CostAndSlopes, Descent, descend
 from synth.solver.one_blas_thread import one_blas_thread
@@ -21,15 +21,15 @@ from synth.solver.switching_lines import SwitchingLines
 LOOSE_M_S = 0.3
 """See `whitening`."""
 
-Evaluate = Callable[[SwitchingLines], tuple[float, NDArray[np.float64]]]
+Evaluate = Callable[[SwitchingLines], tuple[float, Floats]]
 """Lines at path nodes → (cost, its derivatives by the lower and the upper lines (2, N, K + 1))."""
 
 
 @one_blas_thread()
 def polish(
     start: PolynomialLines,
-    curvature: NDArray[np.float64],
-    nodes_m: NDArray[np.float64],
+    curvature: Floats,
+    nodes_m: Floats,
     evaluate: Evaluate,
     max_iterations: int,
     tolerance: float = 5e-3,
@@ -50,12 +50,12 @@ def polish(
     before = require_positive(first[0], "lines")
     scale = whitening(curvature[free], matrix, before)
 
-    def unpack(y: NDArray[np.float64]) -> PolynomialLines:
+    def unpack(y: Floats) -> PolynomialLines:
         coefficients = start.coefficients.copy()
         coefficients[free] += np.einsum("lab,lb->la", scale, y.reshape(-1, width))
         return replace(start, coefficients=coefficients)
 
-    def by_point(cost_and_slopes: tuple[float, NDArray[np.float64]]) -> CostAndSlopes:
+    def by_point(cost_and_slopes: tuple[float, Floats]) -> CostAndSlopes:
         cost, by_lines = cost_and_slopes
         gradient = np.stack([np.ascontiguousarray(each.T) @ matrix for each in by_lines], axis=1)[free]
         return cost, np.einsum("lab,la->lb", scale, gradient).ravel()
@@ -73,7 +73,7 @@ def polish(
     return found.ending(lines, cost)
 
 
-def whitening(curvature: NDArray[np.float64], matrix: NDArray[np.float64], cost: float) -> NDArray[np.float64]:
+def whitening(curvature: Floats, matrix: Floats, cost: float) -> Floats:
     """Per line the matrix T with Tᵀ·H·T = 1, H the Hessian of cost/`cost` by the line's coefficients.
 
     `curvature` (lines, N), `matrix` (N, r + 1). A line that nothing depends on is held as if moving it by
@@ -82,13 +82,11 @@ def whitening(curvature: NDArray[np.float64], matrix: NDArray[np.float64], cost:
     loose = matrix.T @ matrix / (len(matrix) * LOOSE_M_S**2)
     hessian = np.einsum("na,ln,nb->lab", matrix, curvature / cost, matrix) + loose
     lower = np.linalg.cholesky(hessian)
-    whitened: NDArray[np.float64] = np.linalg.inv(lower).transpose(0, 2, 1)
+    whitened: Floats = np.linalg.inv(lower).transpose(0, 2, 1)
     return whitened
 
 
-def gap_constraint(
-    lines: PolynomialLines, free: tuple[NDArray[np.int64], ...], scale: NDArray[np.float64]
-) -> dict[str, Any]:
+def gap_constraint(lines: PolynomialLines, free: tuple[Ints, ...], scale: Floats) -> dict[str, Any]:
     """Linear inequality V_hi,k(s) − V_lo,k(s) − gap ≥ 0 at points along the path, for SLSQP."""
     points = lines.nodes_m(13)
     matrix = lines.basis(points)

@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.solver.backward_induction import Solution
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.polynomial_lines import PolynomialLines, basis, opened
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Fit:
     """Fitted lines and `curvature` (K + 1, 2, N): second derivative of the cost by every line value."""
 
     lines: PolynomialLines
-    curvature: NDArray[np.float64]
+    curvature: Floats
 
 
 @one_blas_thread()
-def fit_lines(solution: Solution, occupancy: NDArray[np.float64], degree: int) -> Fit:
+def fit_lines(solution: Solution, occupancy: Floats, degree: int) -> Fit:
     """Weighted least squares; the weight of a node is the curvature of the cost in the line's position there.
 
     `occupancy` (I, N, H, L, E): expected samples under the solution's own policy. Where a line is never near a
@@ -53,7 +49,7 @@ def fit_lines(solution: Solution, occupancy: NDArray[np.float64], degree: int) -
     return Fit(opened(PolynomialLines(*ends_m, coefficients, has_line)), curvature)
 
 
-def carried_back(line: NDArray[np.float64], nodes: int) -> NDArray[np.float64]:
+def carried_back(line: Floats, nodes: int) -> Floats:
     """`line` (N,) with its first finite value in place of infinite ones at the first `nodes`.
 
     Before the entrance a stage may have no line where it must not be left or is never met. A polynomial that is free
@@ -66,7 +62,7 @@ def carried_back(line: NDArray[np.float64], nodes: int) -> NDArray[np.float64]:
     return np.where((np.arange(len(line)) < min(first, nodes)), line[first], line)
 
 
-def stage_occupancy(occupancy: NDArray[np.float64], mode_stage: NDArray[np.int64], stages: int) -> NDArray[np.float64]:
+def stage_occupancy(occupancy: Floats, mode_stage: Ints, stages: int) -> Floats:
     """Expected samples by node, stage and speed, (N, K + 1, E)."""
     by_mode = occupancy.sum(axis=(0, 3))
     out = np.zeros((by_mode.shape[0], stages, by_mode.shape[2]))
@@ -75,13 +71,7 @@ def stage_occupancy(occupancy: NDArray[np.float64], mode_stage: NDArray[np.int64
     return out
 
 
-def off_line_cost(
-    line: NDArray[np.float64],
-    gain: NDArray[np.float64],
-    occupancy: NDArray[np.float64],
-    speed_m_s: NDArray[np.float64],
-    window_m_s: float = 0.15,
-) -> NDArray[np.float64]:
+def off_line_cost(line: Floats, gain: Floats, occupancy: Floats, speed_m_s: Floats, window_m_s: float = 0.15) -> Floats:
     """Second derivative of the cost by the line's position at every node, (N,).
 
     Samples per m/s near the line times the slope of the gain there, both over ±`window_m_s`.

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
 from synth.solver.switching_lines import SwitchingLines
 
 MINIMUM_GAP_M_S = 0.04
@@ -16,7 +15,6 @@ MINIMUM_GAP_M_S = 0.04
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PolynomialLines:
     """Lines as Legendre series in x, −1 at `start_m` and 1 at S_exit (well conditioned; tables hold powers of s).
 
@@ -25,43 +23,43 @@ class PolynomialLines:
 
     start_m: float
     exit_m: float
-    coefficients: NDArray[np.float64]
-    has_line: NDArray[np.bool_]
+    coefficients: Floats
+    has_line: Bools
 
     @property
     def degree(self) -> int:
         """r."""
         return int(self.coefficients.shape[2]) - 1
 
-    def at(self, nodes_m: NDArray[np.float64]) -> SwitchingLines:
+    def at(self, nodes_m: Floats) -> SwitchingLines:
         """The lines at path nodes, ±inf where there is none."""
-        values: NDArray[np.float64] = self.coefficients @ self.basis(nodes_m).T
+        values: Floats = self.coefficients @ self.basis(nodes_m).T
         lower = np.where(self.has_line[:, 0, None], values[:, 0], -np.inf)
         upper = np.where(self.has_line[:, 1, None], values[:, 1], np.inf)
         return SwitchingLines(np.array(nodes_m), lower, upper)
 
-    def powers_of_s(self) -> NDArray[np.float64]:
+    def powers_of_s(self) -> Floats:
         """Ascending coefficients in powers of s in metres, (K + 1, 2, r + 1)."""
-        powers: NDArray[np.float64] = self.coefficients @ basis_in_powers(self.start_m, self.exit_m, self.degree)
+        powers: Floats = self.coefficients @ basis_in_powers(self.start_m, self.exit_m, self.degree)
         return powers
 
-    def basis(self, nodes_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    def basis(self, nodes_m: Floats) -> Floats:
         """Legendre polynomials at the nodes, (nodes, r + 1)."""
         return basis(nodes_m, self.start_m, self.exit_m, self.degree)
 
-    def nodes_m(self, count: int) -> NDArray[np.float64]:
+    def nodes_m(self, count: int) -> Floats:
         """Equally spaced path nodes over the whole path of the lines."""
         return np.linspace(self.start_m, self.exit_m, count)
 
 
-def basis(nodes_m: NDArray[np.float64], start_m: float, exit_m: float, degree: int) -> NDArray[np.float64]:
+def basis(nodes_m: Floats, start_m: float, exit_m: float, degree: int) -> Floats:
     """Legendre polynomials at the nodes, (nodes, r + 1)."""
     x = 2.0 * (nodes_m - start_m) / (exit_m - start_m) - 1.0
     return np.asarray(np.polynomial.legendre.legvander(x, degree), dtype=np.float64)
 
 
 @lru_cache(maxsize=32)
-def basis_in_powers(start_m: float, exit_m: float, degree: int) -> NDArray[np.float64]:
+def basis_in_powers(start_m: float, exit_m: float, degree: int) -> Floats:
     """Ascending coefficients in powers of s in metres of every Legendre polynomial, (r + 1, r + 1)."""
     found = np.zeros((degree + 1, degree + 1))
     for order in range(degree + 1):

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.kernels.sweep.finer_end import HandOver, forward_to_finer_end, refine_landings
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.epochs import Policy
@@ -38,7 +37,6 @@ BLEND_CELLS = 16
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class FinerEnd:
     """`chain`: from path node `node` of the coarse chain to S_exit, its low energies, `times` as dense.
 
@@ -49,7 +47,7 @@ class FinerEnd:
     chain: Chain
     node: int
     times: int
-    handed: NDArray[np.float64]
+    handed: Floats
 
 
 def times_as_fine(chain: Chain, target_speed_m_s: float) -> int:
@@ -64,7 +62,7 @@ def finer_length_m(target_speed_m_s: float) -> float:
     return min(LONGEST_M, LENGTH_M2_S / target_speed_m_s)
 
 
-def finer_end(chain: Chain, lines_m_s: NDArray[np.float64], length_m: float, times: int) -> FinerEnd:
+def finer_end(chain: Chain, lines_m_s: Floats, length_m: float, times: int) -> FinerEnd:
     """The last `length_m` of `chain` with energies `times` as dense, below a ceiling above all lines that are met.
 
     `lines_m_s` (C, R, K + 1) by command, decision and stage.

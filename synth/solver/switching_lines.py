@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.solver.chain.decisions import Decisions
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class SwitchingLines:
     """Below `lower_m_s[k]` go down, above `upper_m_s[k]` go up, between them hold.
 
@@ -22,9 +18,9 @@ class SwitchingLines:
     (K + 1, N + 1), linear between nodes; −inf / +inf where the stage has no such command.
     """
 
-    nodes_m: NDArray[np.float64]
-    lower_m_s: NDArray[np.float64]
-    upper_m_s: NDArray[np.float64]
+    nodes_m: Floats
+    lower_m_s: Floats
+    upper_m_s: Floats
 
     def __post_init__(self) -> None:
         if self.lower_m_s.shape != self.upper_m_s.shape or self.lower_m_s.shape[1:] != self.nodes_m.shape:
@@ -38,7 +34,7 @@ class SwitchingLines:
         """Number of stages K + 1."""
         return int(self.lower_m_s.shape[0])
 
-    def at_decisions(self, decisions: Decisions) -> NDArray[np.float64]:
+    def at_decisions(self, decisions: Decisions) -> Floats:
         """The lines (C, R, K + 1); the nodes must be those of the path.
 
         By d stages or more a command goes where the speed is beyond the lines of d stages on end: below the lowest of
@@ -53,7 +49,7 @@ class SwitchingLines:
                 up[:, k - d] = upper[k - d : k].max(axis=0)
         return found
 
-    def slopes(self, decisions: Decisions, by_command: NDArray[np.float64]) -> NDArray[np.float64]:
+    def slopes(self, decisions: Decisions, by_command: Floats) -> Floats:
         """Derivatives by the lower and the upper lines, (I, 2, R, K + 1): of a command by the line that decides."""
         lower, upper = self.lower_m_s[:, decisions.node], self.upper_m_s[:, decisions.node]
         found = np.zeros((len(by_command), 2, *lower.T.shape))
@@ -66,7 +62,7 @@ class SwitchingLines:
                 found[:, 1, places, up] += by_command[:, 2 * d - 1, :, above]
         return found
 
-    def at(self, nodes_m: NDArray[np.float64]) -> SwitchingLines:
+    def at(self, nodes_m: Floats) -> SwitchingLines:
         """The same lines at other path nodes."""
         lower, upper = (
             np.array([np.interp(nodes_m, self.nodes_m, line) for line in side])
@@ -75,7 +71,7 @@ class SwitchingLines:
         return SwitchingLines(np.array(nodes_m), lower, upper)
 
 
-def always_up(nodes_m: NDArray[np.float64], stages: int) -> SwitchingLines:
+def always_up(nodes_m: Floats, stages: int) -> SwitchingLines:
     """Lines of so many stages below every speed: each decision raises, as far as there is a stage and it may."""
     lower, upper = np.full((stages, len(nodes_m)), -np.inf), np.full((stages, len(nodes_m)), -1.0)
     upper[-1] = np.inf

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import Bools, Floats
 from synth.problem.aim import OVERSPEED_M_S
 from synth.solver.exit_density import ExitDensity
 from synth.solver.polynomial_lines import PolynomialLines
@@ -82,13 +82,7 @@ def tabulate(
     )
 
 
-def rounded_stage(
-    k: int,
-    pressure_kpa: float,
-    powers: NDArray[np.float64],
-    has_line: NDArray[np.bool_],
-    slopes: NDArray[np.float64] | None,
-) -> Stage:
+def rounded_stage(k: int, pressure_kpa: float, powers: Floats, has_line: Bools, slopes: Floats | None) -> Stage:
     """Stage `k` with the lines, (2, r + 1), that it has, and their slopes (2,), as float32 numbers."""
     lower, upper = (round_coefficients(line) if here else None for line, here in zip(powers, has_line, strict=True))
     if slopes is None:
@@ -142,11 +136,11 @@ def lines_of(table: ControllerTable, nodes_m: np.ndarray) -> SwitchingLines:
     return SwitchingLines(np.array(nodes_m, dtype=np.float64), lower, upper)
 
 
-def surfaces_of(table: ControllerTable, nodes_m: NDArray[np.float64], modes: DriveModes) -> NDArray[np.float64]:
+def surfaces_of(table: ControllerTable, nodes_m: Floats, modes: DriveModes) -> Floats:
     """The table's surfaces by side, path node and mode, (2, N, M), from its float32 numbers; ±inf as in `lines_of`."""
     lines = lines_of(table, nodes_m)
     lowest, highest = table.pressures[0], table.pressures[table.highest_raised]
     above = np.clip(modes.pressure_kpa, lowest, highest) - table.pressures[modes.stage]
     at_stage = np.stack([lines.lower_m_s[modes.stage].T, lines.upper_m_s[modes.stage].T])
-    found: NDArray[np.float64] = at_stage + (table.slopes[modes.stage].T * above)[:, None, :]
+    found: Floats = at_stage + (table.slopes[modes.stage].T * above)[:, None, :]
     return found

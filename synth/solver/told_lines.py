@@ -10,10 +10,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.solver.chain.chain import Chain
@@ -51,11 +50,10 @@ IN_A_TUNE = Effort()
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ToldLines:
     """`lines`[i] for cuts whose ξ_cut is `factor`[i], (M,), ascending."""
 
-    factor: NDArray[np.float64]
+    factor: Floats
     lines: tuple[PolynomialLines, ...]
 
     def at(self, factor: float) -> PolynomialLines:
@@ -73,11 +71,7 @@ class ToldLines:
 
 
 def told_lines(
-    design: Chain,
-    target_m_s: float,
-    common: PolynomialLines,
-    curvature: NDArray[np.float64],
-    effort: Effort = IN_A_TUNE,
+    design: Chain, target_m_s: float, common: PolynomialLines, curvature: Floats, effort: Effort = IN_A_TUNE
 ) -> ToldLines:
     """Lines of small mean square error at each of several frictions, on the grid of `design`.
 
@@ -102,7 +96,7 @@ def told_lines(
 
 
 def improved(
-    evaluation: Evaluation, begins: Sequence[PolynomialLines], curvature: NDArray[np.float64], most: float,
+    evaluation: Evaluation, begins: Sequence[PolynomialLines], curvature: Floats, most: float,
     iterations: int, tolerance: float,
 ) -> PolynomialLines:  # fmt: skip
     """The end of the first polish, from one of `begins` after the other, that costs `most` at most; else the last.
@@ -120,7 +114,7 @@ def improved(
     return begins[-1]
 
 
-def told_factors(plant: Plant, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def told_factors(plant: Plant, count: int) -> tuple[Floats, Floats]:
     """Friction factors from −4 to 4 standard deviations, ascending, and how often they are met.
 
     Those at the floor are one.
@@ -137,14 +131,14 @@ def knowing(design: Chain, target_m_s: float, factor: float, resistance_nodes: i
 
 
 def mean_squares(
-    design: Chain, target_m_s: float, lines: PolynomialLines, factor: NDArray[np.float64], resistance_nodes: int
-) -> NDArray[np.float64]:
+    design: Chain, target_m_s: float, lines: PolynomialLines, factor: Floats, resistance_nodes: int
+) -> Floats:
     """`mean_square` of the same lines at every known friction `factor` (M,), from one recursion."""
     together = replace(design, scenarios=known_factors(design.plant, factor, resistance_nodes))
     densities = scenario_densities(together, lines.at(design.grid.path_m))
     squares = np.array([each.rms_m_s(target_m_s) ** 2 for each in densities]).reshape(len(factor), -1)
     share = together.scenarios.weight.reshape(len(factor), -1) * len(factor)
-    found: NDArray[np.float64] = (share * squares).sum(axis=1)
+    found: Floats = (share * squares).sum(axis=1)
     return found
 
 

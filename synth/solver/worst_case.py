@@ -14,8 +14,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.problem.requirement import FrictionRange
 from synth.problem.requirement_found import CERTIFIED_GAP, WorstCaseFound
 from synth.solver.backward_induction import Solution
@@ -44,7 +44,7 @@ SHARPNESS = (4.0, 16.0, 64.0, 256.0)
 ROUNDS = 3
 """The whole is repeated from the lines of the lower bound while the gap is open; the best lines are kept."""
 
-ITERATIONS, TOLERANCE = 40, 1e-4
+GUARD_ITERATIONS, GUARD_TOLERANCE = 40, 1e-4
 
 
 def guard_worst_case(
@@ -68,14 +68,14 @@ def guard_worst_case(
     def lowered(lines: PolynomialLines) -> PolynomialLines:
         for sharpness in SHARPNESS:
             evaluate = smooth_maximum(costs_of, sharpness / float(costs_of(lines.at(nodes)).cost.max()))
-            lines = polish(lines, fit.curvature, nodes, evaluate, ITERATIONS, TOLERANCE).best
+            lines = polish(lines, fit.curvature, nodes, evaluate, GUARD_ITERATIONS, GUARD_TOLERANCE).best
         return lines
 
-    def bounded(lines: PolynomialLines) -> tuple[PolynomialLines, NDArray[np.float64], float]:
+    def bounded(lines: PolynomialLines) -> tuple[PolynomialLines, Floats, float]:
         costs = costs_of(lines.at(nodes)).cost
         weights = soft_weights(costs, SHARPNESS[-1] / float(costs.max()))
         mean = weighted_mean(costs_of, weights)
-        found = [polish(at, fit.curvature, nodes, mean, ITERATIONS, TOLERANCE) for at in (lines, start)]
+        found = [polish(at, fit.curvature, nodes, mean, GUARD_ITERATIONS, GUARD_TOLERANCE) for at in (lines, start)]
         lowest = min(found, key=lambda each: each.cost_after)
         return lowest.best, weights, 1.0 - lowest.cost_after / float(costs.max())
 
@@ -102,7 +102,7 @@ def guard_worst_case(
     )
 
 
-def weighted_mean(costs_of: Callable[[SwitchingLines], ScenarioCosts], weights: NDArray[np.float64]) -> Evaluate:
+def weighted_mean(costs_of: Callable[[SwitchingLines], ScenarioCosts], weights: Floats) -> Evaluate:
     """Σ w_i·J_i with its gradient."""
 
     def evaluate(lines: SwitchingLines) -> Gradient:
@@ -123,10 +123,10 @@ def smooth_maximum(costs_of: Callable[[SwitchingLines], ScenarioCosts], beta: fl
     return evaluate
 
 
-def soft_weights(cost: NDArray[np.float64], beta: float) -> NDArray[np.float64]:
+def soft_weights(cost: Floats, beta: float) -> Floats:
     """Weights ∝ exp(β·cost), which sum to one."""
     raw = np.exp(beta * (cost - cost.max()))
-    weights: NDArray[np.float64] = raw / raw.sum()
+    weights: Floats = raw / raw.sum()
     return weights
 
 

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from synth.frame.workers.engine import Teller
 from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.estimation.estimate_chain import estimate_chain
 from synth.retarder.policy_map import policy_map, share_of_ties
 from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import Book, tune
-from synth.retarder.watcher import Teller
 from synth.simulation.passes import TRACE_FACTORS
 from synth.solver.backward_induction import solve
 from tuning_tables import ControllerTable, read_json, write_json

@@ -35,6 +35,7 @@ from scripts.studies.near_target import near_ratio
 from scripts.studies.options import option
 from scripts.studies.study import Method, Tell
 from scripts.studies.tuned_table import lines_of_solution, rounded
+from synth.frame.workers.engine import Teller
 from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import design_resolution
 from synth.retarder.comparison.baselines import FAMILIES, tune
@@ -42,7 +43,6 @@ from synth.retarder.configuration.config_file import load_config, parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.permissions.case_permissions import permissions_of
 from synth.retarder.permissions.permission import Permission
-from synth.retarder.watcher import Teller
 from synth.simulation.closed_loop import LineController, TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.controllers import Regulator

@@ -8,11 +8,11 @@ from pathlib import Path
 from plant_models import Plant
 from scripts.studies.cases import of_masses
 from scripts.studies.study import Tell
+from synth.frame.workers.engine import Teller
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
-from synth.retarder.watcher import Teller
 from tuning_tables.table_book import TableBook
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
+from synth.frame.workers.engine import silent
 from synth.retarder.sensors.layout import equal_layout, rule_layout
 from synth.retarder.sensors.layout_plan import (
     JudgedLayout,
@@ -14,7 +15,6 @@ from synth.retarder.sensors.layout_plan import (
     plan_passes,
     searched,
 )
-from synth.retarder.watcher import silent
 
 Places = tuple[float, ...]
 """Of the deciding sensors, m from the entrance, rising."""

@@ -16,13 +16,13 @@ from scripts.studies.markdown_table import MarkdownTable, span, table
 from scripts.studies.options import option
 from scripts.studies.study import Findings, Method, Tell
 from scripts.studies.tuned_table import CREATED
+from synth.frame.workers.engine import Teller
 from synth.logs.fitting_passes import fitting_passes
 from synth.logs.identified_config import with_numbers
 from synth.logs.retune.retune import RetuneOrder, retune
 from synth.logs.retune.tuned_books import Case, class_setups, tuned_tables
 from synth.retarder.configuration.config_file import ConfigSource, source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.watcher import Teller
 from synth.simulation.closed_loop import simulate
 from synth.simulation.controllers import TableController
 from synth.simulation.logged_passes import LoggedClass, mixed_log

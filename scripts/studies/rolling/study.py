@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from plant_models.frozen_arrays import Floats
 from scripts.studies.options import option
 from scripts.studies.rolling.by_numpy import NumpyRoll
 from scripts.studies.rolling.by_scipy import LOOSE, TIGHT, Accuracy, Motion, acceleration, solved
@@ -16,7 +17,7 @@ from scripts.studies.rolling.findings import SLOW_M_S, RollingFindings, StepErro
 from scripts.studies.study import Method, Tell
 from scripts.studies.timing.machine import this_machine
 from scripts.studies.timing.turns import Call, in_turns
-from synth.simulation.free_roll import STEP_M, Floats, RollingCuts, arrays_of, way_of
+from synth.simulation.free_roll import STEP_M, RollingCuts, arrays_of, way_of
 
 REFERENCE_STEP_M, REFERENCE_NODE_M = 0.1, 0.02
 AS_EXACT_M = 2.0

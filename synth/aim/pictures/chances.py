@@ -6,7 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.aim.aim_curves import AimCurves, Floats
+from plant_models.frozen_arrays import Floats
+from synth.aim.aim_curves import AimCurves
 from synth.frame.picture.house_style import INK, dress, legend_below, new_figure, place
 from synth.frame.picture.series import graded
 from synth.frame.printed_numbers import counted

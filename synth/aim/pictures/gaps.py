@@ -10,9 +10,6 @@ from synth.frame.picture.house_style import dress, legend_below, new_figure, pla
 from synth.frame.picture.series import graded, markers, named_lines
 from synth.frame.printed_numbers import counted
 
-KNOWN = {"category": "category alone", "measured": "resistance measured"}
-"""What a panel calls a kind of knowledge."""
-
 
 def gaps(book: AimBook) -> Figure:
     """Rows by knowledge, columns by category, one scale for all."""
@@ -30,7 +27,7 @@ def gaps(book: AimBook) -> Figure:
         row, column = book.config.aim.knowledge.index(made.knowledge), book.config.members.index(made.category)
         axes = panels[row, column]
         draw_gaps(axes, made)
-        dress(axes, f"{made.category.name}, {KNOWN[made.knowledge]}")
+        dress(axes, f"{made.category.name}, {made.known}")
     for axes in panels[-1]:
         axes.set_xlabel("free distance, m", fontsize=9)
     for axes in panels[:, 0]:

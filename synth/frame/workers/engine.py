@@ -39,14 +39,35 @@ Work = Callable[[Any], Answer]
 Begun = Callable[[Any], None]
 
 
+Tell = Callable[[str], None]
+"""Is told a sentence when a step has ended."""
+
+
+def silent(_sentence: str) -> None:
+    """Nobody wants to know."""
+
+
 class Watcher(Protocol):
-    """Is told how far a run is."""
+    """Is told how far a run is, by any thread."""
 
     def note(self, sentence: str) -> None:
-        """Something besides the results."""
+        """Something besides the results, or more of one."""
 
     def done(self, sentence: str) -> None:
-        """A result is there, or has failed."""
+        """A result is there, or has failed: once for each."""
+
+
+@dataclass(frozen=True)
+class Teller:
+    """A watcher that counts nothing and passes every sentence on."""
+
+    tell: Tell
+
+    def note(self, sentence: str) -> None:
+        """See `Watcher`."""
+        self.tell(sentence)
+
+    done = note
 
 
 class Engine(Protocol):

@@ -43,8 +43,7 @@ from synth.hump.trains.table_aim import aim_warnings, require_fitting
 from synth.hump.trains.trial_aim_range import book_warnings
 from synth.hump.trains.trial_parameters import CHANGES_NO_TRAIN, position_values, trial_numbers
 from synth.retarder.configuration.config_file import load_config
-from synth.retarder.configuration.plant_fault import in_file
-from synth.retarder.configuration.position_choice import require_held
+from synth.retarder.configuration.plant_fault import in_file, require_held
 from tuning_tables.canonical import canonical_json
 
 KEY_OF_PLANT_MESSAGE: Final = {

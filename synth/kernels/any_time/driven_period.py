@@ -8,10 +8,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from plant_models import valve_drive
+from plant_models.frozen_arrays import Floats
 from synth.kernels.compiling import kernel, raising
 
 wait_after_command = raising(valve_drive.wait_after_command)
@@ -26,7 +24,7 @@ class SampledDrive(NamedTuple):
     """
 
     valves: Any
-    stage_kpa: NDArray[np.float64]
+    stage_kpa: Floats
     initial_stage: int
     initial_kpa: float
     entrance_stage: int

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from synth.kernels.any_time.sampled_arrays import Floats, Ints
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import part, part_inline
 from synth.kernels.sweep.flow import LINEAR_CELLS, put_at, stencil, stencil_row, take
 from synth.kernels.vector.packs import EIGHT, eight, greatest, load8, store

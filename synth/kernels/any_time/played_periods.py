@@ -12,11 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.any_time.any_time_law import AnyTimeLaw
 from synth.kernels.any_time.driven_period import SampledDrive, play_period
 from synth.kernels.compiling import part, part_inline
 from synth.kernels.loop.drive import Pieces
-from synth.kernels.loop.lane_places import LANES, Floats, Ints
+from synth.kernels.loop.lane_places import LANES
 from synth.kernels.loop.regulator import pressure_above_stage
 
 STATES, PIECES = 0, 1

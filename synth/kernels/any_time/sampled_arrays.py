@@ -7,11 +7,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from plant_models.frozen_arrays import Floats, Ints
 
 
 class Motion(NamedTuple):

@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import borrowing, part_inline
 from synth.kernels.loop.drive import Pieces
 from synth.kernels.loop.lane_estimator import Observed
@@ -34,8 +35,6 @@ from synth.kernels.loop.lane_places import (
     SLOPE,
     STAGE,
     SWITCHINGS,
-    Floats,
-    Ints,
     S,
     V,
     Work,

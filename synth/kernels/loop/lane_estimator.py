@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import part, part_inline
-from synth.kernels.loop.lane_places import Floats, Ints
 from synth.kernels.vector import packs
 from tuning_tables.programs.estimate import (
     BEGUN,

@@ -10,6 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import part_inline
 from synth.kernels.loop.drive import Pieces
 from synth.kernels.loop.lane_estimator import Observed, estimated
@@ -23,8 +24,6 @@ from synth.kernels.loop.lane_places import (
     SLOPE,
     STAGE,
     SWITCHINGS,
-    Floats,
-    Ints,
     S,
     V,
     Work,

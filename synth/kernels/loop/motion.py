@@ -12,9 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.kernels.compiling import borrowing_inline, kernel
-
-Floats = NDArray[np.float64]
 
 MOVING, LEFT, STALLED = 0, 1, 2
 

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import borrowing_inline, kernel, part, part_inline
 from synth.kernels.loop.motion import LEFT, MOVING, STALLED, Cells, Path
 from synth.kernels.loop.passage_pulses import (
@@ -33,8 +34,6 @@ from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.trace import note
 from tuning_tables.programs.passage_table import HeldPassages
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Outcomes = NDArray[np.uint8]
 
 ON_COIL = 3

@@ -13,10 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import borrowing_inline, part_inline
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SHORTEST_BASE = 0.1
 """A base is at least this part of what it should be: beyond, the normal law of its error has no meaning."""

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from plant_models.frozen_arrays import Bools, Floats
 
 LONGEST_PASS_S = 300.0
 """A cut that is still inside, at rest between two commands, after this time has stalled: it creeps."""
@@ -39,7 +39,7 @@ class Exits(NamedTuple):
 
     speed_m_s: Floats
     time_s: Floats
-    stalled: NDArray[np.bool_]
+    stalled: Bools
     switchings: NDArray[np.int32]
 
     def part(self, first: int, last: int) -> Exits:

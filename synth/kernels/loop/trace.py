@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import part, part_inline
 from synth.kernels.loop.drive import Pieces
-from synth.kernels.loop.lane_places import FIRST_S, PIECE, SAMPLE, STAGE, Floats, Ints, S, V, Work
+from synth.kernels.loop.lane_places import FIRST_S, PIECE, SAMPLE, STAGE, S, V, Work
 from synth.kernels.loop.regulator import Sensor, impulse_time_s
 
 EVENT_FIELDS = 6

@@ -5,14 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import valve_drive
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.valve_drive import ValveDrive
 from synth.kernels.compiling import kernel, raising
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 drive_on = raising(valve_drive.drive_on)
 wait_after_command = raising(valve_drive.wait_after_command)

@@ -16,12 +16,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import kernel, kernel_inline
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SLOWEST_M_S = 0.4
 """A slower reading tells nothing: the law of the noise is another near standstill."""

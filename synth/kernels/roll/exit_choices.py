@@ -6,12 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Bools, Floats, Ints
 from synth.kernels.compiling import borrowing, part_inline
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Legs(NamedTuple):
@@ -49,7 +46,7 @@ class Work(NamedTuple):
     speed_m_s: Floats
     ahead_s: Floats
     behind_s: Floats
-    able: NDArray[np.bool_]
+    able: Bools
     beyond_m_s: Floats
     at: Ints
     met: Ints

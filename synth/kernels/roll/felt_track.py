@@ -4,14 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import part_inline
 from synth.kernels.vector import packs
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 LANES = packs.SIXTEEN
 """Cuts side by side: two packs of the machine, because each waits most of the time for roots and divisions."""

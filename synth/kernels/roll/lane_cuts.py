@@ -4,14 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import borrowing
 from synth.kernels.roll.felt_track import LANES
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class RouteRows(NamedTuple):

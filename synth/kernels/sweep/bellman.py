@@ -14,8 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import kernel, part
-from synth.kernels.sweep.chain_arrays import Floats, Scenario, change_at
+from synth.kernels.sweep.chain_arrays import Scenario, change_at
 from synth.kernels.sweep.drawn_lines import Drawing, Gains, add_gains, draw_lines
 from synth.kernels.sweep.flow import in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import find_runs, landing_scratch, landing_tables

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import part
-from synth.kernels.sweep.chain_arrays import Floats, Ints
 from synth.kernels.sweep.commands import normal_cdf
 from synth.kernels.sweep.thresholds import find_lines
 from synth.kernels.vector.packs import EIGHT, choose, load8, magnitude, store

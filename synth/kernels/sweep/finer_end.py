@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from plant_models.frozen_arrays import Floats
 from synth.kernels.compiling import borrowing, kernel, part
-from synth.kernels.sweep.chain_arrays import Floats, Scenario
+from synth.kernels.sweep.chain_arrays import Scenario
 from synth.kernels.sweep.flow import NO_MASS, extent, stencil, widen
 from synth.kernels.sweep.landing_plan import landing_tables
 from synth.kernels.sweep.policy_density import BEGIN, begin_pass, collect, empty_masses, follow, without_mass

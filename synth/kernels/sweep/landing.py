@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import kernel, part, part_inline
-from synth.kernels.sweep.chain_arrays import Floats, Ints
 from synth.kernels.vector.packs import (
     SIXTEEN,
     choose,

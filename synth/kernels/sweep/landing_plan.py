@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Ints
 from synth.kernels.compiling import kernel, part, part_inline
-from synth.kernels.sweep.chain_arrays import Ints
 from synth.kernels.sweep.flow import LINEAR_CELLS
 from synth.kernels.vector.packs import (
     EIGHT,

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.kernels.compiling import part, part_inline
-from synth.kernels.sweep.chain_arrays import Floats
 from synth.kernels.sweep.landing_plan import ahead_of, end_of_transient, first_end, law_met
 from synth.kernels.vector.packs import (
     EIGHT,

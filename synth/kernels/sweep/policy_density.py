@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import kernel, part
-from synth.kernels.sweep.chain_arrays import Floats, Ints, Scenario, change_at
+from synth.kernels.sweep.chain_arrays import Scenario, change_at
 from synth.kernels.sweep.flow import NO_MASS, add_row, clear, extent, push, shifts, widen
 from synth.kernels.sweep.landing_plan import Scratch, landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample

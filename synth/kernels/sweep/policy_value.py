@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import kernel, part, part_inline
-from synth.kernels.sweep.chain_arrays import Floats, Ints, Scenario, change_at
+from synth.kernels.sweep.chain_arrays import Scenario, change_at
 from synth.kernels.sweep.flow import extent, in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import Scratch, landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample

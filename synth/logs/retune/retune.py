@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 
+from synth.frame.workers.engine import Teller, Watcher
 from synth.logs.estimate import Estimate, estimate
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.identified_config import identified
@@ -14,7 +15,6 @@ from synth.logs.unknowns import unknowns_of
 from synth.retarder.configuration.config_file import ConfigSource
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.failed_case import FailedCase
-from synth.retarder.watcher import Teller, Watcher
 from tuning_tables import ControllerTable
 
 

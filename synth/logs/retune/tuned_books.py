@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 from plant_models import Plant
+from synth.frame.workers.engine import Watcher
 from synth.retarder.attempted_case import attempted
 from synth.retarder.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -15,7 +16,6 @@ from synth.retarder.failed_case import FailedCase, require_none
 from synth.retarder.rounded_table import with_prediction
 from synth.retarder.served_class import plant_for
 from synth.retarder.tuned_table import read_back, solutions, tuned_table, validated_table
-from synth.retarder.watcher import Watcher
 from synth.simulation.controllers import TableController
 from synth.solver.backward_induction import Solution
 from synth.solver.one_blas_thread import one_blas_thread

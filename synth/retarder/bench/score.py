@@ -11,9 +11,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.retarder.bench.bench_pass import BenchPass
 from synth.retarder.bench.cases import BenchCase
 from synth.retarder.bench.clock import Cycles
@@ -25,14 +24,11 @@ from synth.simulation.closed_loop import TableController
 from synth.simulation.random_passes import BLOCK_PASSES, random_passes
 from synth.simulation.replicates import UPPER_TAIL, Interval
 
-Floats = NDArray[np.float64]
-
 GROUPS = 1000
 """As many groups of cuts are drawn: the ends of the range are known to one per cent of probability."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Errors:
     """Exit errors of the n cuts of one table, m/s: of the controller, of the table, of the rules by name, (n,) each.
 

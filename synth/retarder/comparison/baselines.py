@@ -13,12 +13,12 @@ from math import ceil
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.simulation.closed_loop import ClosedLoop, LineController
 from synth.simulation.common_passes import CommonPasses
 from synth.solver.switching_lines import SwitchingLines
-from tuning_tables.decisions import Decisions
+from tuning_tables import Decisions
 
 LINE_NODES = 129
 """Nodes of the lines; only the energy rule's are not constant."""
@@ -121,7 +121,7 @@ def energy_rule(
     return LineController(SwitchingLines(nodes, lower, upper), lead_s=lead_s)
 
 
-def line_nodes_m(loop: ClosedLoop) -> NDArray[np.float64]:
+def line_nodes_m(loop: ClosedLoop) -> Floats:
     """Equally spaced nodes from where the regulator acts to the exit."""
     return np.linspace(loop.plant.start_m, loop.plant.exit_m, LINE_NODES)
 
@@ -182,7 +182,7 @@ def tune(family: Family, passes: CommonPasses, target_m_s: float) -> TunedBaseli
     stage, start = min(best, key=lambda member: rms(member[0], member[1], few))
     steps = [0.5 * (grid[1] - grid[0]) for grid in family.grids]
 
-    def cost(x: NDArray[np.float64]) -> float:
+    def cost(x: Floats) -> float:
         return rms(stage, tuple(x), more)
 
     found = minimize(

@@ -23,11 +23,7 @@ class ComparedLaw:
 
 
 def compared_laws(
-    tuning: CommonPasses,
-    passes: CommonPasses,
-    table: ExitSample,
-    target_m_s: float,
-    decisions: Sequence[Decisions],
+    tuning: CommonPasses, passes: CommonPasses, table: ExitSample, target_m_s: float, decisions: Sequence[Decisions]
 ) -> tuple[ComparedLaw, ...]:
     """Every baseline, tuned on `tuning` and run on `passes`; `table`: the table's sample of these."""
     found = []

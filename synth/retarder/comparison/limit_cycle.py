@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.stage_regulator import stage_locked_actuator
 from synth.solver.switching_lines import SwitchingLines
 
@@ -37,8 +36,8 @@ class StagePair(NamedTuple):
     lower_stage: int
     low_kpa: float
     high_kpa: float
-    braking_kpa: NDArray[np.float64]
-    releasing_kpa: NDArray[np.float64]
+    braking_kpa: Floats
+    releasing_kpa: Floats
     sample_period_s: float
 
 
@@ -125,7 +124,7 @@ def hunting_report(plant: Plant, lines: SwitchingLines) -> tuple[Hunting, ...]:
     return tuple(found)
 
 
-def accelerations(plant: Plant, edges_m: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def accelerations(plant: Plant, edges_m: Floats) -> tuple[Floats, Floats]:
     """Means over the path cells: acceleration without brake (m/s²), deceleration by one kPa (m/s² per kPa)."""
     path = path_coefficients(plant.position, plant.cut, plant.profile, edges_m)
     return path.free_m_s2(plant.resistance.mean_n_per_kn), path.brake_m_s2_per_kpa
@@ -236,7 +235,6 @@ def first_harmonic(gap: float, rise: float, fall: float, brake_s: float, release
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class CycleWave:
     """Speeds `speed_m_s` (n,) relative to the middle of the lines at `time_s` (n,), from one raise to the next.
 
@@ -244,8 +242,8 @@ class CycleWave:
     given.
     """
 
-    time_s: NDArray[np.float64]
-    speed_m_s: NDArray[np.float64]
+    time_s: Floats
+    speed_m_s: Floats
 
 
 def cycle_wave(plant: Plant, cycle: LimitCycle) -> CycleWave:

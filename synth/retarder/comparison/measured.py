@@ -27,11 +27,11 @@ class Measured:
     table_ratio_ci95: Interval = UNKNOWN
 
     def __repr__(self) -> str:
-        (low, high), (below, above) = self.statistics.rms_ci95_m_s, self.table_ratio_ci95
+        below, above = self.table_ratio_ci95
         ratio = (
             "" if math.isnan(self.table_ratio) else f", table/this {self.table_ratio:.3f} [{below:.3f}, {above:.3f}]"
         )
-        return f"Measured({self.name}: rms {self.statistics.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s{ratio})"
+        return f"Measured({self.name}: {self.statistics.rms_text}{ratio})"
 
     @property
     def prediction_ratio(self) -> float:

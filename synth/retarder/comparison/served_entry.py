@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.retarder.tuned_case import Feasibility
 from synth.simulation.closed_loop import picked
 from synth.simulation.common_passes import CommonPasses
@@ -23,22 +20,21 @@ LOWEST_ENTRY_M_S = 0.5
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class EntrySweep:
     """What a position can do to the same cuts at entry speeds up to its highest, whatever the target.
 
     `entry_m_s` (P,); `exits`: the passes of P·n cuts, those of one entry speed side by side.
     """
 
-    entry_m_s: NDArray[np.float64]
+    entry_m_s: Floats
     exits: ExitRange
 
-    def unavoidable_rms_m_s(self, target_m_s: float) -> NDArray[np.float64]:
+    def unavoidable_rms_m_s(self, target_m_s: float) -> Floats:
         """(P,): rms of the error that no regulator avoids, by entry speed."""
         excess, lack = excess_and_lack_m_s(self.exits.slowest, self.exits.fastest, target_m_s)
         squares = (excess + lack).reshape(len(self.entry_m_s), -1) ** 2
         weight = self.exits.slowest.weight[: squares.shape[1]]
-        rms: NDArray[np.float64] = np.sqrt(squares @ weight / weight.sum())
+        rms: Floats = np.sqrt(squares @ weight / weight.sum())
         return rms
 
 
@@ -64,9 +60,7 @@ def feasibility_of(sweep: EntrySweep, target_m_s: float, limit_m_s: float) -> Fe
     )
 
 
-def served(
-    entry_m_s: NDArray[np.float64], rms_m_s: NDArray[np.float64], limit_m_s: float
-) -> tuple[float, float] | None:
+def served(entry_m_s: Floats, rms_m_s: Floats, limit_m_s: float) -> tuple[float, float] | None:
     """From the first to the last entry speed at which the rms meets the limit, the rms being linear in between."""
     within = np.nonzero(rms_m_s <= limit_m_s)[0]
     if not len(within):

@@ -9,9 +9,8 @@ from plant_models.cut import Car
 from plant_models.library import CARS, CarEntry, Library, SourcedValue, load_car
 from synth.frame.input_error import InputError
 from synth.frame.settings.numbers import sourced
-from synth.retarder.configuration.plant_fault import in_file
+from synth.retarder.configuration.plant_fault import in_file, require_held
 from synth.retarder.configuration.plant_settings import CutSettings
-from synth.retarder.configuration.position_choice import require_held
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What the plant says of an impossible value, as a sentence about the configuration file."""
+"""What the plant says of an impossible value, and what the library does not hold, as sentences about a file."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from contextlib import contextmanager
 from typing import Final
 
 from plant_models import PlantError
-from plant_models.library import TypeFileError
+from plant_models.library import Kind, Library, TypeFileError
 from plant_models.library.data_file import keyed
+from plant_models.library.near_miss import near_miss
 from synth.frame.input_error import InputError
 from tuning_tables.excerpt import excerpt
 
@@ -46,3 +47,11 @@ def in_file(
         raise InputError(*(excerpt(sentence, LONGEST_SENTENCE) for sentence in error.sentences)) from None
     except PlantError as error:
         raise InputError(f"{file}: {excerpt(key_path(str(error)), LONGEST_SENTENCE)}") from None
+
+
+def require_held(where: str, kind: Kind, name: str, library: Library) -> str:
+    """`name`, if the library holds such a type; `InputError` that begins with `where`."""
+    known = library.names(kind)
+    if name not in known:
+        raise InputError(f"{where} is {excerpt(name)!r}, which the library does not hold; {near_miss(name, known)}")
+    return name

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from plant_models.library import POSITIONS, RETARDERS, SENSORS, Kind, Library, PositionEntry
-from plant_models.library.near_miss import near_miss
+from plant_models.library import POSITIONS, RETARDERS, SENSORS, Library, PositionEntry
 from plant_models.library.position_entry import position_with_types
 from synth.frame.input_error import InputError
-from synth.retarder.configuration.plant_fault import in_file
+from synth.retarder.configuration.plant_fault import in_file, require_held
 from synth.retarder.configuration.plant_settings import DEFAULT_POSITION
 from synth.retarder.configuration.settings import Settings
-from tuning_tables.excerpt import excerpt
 
 
 def resolve_position(settings: Settings, file: str, library: Library) -> PositionEntry:
@@ -27,11 +25,3 @@ def resolve_position(settings: Settings, file: str, library: Library) -> Positio
     with in_file(file):
         entry = position_with_types(name, library, settings.retarder.type, settings.sensor.type)
         return entry.with_values(settings.library_overrides())
-
-
-def require_held(where: str, kind: Kind, name: str, library: Library) -> str:
-    """`name`, if the library holds such a type; `InputError` that begins with `where`."""
-    known = library.names(kind)
-    if name not in known:
-        raise InputError(f"{where} is {excerpt(name)!r}, which the library does not hold; {near_miss(name, known)}")
-    return name

@@ -35,9 +35,9 @@ from synth.retarder.configuration.cut_class import (
     resolve_targets,
 )
 from synth.retarder.configuration.grid_warnings import grid_warnings
-from synth.retarder.configuration.plant_fault import in_file
+from synth.retarder.configuration.plant_fault import in_file, require_held
 from synth.retarder.configuration.point_sensors.resolved_sensors import ResolvedSensors, require_served, resolve_sensors
-from synth.retarder.configuration.position_choice import require_held, resolve_position
+from synth.retarder.configuration.position_choice import resolve_position
 from synth.retarder.configuration.settings import (
     NUMERICAL_SECTIONS,
     AcceptanceSettings,

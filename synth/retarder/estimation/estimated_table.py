@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.problem.criterion import SQUARED_ERROR, Criterion
 from synth.problem.terminal_cost import TerminalCost
 from synth.retarder.estimation.tuning_days import TuningDays
@@ -96,7 +96,7 @@ class Untrimmed(Generic[Lines]):
 def trimmed_on(days: TuningDays, target_m_s: float, design: Untrimmed[Lines]) -> EstimatedTable[Lines]:
     """The lines of `design` with the shifts that are best on `days`."""
 
-    def squares(by_m_s: Pairs) -> NDArray[np.float64]:
+    def squares(by_m_s: Pairs) -> Floats:
         controller = design.controller(design.moved(by_m_s), design.estimator)
         prices = design.trim.change_m2_s2, design.trim.second_m2_s3, design.trim.terminal
         return days.mean_squares(controller, target_m_s, *prices)
@@ -126,7 +126,7 @@ def controller_of(lines: PolynomialLines, estimator: Estimator | None) -> LineCo
 
 def moved(lines: Lines, by_m_s: Pairs) -> Lines:
     """All lower and all upper lines moved."""
-    coefficients: NDArray[np.float64] = lines.coefficients.copy()
+    coefficients: Floats = lines.coefficients.copy()
     for term, (lower, upper) in enumerate(by_m_s):
         coefficients[:, 0, term] += lower
         coefficients[:, 1, term] += upper

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Plant, path_coefficients
+from plant_models.frozen_arrays import Bools
 from plant_models.motion import path_breaks_m
 from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop
@@ -93,9 +93,7 @@ def error_of_estimate(loop: ClosedLoop, controller: Controller, draws: Draws, le
     return error_along_path(np.concatenate(rows), edges, least_std_m_s)
 
 
-def decisions(
-    loop: ClosedLoop, controller: Controller, draws: Draws
-) -> Iterator[tuple[int, PassTrace, NDArray[np.bool_]]]:
+def decisions(loop: ClosedLoop, controller: Controller, draws: Draws) -> Iterator[tuple[int, PassTrace, Bools]]:
     """Every pass with the number of its draw, and which of its events are decisions."""
     for index in range(len(draws.cut_factor)):
         trace = loop.follow(controller, draws.part(index, index + 1))

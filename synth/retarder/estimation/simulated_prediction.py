@@ -13,8 +13,8 @@ from __future__ import annotations
 import zlib
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.problem.aim import OVERSPEED_M_S
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
@@ -46,7 +46,7 @@ def simulated_prediction(sample: ExitSample, target_speed_m_s: float) -> Predict
     )
 
 
-def density_of(sample: ExitSample, speed_m_s: NDArray[np.float64]) -> ExitDensity:
+def density_of(sample: ExitSample, speed_m_s: Floats) -> ExitDensity:
     """The passes shared out between grid speeds (E,), even in v²/2, so that the mean energy is kept."""
     weight = sample.weight / sample.weight.sum()
     moving, part = sample.exit_speed_m_s[~sample.stalled], weight[~sample.stalled]

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import Floats
 from synth.retarder.any_time.surface_table import trial_table
 from synth.retarder.comparison.told_regulator import run_told
 from synth.retarder.estimation.estimated_table import EstimatedTable, controller_of, moved
@@ -43,7 +43,7 @@ class Bias:
         """The error of cuts with this friction factor."""
         return float(np.polyval(self.series, np.clip(factor, self.low, self.high)))
 
-    def and_of(self, factor: NDArray[np.float64], error_m_s: NDArray[np.float64]) -> Bias:
+    def and_of(self, factor: Floats, error_m_s: Floats) -> Bias:
         """With the mean of what is left, by passes with these factors and errors, (n,) each."""
         degree = BIAS_DEGREE if self.high - self.low > LEAST_SPREAD else 0
         left = np.polyfit(np.clip(factor, self.low, self.high), error_m_s, degree)

@@ -9,15 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
 from plant_models.friction import Friction
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.kernels.loop.passes import Draws
 from synth.problem.criterion import SQUARED_ERROR
 from synth.problem.terminal_cost import TerminalCost
@@ -34,14 +33,13 @@ LEAST_STD = 1e-12
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TuningDays:
     """`draws`: the passes of each day; `loop(stages)`: the plant of any day with a regulator of so many stages;
     `weight` (D,): how many of all days each stands for."""
 
     loop: Callable[[int], ClosedLoop]
     draws: tuple[Draws, ...]
-    weight: NDArray[np.float64]
+    weight: Floats
 
     def mean_squares(
         self,
@@ -50,7 +48,7 @@ class TuningDays:
         change_m2_s2: float = 0.0,
         second_m2_s3: float = 0.0,
         terminal: TerminalCost = SQUARED_ERROR,
-    ) -> NDArray[np.float64]:
+    ) -> Floats:
         """Mean cost of the exit speed on each day, (D,) in m²/s², by default the squared error, and what commands and
         seconds cost."""
         found = []

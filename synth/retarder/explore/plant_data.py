@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import EntryLaw, Plant, PointSensors, every_axle, path_coefficients
 from plant_models.cut import GRAVITY_M_S2
+from plant_models.frozen_arrays import Floats
 from plant_models.plant import SLOWEST_START_M_S
 from plant_models.point_sensors import deciding_passages
 from synth.kernels.loop.passage_loop import WATCHED_FROM_S
@@ -66,7 +66,7 @@ def plant_data(
     }
 
 
-def force_kn_per_kpa(plant: Plant, mass_t: float, edges_m: NDArray[np.float64]) -> NDArray[np.float64]:
+def force_kn_per_kpa(plant: Plant, mass_t: float, edges_m: Floats) -> Floats:
     """Braking force on a cut of this mass for each kPa of overpressure, by cell; linear in the mass by every law."""
     cut = replace(plant.cut, mass_t=mass_t)
     cells = path_coefficients(plant.position, cut, plant.profile, edges_m)

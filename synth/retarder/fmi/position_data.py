@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Cut, Plant
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
+from plant_models.frozen_arrays import Floats
 from plant_models.plant import SLOWEST_START_M_S
 from plant_models.retarder import ForceLaw
 from plant_models.rolling.random_numbers import Purpose
@@ -70,7 +70,7 @@ def arrays_of(plant: Plant, axle_room: int) -> Iterator[tuple[str, Array]]:
     yield "SLOPE_KN_PER_KPA_PER_T", of_load.tolist()
 
 
-def slopes(force: ForceLaw, axle_room: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def slopes(force: ForceLaw, axle_room: int) -> tuple[Floats, Floats]:
     """Slope of the pads for 1, 2, … braked axles, (n,): constant part, and part for each tonne of axle load.
 
     Force laws are constant or linear in the mass, as `brake_power` takes them. What the last entry holds, further axles

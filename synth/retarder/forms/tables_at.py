@@ -18,8 +18,8 @@ from synth.retarder.forms.table_file import (
     read_table_file,
     read_tables,
 )
+from tuning_tables import read_json
 from tuning_tables.hdf5_file import read_any_book
-from tuning_tables.json_file import read_json
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.regular_file import first_bytes
 

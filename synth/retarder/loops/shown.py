@@ -13,8 +13,8 @@ from synth.frame.command import Limit
 from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import counted, decimals
 from synth.frame.summary import plain
-from synth.retarder import control_loop
 from synth.retarder.comparison.limit_cycle import Hunting
+from synth.retarder.control_loop import TOLERANCE_M_S
 from synth.retarder.forms.table_file import file_stem
 from synth.retarder.line_control_loop import LineControlLoop
 from synth.retarder.passage_control_loop import PassageControlLoop
@@ -74,7 +74,7 @@ def overview(title: str, loops: Sequence[AnyLoop]) -> Iterator[Exhibit]:
     yield Table("loops", title, LOOPS, [row_of(loop) for loop in loops], True, lambda row: not row["agrees"])
     yield Sentence(
         "Nominal pass: mean friction and resistance, median entry speed, no noise. Python-control and the simulator "
-        f"agree where the largest difference is {1e3 * control_loop.TOLERANCE_M_S:g} mm/s or less. Parted at: from a "
+        f"agree where the largest difference is {1e3 * TOLERANCE_M_S:g} mm/s or less. Parted at: from a "
         "decision at a speed on a line on, where rounding decides, these are two passes; they are compared up to "
         "there. Commands in the mean: of passes with all that is random, and how many of them the noise of the radar "
         "makes.",

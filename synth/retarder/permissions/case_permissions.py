@@ -8,6 +8,7 @@ from functools import partial
 
 from plant_models import Plant
 from plant_models.approach import Approach
+from synth.frame.workers.engine import Watcher
 from synth.problem.aim import Aim
 from synth.retarder.attempted_case import attempted
 from synth.retarder.class_setup import ClassSetup, Origin, class_setup, origin_of, validation_passes
@@ -23,7 +24,6 @@ from synth.retarder.permissions.permission import (
 )
 from synth.retarder.tune import every_case
 from synth.retarder.tuned_table import TunedTable, at_any_time, solutions, tuned_table
-from synth.retarder.watcher import Watcher
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample

@@ -81,11 +81,10 @@ def draw_case(near: Axes, tails: Axes, case: TunedCase) -> None:
 def panel_title(case: TunedCase) -> str:
     """Target, both rms with the interval of the simulated one, stalls if there are any."""
     found = case.statistics
-    low, high = found.rms_ci95_m_s
     lines = [
         f"target {case.target_speed_m_s:g} m/s",
         f"predicted rms {case.table.predicted.rms_m_s:.4f} m/s",
-        f"simulated rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s",
+        f"simulated {found.rms_text}",
     ]
     if found.stalled:
         lines[0] += f" · {found.stalled:.2%} of the passes stopped"

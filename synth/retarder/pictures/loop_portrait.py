@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.picture.house_style import (
     GREY,
     INK,
@@ -66,7 +66,7 @@ def draw(axes: Axes, loop: LineControlLoop) -> None:
     axes.broken_barh(bars, (0.0, 0.02), transform=axes.get_xaxis_transform(), facecolor=INK, zorder=5)
 
 
-def while_in(response: NominalResponse, stage: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def while_in(response: NominalResponse, stage: int) -> tuple[Floats, Floats]:
     """Path and speed of a response, NaN where `stage` is not commanded."""
     inside = response.stage == stage
     inside[:-1] |= inside[1:]  # up to the point where the next stage is commanded

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.picture.house_style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION
 from synth.simulation.passes import PassTrace
 
@@ -20,12 +20,12 @@ def colour_of(stage: int) -> str:
     return STAGE_COLOURS[stage % len(STAGE_COLOURS)]
 
 
-def finite(line: NDArray[np.float64]) -> NDArray[np.float64]:
+def finite(line: Floats) -> Floats:
     """The line with gaps where the stage has no such command."""
     return np.where(np.isfinite(line), line, np.nan)
 
 
-def parts_in_stage(traces: Sequence[PassTrace], stage: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def parts_in_stage(traces: Sequence[PassTrace], stage: int) -> tuple[Floats, Floats]:
     """Path and speed of all passes while `stage` was commanded, gaps (NaN) between the parts."""
     paths, speeds = [np.empty(0)], [np.empty(0)]
     for trace in traces:

@@ -10,8 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]  # ships no type information
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection  # type: ignore[import-untyped]  # the same
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.picture.house_style import BLUE, INK, VERMILLION, legend_below, new_figure
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
@@ -75,13 +75,7 @@ def draw_stage(axes: Axes3D, table: ControllerTable, stage: int, window_m_s: tup
     axes.set_box_aspect((1.2, 1.0, 0.85), zoom=0.92)
 
 
-def sheet(
-    path_m: NDArray[np.float64],
-    pressure_kpa: NDArray[np.float64],
-    speed_m_s: NDArray[np.float64],
-    colour: str,
-    alpha: float,
-) -> Poly3DCollection:
+def sheet(path_m: Floats, pressure_kpa: Floats, speed_m_s: Floats, colour: str, alpha: float) -> Poly3DCollection:
     """Quadrilaterals of the surface `speed_m_s` (pressures, path)."""
     corners = np.stack(np.broadcast_arrays(path_m, pressure_kpa[:, None], speed_m_s), axis=-1)
     quads = np.stack([corners[:-1, :-1], corners[:-1, 1:], corners[1:, 1:], corners[1:, :-1]], axis=2)
@@ -95,11 +89,7 @@ POINTS_PER_STAGE = 3
 
 
 def surface_figure(
-    title: str,
-    subject: str,
-    lines: SwitchingLines,
-    pressure_kpa: NDArray[np.float64],
-    window_m_s: tuple[float, float],
+    title: str, subject: str, lines: SwitchingLines, pressure_kpa: Floats, window_m_s: tuple[float, float]
 ) -> Figure:
     """Path in m, pressure in kPa (linear between stages), speed in m/s upwards, cut off at the speeds in the window.
 
@@ -129,11 +119,7 @@ def surface_figure(
 
 
 def sheet_of_lines(
-    path_m: NDArray[np.float64],
-    pressure_kpa: NDArray[np.float64],
-    speed_m_s: NDArray[np.float64],
-    colour: str,
-    alpha: float,
+    path_m: Floats, pressure_kpa: Floats, speed_m_s: Floats, colour: str, alpha: float
 ) -> Poly3DCollection:
     """Quadrilaterals through the stage lines `speed_m_s` (stages, path)."""
     steps = np.linspace(0.0, len(pressure_kpa) - 1.0, POINTS_PER_STAGE * (len(pressure_kpa) - 1) + 1)
@@ -143,9 +129,7 @@ def sheet_of_lines(
     return sheet(path_m, p, v, colour, alpha)
 
 
-def ribs(
-    path_m: NDArray[np.float64], pressure_kpa: NDArray[np.float64], speed_m_s: NDArray[np.float64], colour: str
-) -> Line3DCollection:
+def ribs(path_m: Floats, pressure_kpa: Floats, speed_m_s: Floats, colour: str) -> Line3DCollection:
     """The stage lines themselves, as they are exported."""
     pairs = zip(pressure_kpa, speed_m_s, strict=True)
     lines = [np.column_stack([path_m, np.full_like(path_m, pressure), speed]) for pressure, speed in pairs]

@@ -143,14 +143,13 @@ def table_passes(table: ControllerTable, passes: Passes) -> Figure:
 def draw_exits(axes: Axes, table: ControllerTable, sample: ExitSample) -> None:
     """Histogram of the exit speeds, with the target and what the file predicts."""
     found = exit_statistics(sample, table.target_speed_m_s)
-    low, high = found.rms_ci95_m_s
     moving = sample.exit_speed_m_s[~sample.stalled]
     if moving.size:
         share = 100.0 * sample.weight[~sample.stalled] / sample.weight.sum()
         axes.hist(moving, bins=np.histogram_bin_edges(moving, 60).tolist(), weights=share, color=SKY)
     axes.axvline(table.target_speed_m_s, color=INK, linewidth=1.0)
     title = (
-        f"{found.passes} passes: rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s\n"
+        f"{found.passes} passes: {found.rms_text}\n"
         f"the file predicts {table.predicted.rms_m_s:.4f} m/s · {found.stalled:.2%} stopped"
     )
     dress(axes, title, "exit speed, m/s", "cuts, %")

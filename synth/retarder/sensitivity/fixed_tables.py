@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from plant_models import Plant
+from synth.frame.workers.engine import Tell
 from synth.retarder.class_setup import class_setup, origin_of, validation_passes
 from synth.retarder.configuration.cut_class import CutClass
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.forms.tables_at import tables_at
 from synth.retarder.served_class import plant_for
 from synth.retarder.tuned_table import solutions, tuned_table
-from synth.retarder.watcher import Tell
 from synth.solver.one_blas_thread import one_blas_thread
 from tuning_tables import ControllerTable
 

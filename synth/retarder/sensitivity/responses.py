@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, PlantError
+from plant_models.frozen_arrays import Floats
 from synth.problem.aim import OVERSPEED_M_S
 from synth.retarder.configuration.plant_parameter import Parameter
 from synth.retarder.configuration.plant_values import with_values
@@ -21,8 +21,6 @@ from synth.simulation.common_passes import common_passes
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from tuning_tables import ControllerTable
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

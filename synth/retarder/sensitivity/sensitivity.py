@@ -6,19 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.input_error import InputError
+from synth.frame.workers.engine import Tell
 from synth.retarder.configuration.plant_parameter import Parameter
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.sensitivity.fixed_tables import FixedTables
 from synth.retarder.sensitivity.responses import OUTPUTS, Output, responses
 from synth.retarder.sensitivity.shares import Estimates, Share, first_order, mean_estimates, noise_share
 from synth.retarder.sensitivity.varied import moving, varied_parameters
-from synth.retarder.watcher import Tell
 from synth.simulation.stratified_passes import stratified_passes
-
-Floats = NDArray[np.float64]
 
 REPEATED = 100
 """Points that are simulated once more, with other passes."""
@@ -166,11 +164,11 @@ def mean_of_cases(cases: Sequence[OutputShares]) -> OutputShares:
     )
 
 
-def unit_hypercube(parameters: int, points: int, seed: int) -> NDArray[np.float64]:
+def unit_hypercube(parameters: int, points: int, seed: int) -> Floats:
     """Points of a Latin hypercube, (points, parameters), each number in [0, 1)."""
     from scipy.stats import qmc  # start-up: scipy only where it is needed
 
-    unit: NDArray[np.float64] = qmc.LatinHypercube(parameters, rng=np.random.default_rng(seed)).random(points)
+    unit: Floats = qmc.LatinHypercube(parameters, rng=np.random.default_rng(seed)).random(points)
     return unit
 
 

@@ -16,10 +16,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
 from synth.simulation.replicates import Interval, student_quantile
-
-Floats = NDArray[np.float64]
 
 HARMONICS: Final = 6
 """Of the response to one input: M of Tarantola et al.; more see sharper bends, and more noise."""
@@ -45,7 +43,6 @@ class Share:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Estimates:
     """Estimates (n,) from all points, and (`GROUPS`, n) from all but one group of them each."""
 
@@ -70,7 +67,7 @@ def with_interval(value: float, without: Floats) -> Share:
     return Share(value, (value - half, value + half))
 
 
-def jackknifed(estimate: Callable[[NDArray[np.bool_]], Floats], points: int) -> Estimates:
+def jackknifed(estimate: Callable[[Bools], Floats], points: int) -> Estimates:
     """`estimate` of all points, and without each group: every tenth point, so each is spread over the cube."""
     place = np.arange(points) % GROUPS
     without = [estimate(place != group) for group in range(GROUPS)]
@@ -130,7 +127,7 @@ def noise_share(output: Floats, again: Floats) -> Estimates:
     """
     difference, variance = output[: len(again)] - again, float(output.var())
 
-    def share(kept: NDArray[np.bool_]) -> Floats:
+    def share(kept: Bools) -> Floats:
         return np.array([0.5 * float(difference[kept].var(ddof=1)) / variance if variance > 0.0 else 0.0])
 
     return jackknifed(share, len(again))

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, PointSensors
+from plant_models.frozen_arrays import Ints
 from synth.kernels.vector.packs import EIGHT
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
@@ -81,14 +81,14 @@ class CandidatePlaces:
         costs = np.array([expected_cost(each) for each in solutions]).reshape(len(decided), -1)
         return [float(max(each, LEAST_COST_M2_S2)) for each in costs.mean(axis=1)]
 
-    def nodes(self, sensors_m: Sequence[float]) -> NDArray[np.int64]:
+    def nodes(self, sensors_m: Sequence[float]) -> Ints:
         """Path nodes nearest to the passages over these sensors, rising."""
         c, step = self.chain, self.chain.grid.path_step_m
         place = np.add.outer(np.asarray(sensors_m), np.asarray(self.axle_offsets_m)).ravel() - c.grid.path_m[0]
         node = np.unique(np.rint(place / step).astype(np.int64))
         return node[(node >= 0) & (node < len(c.drive_m_s2))]
 
-    def at(self, node: NDArray[np.int64]) -> Chain:
+    def at(self, node: Ints) -> Chain:
         """The chain that decides at these path nodes alone."""
         c = self.chain
         decisions = replace(c.decisions, node=node, place_m=c.decisions.place_m[node], lead_m=c.decisions.lead_m[node])

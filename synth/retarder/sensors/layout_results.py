@@ -7,9 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.interval import Interval
+from synth.frame.workers.engine import Tell, silent
 from synth.retarder.configuration.config_file import ConfigSource
 from synth.retarder.policy_map import PolicyMap
 from synth.retarder.sensors.candidate_places import policy_anywhere
@@ -25,7 +26,6 @@ from synth.retarder.sensors.layout_plan import (
     steps_of_plan,
 )
 from synth.retarder.sensors.layout_tables import ExitErrors, radar_errors
-from synth.retarder.watcher import Tell, silent
 
 NEAR_RADAR = 1.1
 """Times the radar's rms is wanted where no rms is asked for."""
@@ -122,14 +122,14 @@ def judged_rule(problem: LayoutProblem, passes: PlanPasses, tell: Tell) -> Judge
     return found
 
 
-def told_radar(asked: AskedLayouts, number: int, passes: PlanPasses, tell: Tell) -> tuple[NDArray[np.float64], ...]:
+def told_radar(asked: AskedLayouts, number: int, passes: PlanPasses, tell: Tell) -> tuple[Floats, ...]:
     """`radar_errors` of the case `number`, and told of."""
     found = radar_errors(asked.problem.cases[number], asked.problem.resolution, (passes.choosing, passes.final))
     tell(f"the radar's lines for {asked.labels[number]} found")
     return found
 
 
-def radar_on(by_case: Sequence[tuple[NDArray[np.float64], ...]], passes: PlanPasses) -> tuple[ExitErrors, ExitErrors]:
+def radar_on(by_case: Sequence[tuple[Floats, ...]], passes: PlanPasses) -> tuple[ExitErrors, ExitErrors]:
     """The radar's errors over all cases, on the passes to choose on and on the final ones."""
     choosing, final = zip(*by_case, strict=True)
     return (

@@ -10,10 +10,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, PointSensors
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.frame.interval import Interval
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
@@ -61,12 +60,11 @@ class LayoutTable:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ExitErrors:
     """Exit-speed errors (T, n), m/s, of T tables on the same n passes, and `weight` (n,): the cuts of each pass."""
 
-    error_m_s: NDArray[np.float64]
-    weight: NDArray[np.float64]
+    error_m_s: Floats
+    weight: Floats
 
     @property
     def rms(self) -> Interval:
@@ -85,8 +83,8 @@ class ExitErrors:
         return interval_of(*rms_quotient(self._pooled_m_s, other._pooled_m_s, self.weight), len(self.weight))
 
     @property
-    def _pooled_m_s(self) -> NDArray[np.float64]:
-        pooled: NDArray[np.float64] = np.sqrt(np.square(self.error_m_s).mean(axis=0))
+    def _pooled_m_s(self) -> Floats:
+        pooled: Floats = np.sqrt(np.square(self.error_m_s).mean(axis=0))
         return pooled
 
 
@@ -121,7 +119,7 @@ def errors_of(tables: Sequence[LayoutTable], passes: RandomPasses) -> ExitErrors
     return ExitErrors(np.stack(list(table_errors(tables, passes))), passes.weight)
 
 
-def table_errors(tables: Sequence[LayoutTable], passes: RandomPasses) -> Iterator[NDArray[np.float64]]:
+def table_errors(tables: Sequence[LayoutTable], passes: RandomPasses) -> Iterator[Floats]:
     """The errors (n,) of one table after the other."""
     plant: Plant | None = None
     for each in tables:
@@ -133,9 +131,7 @@ def table_errors(tables: Sequence[LayoutTable], passes: RandomPasses) -> Iterato
         yield loop.run(controller, draws).exit_speed_m_s - each.aim.target_speed_m_s
 
 
-def radar_errors(
-    case: LayoutCase, resolution: Resolution, passes: Sequence[RandomPasses]
-) -> tuple[NDArray[np.float64], ...]:
+def radar_errors(case: LayoutCase, resolution: Resolution, passes: Sequence[RandomPasses]) -> tuple[Floats, ...]:
     """Errors (T, n), m/s, of the radar's lines for each aim of a case, of each of the `passes`.
 
     Its regulator is as the plant has it.

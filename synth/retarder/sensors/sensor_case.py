@@ -46,7 +46,6 @@ class HeardShares:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class SensorCase(TunedCase):
     """One case of tables for point sensors.
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, PointSensors
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.backward_induction import solve
@@ -29,7 +28,6 @@ RESISTANCES = 1
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TunedPassages:
     """Switching speeds as a table holds them, and the exit density predicted of them.
 
@@ -87,5 +85,5 @@ def tuned_passages(chains: PassageChains, aim: Aim) -> TunedPassages:
 def rounded(speeds: PassageSpeeds) -> PassageSpeeds:
     """The float32 numbers next to the switching speeds, in order; none is negative."""
     apart = ordered(np.where(np.isfinite(speeds.switching_m_s), np.maximum(speeds.switching_m_s, 0.0), np.inf))
-    kept: NDArray[np.float64] = np.where(np.isfinite(speeds.switching_m_s), apart, speeds.switching_m_s)
+    kept: Floats = np.where(np.isfinite(speeds.switching_m_s), apart, speeds.switching_m_s)
     return PassageSpeeds(kept.astype(np.float32).astype(np.float64) + 0.0)

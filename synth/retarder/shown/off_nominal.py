@@ -25,7 +25,7 @@ OFF_NOMINAL: Final = (
     Column("impossible", "not possible, as", words=True),
     Column("key", "key", words=True, detail=True),
 )
-LEAD: Final = (
+CHANGED: Final = (
     "The same tables where plant or sensor are not what the tables were made for. The ratio is to the rms of the same "
     "passes on the table's own plant, paired. Of weight ± 10 % the worse is shown. The sizes of the changes are "
     "assumed. No limit follows from them: they show what a table lives on. Where readings are lost, a few cuts make "
@@ -35,7 +35,7 @@ LEAD: Final = (
 
 def off_nominal(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
     """A row for each condition of each case."""
-    yield Sentence(LEAD)
+    yield Sentence(CHANGED)
     rows = [row_of(case, each) for case in found.book.cases for each in case.off_nominal]
     yield Table("off_nominal", "The same tables on other plants", OFF_NOMINAL, rows)
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import cache
 
 from plant_models.pressure_gauge import PressureGauge
+from synth.frame.workers.engine import Tell, silent
 from synth.retarder.comparison.measured import prediction_ratio_of
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.judgement import Judgement, judgement
 from synth.retarder.sensors.sensor_class import full_brake as full_brake_at_passages
 from synth.retarder.served_class import PassageClass, ServedClass, plant_for, served_class
-from synth.retarder.watcher import Tell, silent
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.controllers import Controller, full_brake
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics, overspeed_of
@@ -51,9 +51,7 @@ class Revalidation:
     @property
     def told(self) -> str:
         """The table and its rms in a sentence."""
-        low, high = self.statistics.rms_ci95_m_s
-        rms = f"rms {self.statistics.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s"
-        return f"{self.table.id}: {rms} in {self.statistics.passes} passes"
+        return f"{self.table.id}: {self.statistics.rms_text} in {self.statistics.passes} passes"
 
 
 @dataclass(frozen=True)

@@ -29,8 +29,8 @@ def passage_diagram(loop: PassageLoop, controller: PassageController) -> Diagram
     return Diagram(
         "point sensors: quantised by path",
         (
-            *measuring_parts(loop, controller, constants),
-            deciding_part(loop, controller),
+            *passage_parts(loop, controller, constants),
+            passage_decision_part(loop, controller),
             lock(actuator, sensors),
             *command_parts(plant, sensors),
             *pressure_parts(plant),
@@ -40,7 +40,7 @@ def passage_diagram(loop: PassageLoop, controller: PassageController) -> Diagram
     )
 
 
-def measuring_parts(
+def passage_parts(
     loop: PassageLoop, controller: PassageController, constants: tuple[tuple[str, object], ...]
 ) -> tuple[Part, ...]:
     """Functional converter, impulse element, and the two relay elements."""
@@ -85,7 +85,7 @@ def measuring_parts(
     )  # fmt: skip
 
 
-def deciding_part(loop: PassageLoop, controller: PassageController) -> Part:
+def passage_decision_part(loop: PassageLoop, controller: PassageController) -> Part:
     """The digital controller; the interlock of the entrance is part of its rule."""
     return Part(
         "digital controller", "D(z)", Block.COMPUTER,

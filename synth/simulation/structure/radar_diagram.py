@@ -33,8 +33,8 @@ def radar_diagram(plant: Plant, controller: TableController, first_sample_s: flo
     return Diagram(
         "radar: quantised in time",
         (
-            *measuring_parts(loop, first_sample_s),
-            *deciding_parts(loop, controller),
+            *sampling_parts(loop, first_sample_s),
+            *sampled_decision_parts(loop, controller),
             lock(regulated_actuator(plant, controller), plant.sensor),
             *command_parts(plant, plant.sensor),
             *pressure_parts(plant),
@@ -44,7 +44,7 @@ def radar_diagram(plant: Plant, controller: TableController, first_sample_s: flo
     )
 
 
-def measuring_parts(loop: ClosedLoop, first_sample_s: float) -> tuple[Part, ...]:
+def sampling_parts(loop: ClosedLoop, first_sample_s: float) -> tuple[Part, ...]:
     """Impulse element and the two relay elements."""
     sensor = loop.sensor
     return (
@@ -66,7 +66,7 @@ def measuring_parts(loop: ClosedLoop, first_sample_s: float) -> tuple[Part, ...]
     )  # fmt: skip
 
 
-def deciding_parts(loop: ClosedLoop, controller: TableController) -> tuple[Part, ...]:
+def sampled_decision_parts(loop: ClosedLoop, controller: TableController) -> tuple[Part, ...]:
     """The digital controller, and the interlock of the entrance."""
     entrance_stage = loop.plant.approach.entrance_stage
     return (

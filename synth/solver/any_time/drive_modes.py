@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, RetarderPosition
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from plant_models.stage_regulator import resting_modes
 from plant_models.valve_drive import ValveDrive
 from synth.kernels.any_time.driven_period import play_period
@@ -30,17 +29,16 @@ STENCIL = 4
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PressureGrid:
     """`nodes_kpa` (B,) increasing; `breaks` (·,) indices of the nodes at which the cost has a kink, both ends included.
 
     Between two breaks the cost is smooth in the pressure; a break is a pressure at which some stage rests, or P0.
     """
 
-    nodes_kpa: NDArray[np.float64]
-    breaks: NDArray[np.int64]
+    nodes_kpa: Floats
+    breaks: Ints
 
-    def weights(self, pressure_kpa: float) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    def weights(self, pressure_kpa: float) -> tuple[Ints, Floats]:
         """Nodes (≤ 4,) and Lagrange weights at `pressure_kpa`, from nodes of its own segment; one node if it is one."""
         nodes = self.nodes_kpa
         nearest = int(np.abs(nodes - pressure_kpa).argmin())
@@ -75,7 +73,6 @@ def pressure_grid(position: RetarderPosition, top_stage: int, step_kpa: float) -
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class DriveModes:
     """M modes that can be reached from the released one, which is mode 0.
 
@@ -87,15 +84,15 @@ class DriveModes:
 
     drive: ValveDrive
     grid: PressureGrid
-    waits_s: NDArray[np.float64]
-    stage: NDArray[np.int64]
-    node: NDArray[np.int64]
-    wait: NDArray[np.int64]
-    rests: NDArray[np.bool_]
-    allowed: NDArray[np.bool_]
-    target: NDArray[np.int64]
-    weight: NDArray[np.float64]
-    overpressure_kpa: NDArray[np.float64]
+    waits_s: Floats
+    stage: Ints
+    node: Ints
+    wait: Ints
+    rests: Bools
+    allowed: Bools
+    target: Ints
+    weight: Floats
+    overpressure_kpa: Floats
 
     @property
     def stages(self) -> int:
@@ -103,7 +100,7 @@ class DriveModes:
         return int(self.stage.max()) + 1
 
     @property
-    def pressure_kpa(self) -> NDArray[np.float64]:
+    def pressure_kpa(self) -> Floats:
         """Pressure of every mode, (M,)."""
         return self.grid.nodes_kpa[self.node]
 
@@ -139,7 +136,7 @@ def drive_modes(plant: Plant, step_kpa: float, parts: int) -> DriveModes:
     stages = position.stage_pressures_kpa
     start = resting_modes(position, top)[0][1]
     found = Found({(0, int(np.abs(grid.nodes_kpa - start).argmin()), 0): 0}, [0.0])
-    rows: list[tuple[list[bool], list[list[int]], list[list[float]], list[NDArray[np.float64]]]] = []
+    rows: list[tuple[list[bool], list[list[int]], list[list[float]], list[Floats]]] = []
     while len(rows) < len(found.modes):
         stage, node, wait = list(found.modes)[len(rows)]
         allowed, targets, weights, overs = [], [], [], []

@@ -6,23 +6,19 @@ motion alike, so they are no noise that the next sample takes away: each scenari
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.solver.chain.scenarios import Scenarios
 
 LEAST_OBSERVATIONS = 50
 """A section of the path with fewer has the figures of the whole path."""
 
-Observed = NDArray[np.float64]
+Observed = Floats
 """Rows of path, error, ξ_cut − 1, acceleration by w − E w, weight: (n, 5)."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class EstimateError:
     """Of an estimated speed at `path_m` (R,), linear in between: its noise and its shifts.
 
@@ -30,23 +26,23 @@ class EstimateError:
     `per_acceleration_s` (R,) m/s of shift per m/s² that the running resistance adds to the acceleration.
     """
 
-    path_m: NDArray[np.float64]
-    std_m_s: NDArray[np.float64]
-    per_friction: NDArray[np.float64]
-    per_acceleration_s: NDArray[np.float64]
+    path_m: Floats
+    std_m_s: Floats
+    per_friction: Floats
+    per_acceleration_s: Floats
 
-    def noise_m_s(self, path_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    def noise_m_s(self, path_m: Floats) -> Floats:
         """Standard deviation of the noise at places of the path."""
         return np.interp(path_m, self.path_m, self.std_m_s)
 
-    def shift_m_s(self, path_m: NDArray[np.float64], scenarios: Scenarios, i: int) -> NDArray[np.float64]:
+    def shift_m_s(self, path_m: Floats, scenarios: Scenarios, i: int) -> Floats:
         """Mean of estimated minus true speed in scenario `i`."""
         by_friction = np.interp(path_m, self.path_m, self.per_friction) * (scenarios.factor[i] - 1.0)
         by_resistance = np.interp(path_m, self.path_m, self.per_acceleration_s) * scenarios.extra_m_s2[i]
         return np.asarray(by_friction + by_resistance)
 
 
-def error_along_path(observed: Observed, edges_m: NDArray[np.float64], least_std_m_s: float) -> EstimateError:
+def error_along_path(observed: Observed, edges_m: Floats, least_std_m_s: float) -> EstimateError:
     """Fit of `observed`, in each section between `edges_m` (R + 1,) for itself.
 
     No noise is smaller than `least_std_m_s`: what is left of an error is not white, and a smaller one would ask for a

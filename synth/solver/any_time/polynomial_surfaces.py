@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.solver.any_time.drive_modes import DriveModes
 from synth.solver.polynomial_lines import PolynomialLines, basis
 
@@ -22,7 +21,6 @@ CUBIC_ALONE = (3,)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PolynomialSurfaces:
     """V_lo,k and V_hi,k = Σ_i x^i · Σ_j a_ij·L_j(u), x = (P − P_k) / 100 kPa; u is −1 at `start_m` and 1 at S_exit.
 
@@ -33,17 +31,17 @@ class PolynomialSurfaces:
 
     start_m: float
     exit_m: float
-    stage_kpa: NDArray[np.float64]
+    stage_kpa: Floats
     degrees: tuple[int, ...]
-    coefficients: NDArray[np.float64]
-    has_line: NDArray[np.bool_]
+    coefficients: Floats
+    has_line: Bools
 
     @property
-    def lines(self) -> NDArray[np.int64]:
+    def lines(self) -> Ints:
         """(stage, side) of the surfaces that there are, (·, 2)."""
         return np.argwhere(self.has_line)
 
-    def terms(self, nodes_m: NDArray[np.float64], stage: int, pressure_kpa: NDArray[np.float64]) -> NDArray[np.float64]:
+    def terms(self, nodes_m: Floats, stage: int, pressure_kpa: Floats) -> Floats:
         """What the coefficients of `stage` are multiplied by at path nodes and pressures, (N, B, T)."""
         held = np.clip(pressure_kpa, self.stage_kpa[0], self.stage_kpa[-1])
         x = (held - self.stage_kpa[stage]) / PRESSURE_UNIT_KPA
@@ -53,7 +51,7 @@ class PolynomialSurfaces:
         ]
         return np.concatenate(parts, axis=2)
 
-    def at(self, nodes_m: NDArray[np.float64], modes: DriveModes) -> NDArray[np.float64]:
+    def at(self, nodes_m: Floats, modes: DriveModes) -> Floats:
         """The lines (2, N, M) at path nodes and modes, ±inf where there is none."""
         found = np.empty((2, len(nodes_m), len(modes.stage)))
         found[0], found[1] = -np.inf, np.inf
@@ -73,7 +71,7 @@ class PolynomialSurfaces:
         coefficients = self.coefficients[:, :, : self.degrees[0] + 1]
         return PolynomialLines(self.start_m, self.exit_m, coefficients, np.array(self.has_line))
 
-    def slopes_m_s_per_kpa(self) -> NDArray[np.float64]:
+    def slopes_m_s_per_kpa(self) -> Floats:
         """Those of the lines over the pressure, (K + 1, 2); `ValueError` where they are not the same at every path."""
         if self.degrees[1:] != (0,):
             raise ValueError(f"surfaces of degrees {self.degrees} have no slope that is the same at every path")
@@ -81,7 +79,7 @@ class PolynomialSurfaces:
 
 
 def surfaces_of_lines(
-    lines: PolynomialLines, stage_kpa: NDArray[np.float64], degrees: tuple[int, ...] = CUBIC_AND_SLOPE
+    lines: PolynomialLines, stage_kpa: Floats, degrees: tuple[int, ...] = CUBIC_AND_SLOPE
 ) -> PolynomialSurfaces:
     """Stage-locked lines at every pressure of their stage."""
     count = sum(degree + 1 for degree in degrees)
@@ -91,7 +89,7 @@ def surfaces_of_lines(
     return PolynomialSurfaces(lines.start_m, lines.exit_m, stage_kpa, degrees, coefficients, np.array(lines.has_line))
 
 
-def moved_apart(surfaces: PolynomialSurfaces, by_m_s: NDArray[np.float64]) -> PolynomialSurfaces:
+def moved_apart(surfaces: PolynomialSurfaces, by_m_s: Floats) -> PolynomialSurfaces:
     """Every pair moved apart by `by_m_s` (K + 1,), half of it each."""
     coefficients = np.array(surfaces.coefficients)
     coefficients[:, 0, 0] -= 0.5 * by_m_s

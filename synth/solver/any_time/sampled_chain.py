@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.kernels.any_time.period import NEAREST, ROOM
 from synth.kernels.any_time.sampled_arrays import Entry, Motion, Periods, SampledArrays
 from synth.kernels.sweep.chain_arrays import PathNoise
@@ -29,7 +28,6 @@ NODE_AT_ENTRANCE_M = 1e-9
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class SampledChain:
     """One plant on one grid: all but policy and aim.
 
@@ -49,12 +47,12 @@ class SampledChain:
     measurement: SpeedMeasurement
     scenarios: Scenarios
     noise: PathNoise
-    mixing: NDArray[np.float64]
-    drive_m2_s2: NDArray[np.float64]
-    brake_m2_s2_per_kpa: NDArray[np.float64]
-    entry: NDArray[np.float64]
+    mixing: Floats
+    drive_m2_s2: Floats
+    brake_m2_s2_per_kpa: Floats
+    entry: Floats
     entry_mode: int
-    first_energy: NDArray[np.int64]
+    first_energy: Ints
     estimate: EstimateError | None = None
 
     @property
@@ -63,9 +61,9 @@ class SampledChain:
         return int(np.searchsorted(self.grid.path_m, -NODE_AT_ENTRANCE_M))
 
     @property
-    def quanta_per_period(self) -> NDArray[np.float64]:
+    def quanta_per_period(self) -> Floats:
         """Path of a period at every speed, in quanta, (E,)."""
-        quanta: NDArray[np.float64] = self.grid.speed_m_s * (self.plant.sensor.sample_period_s / self.grid.path_step_m)
+        quanta: Floats = self.grid.speed_m_s * (self.plant.sensor.sample_period_s / self.grid.path_step_m)
         return quanta
 
 
@@ -121,7 +119,7 @@ def different_periods(modes: DriveModes, entry_mode: int) -> Periods:
     periods: dict[tuple[float, int], int] = {}
     ways: dict[tuple[tuple[int, ...], tuple[float, ...]], int] = {}
 
-    def way(target: NDArray[np.int64], share: NDArray[np.float64]) -> int:
+    def way(target: Ints, share: Floats) -> int:
         key = tuple(target.tolist()), tuple(np.round(share, 12).tolist())
         return ways.setdefault(key, len(ways))
 
@@ -136,7 +134,7 @@ def different_periods(modes: DriveModes, entry_mode: int) -> Periods:
     return Periods(of_mode, np.array(kpa), np.array(leads), np.array(target), np.array(share))
 
 
-def summed(per_quantum: NDArray[np.float64]) -> NDArray[np.float64]:
+def summed(per_quantum: Floats) -> Floats:
     """Sums up to every node."""
     return np.append(0.0, np.cumsum(per_quantum))
 

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.kernels.any_time.occupancy import occupy
 from synth.kernels.any_time.period import ROOM
 from synth.kernels.any_time.sampled_arrays import Costs, Lines, Met, SampledArrays
@@ -21,7 +20,7 @@ from synth.solver.exit_density import ExitDensity
 
 Result = TypeVar("Result")
 
-Valued = tuple[float, NDArray[np.float64], NDArray[np.float64]]
+Valued = tuple[float, Floats, Floats]
 """Cost, slopes and bends of one scenario."""
 
 UP = 1
@@ -29,7 +28,6 @@ UP = 1
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class SurfaceCost:
     """Expected cost of a policy, and its derivatives by every line value, (2, N, M): by side, node and mode.
 
@@ -37,20 +35,19 @@ class SurfaceCost:
     """
 
     cost_m2_s2: float
-    slopes: NDArray[np.float64]
-    bends: NDArray[np.float64]
+    slopes: Floats
+    bends: Floats
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Followed:
     """The forward pass of one scenario: its exits (E,), totals (4,), and where the states are that it met."""
 
-    exits: NDArray[np.float64]
-    totals: NDArray[np.float64]
-    band: NDArray[np.int64]
-    where: NDArray[np.int64]
-    way_band: NDArray[np.int64]
+    exits: Floats
+    totals: Floats
+    band: Ints
+    where: Ints
+    way_band: Ints
 
 
 @dataclass(frozen=True)
@@ -67,7 +64,7 @@ class SurfaceEvaluation:
     negligible_mass: float = 1e-12
     free: list[WorkingMemory] = field(default_factory=list, repr=False)
 
-    def density(self, lines_m_s: NDArray[np.float64]) -> ExitDensity:
+    def density(self, lines_m_s: Floats) -> ExitDensity:
         """Exit-speed density, all scenarios weighted."""
         c, policy = self.chain, self._policy(lines_m_s)
         found = self._each(lambda i, memory: self._followed(self._in_scenario(policy, i), i, memory, False))
@@ -76,7 +73,7 @@ class SurfaceEvaluation:
         stalled, escaped, down, up = (float(each) for each in np.asarray(totals))
         return ExitDensity(c.grid.speed_m_s, np.asarray(exits), max(stalled, 0.0), escaped, down + up)
 
-    def gradient(self, lines_m_s: NDArray[np.float64], aim: Aim) -> SurfaceCost:
+    def gradient(self, lines_m_s: Floats, aim: Aim) -> SurfaceCost:
         """Expected cost and its derivatives, all scenarios weighted."""
         c, policy = self.chain, self._policy(lines_m_s)
         cost, slopes, bends = 0.0, np.zeros(policy.lines.shape), np.zeros(policy.lines.shape)
@@ -103,7 +100,7 @@ class SurfaceEvaluation:
         with ThreadPoolExecutor(max_workers=self.threads) as pool:
             return list(pool.map(one, range(len(self.chain.scenarios.weight))))
 
-    def _policy(self, lines_m_s: NDArray[np.float64]) -> Lines:
+    def _policy(self, lines_m_s: Floats) -> Lines:
         """Lines in readings, what is read of true speeds, and the error at every node (N,)."""
         c = self.chain
         if c.estimate is None:
@@ -148,7 +145,7 @@ class SurfaceEvaluation:
         met = Met(memory.records, f.band, f.where, f.way_band)
         return value(policy, *self._shared(i), costs, memory.heading, memory.here, met, slopes, bends), slopes, bends
 
-    def _shared(self, i: int) -> tuple[SampledArrays, NDArray[np.float64], float]:
+    def _shared(self, i: int) -> tuple[SampledArrays, Floats, float]:
         """What both passes take of the chain, and of scenario `i`."""
         c = self.chain
         return sampled_arrays(c), c.scenarios.factor[i] * (1.0 + c.noise.levels), float(c.scenarios.extra_m_s2[i])

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.problem.aim import Aim
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces, moved_apart
 from synth.solver.any_time.surface_evaluation import SurfaceCost, SurfaceEvaluation
@@ -27,42 +26,40 @@ GAP_NODES = 13
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Terms:
     """What coefficients are multiplied by at all path nodes and modes of a chain: `of_stage` (N, modes of it, T)."""
 
-    stage: NDArray[np.int64]
-    lines: NDArray[np.int64]
-    of_stage: tuple[NDArray[np.float64], ...]
+    stage: Ints
+    lines: Ints
+    of_stage: tuple[Floats, ...]
 
-    def slopes(self, by_lines: NDArray[np.float64]) -> NDArray[np.float64]:
+    def slopes(self, by_lines: Floats) -> Floats:
         """Derivatives by the coefficients of every line (·, T) of those by line values (2, N, M)."""
         each = [(by_lines[side][:, self.stage == k], self.of_stage[k]) for k, side in self.lines]
         return np.array([np.einsum("nm,nmt->t", values, terms) for values, terms in each])
 
-    def bends(self, by_lines: NDArray[np.float64]) -> NDArray[np.float64]:
+    def bends(self, by_lines: Floats) -> Floats:
         """Second derivatives (·, T, T) of those by each line value alone (2, N, M)."""
         each = [(by_lines[side][:, self.stage == k], self.of_stage[k]) for k, side in self.lines]
         return np.array([np.einsum("nmt,nm,nmu->tu", terms, values, terms) for values, terms in each])
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Coordinates:
     """Coefficients of all lines as a point in which the Hessian at `start` is about the unit matrix times the cost."""
 
     start: PolynomialSurfaces
-    scale: NDArray[np.float64]
+    scale: Floats
 
-    def surfaces(self, y: NDArray[np.float64]) -> PolynomialSurfaces:
+    def surfaces(self, y: Floats) -> PolynomialSurfaces:
         """The surfaces at a point."""
         coefficients, at = np.array(self.start.coefficients), tuple(self.start.lines.T)
         coefficients[at] += np.einsum("lab,lb->la", self.scale, y.reshape(len(self.scale), -1))
         return replace(self.start, coefficients=coefficients)
 
-    def slopes(self, by_coefficient: NDArray[np.float64]) -> NDArray[np.float64]:
+    def slopes(self, by_coefficient: Floats) -> Floats:
         """Derivatives by the point of those by the coefficients of every line (·, T)."""
-        found: NDArray[np.float64] = np.einsum("lab,la->lb", self.scale, by_coefficient).ravel()
+        found: Floats = np.einsum("lab,la->lb", self.scale, by_coefficient).ravel()
         return found
 
 
@@ -111,13 +108,13 @@ def polish_surfaces(
     return found.ending(surfaces, cost)
 
 
-def whitening(terms: Terms, first: SurfaceCost) -> NDArray[np.float64]:
-    """Of each line the matrix (·, T, T) of `polish.whitening`, with the exact second derivatives by each line value."""
+def whitening(terms: Terms, first: SurfaceCost) -> Floats:
+    """Of each line the matrix (·, T, T) of `whitening`, with the exact second derivatives by each line value."""
     bends = terms.bends(np.maximum(first.bends, 0.0) / first.cost_m2_s2)
     squares = terms.bends(np.ones_like(first.bends))
     loose = squares / (squares[:, :1, :1] * LOOSE_M_S**2)
     lower = np.linalg.cholesky(bends + loose)
-    found: NDArray[np.float64] = np.linalg.inv(lower).transpose(0, 2, 1)
+    found: Floats = np.linalg.inv(lower).transpose(0, 2, 1)
     return found
 
 
@@ -127,7 +124,7 @@ def opened(surfaces: PolynomialSurfaces) -> PolynomialSurfaces:
     return moved_apart(surfaces, short) if short.any() else surfaces
 
 
-def least_gap(surfaces: PolynomialSurfaces) -> NDArray[np.float64]:
+def least_gap(surfaces: PolynomialSurfaces) -> Floats:
     """Smallest V_hi − V_lo of every stage over a fine path mesh and all pressures, (K + 1,); inf without a pair.
 
     A gap that is linear in the pressure is smallest at the lowest or at the highest.

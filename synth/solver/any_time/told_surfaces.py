@@ -5,12 +5,11 @@ As `told_lines`, for commands at any time: from the middle outward, each from it
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.problem.aim import Aim
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.any_time.sampled_chain import SampledChain
@@ -31,11 +30,10 @@ and 4 the rms of 52 t to 3 m/s is 7 % larger in the closed loop."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class ToldSurfaces:
     """`surfaces`[i] for cuts whose ξ_cut is `factor`[i], (M,), ascending."""
 
-    factor: NDArray[np.float64]
+    factor: Floats
     surfaces: tuple[PolynomialSurfaces, ...]
 
     def at(self, factor: float) -> PolynomialSurfaces:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.kernels.sweep.chain_arrays import PathNoise, TransientNoise
 from synth.problem.resolution import Resolution
@@ -27,7 +26,6 @@ NODE_AT_ENTRANCE_M = 1e-9
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Chain:
     """One plant on the grid of one resolution; everything but policy and aim.
 
@@ -45,13 +43,13 @@ class Chain:
     measurement: SpeedMeasurement
     grid: Grid
     actuator: Actuator
-    drive_m_s2: NDArray[np.float64]
-    brake_m_s2_per_kpa: NDArray[np.float64]
+    drive_m_s2: Floats
+    brake_m_s2_per_kpa: Floats
     landings: Landings
     path_noise: PathNoise
     transient_noise: TransientNoise
     scenarios: Scenarios
-    entry: NDArray[np.float64]
+    entry: Floats
     entry_mode: int
     other_days: tuple[tuple[float, Chain], ...] = ()
 
@@ -80,12 +78,7 @@ def check_chain(plant: Plant, resolution: Resolution, epochs: DecisionEpochs | N
     return chain_of(plant, resolution, scenarios, epochs).quantised()
 
 
-def chain_of(
-    plant: Plant,
-    resolution: Resolution,
-    scenarios: Scenarios,
-    epochs: DecisionEpochs | None = None,
-) -> Chain:
+def chain_of(plant: Plant, resolution: Resolution, scenarios: Scenarios, epochs: DecisionEpochs | None = None) -> Chain:
     """The plant on the grid of `resolution`, η as a correlated chain."""
     epochs = TimeSamples(plant.sensor) if epochs is None else epochs
     grid = epochs.grid(plant, resolution)

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Decisions:
     """R decisions on a path of N quanta, in the order of the path.
 
@@ -20,9 +16,9 @@ class Decisions:
     go whose gains a sweep compares. Commands are numbered: 2·d − 2 goes down, 2·d − 1 up by d stages.
     """
 
-    node: NDArray[np.int64]
-    place_m: NDArray[np.float64]
-    lead_m: NDArray[np.float64]
+    node: Ints
+    place_m: Floats
+    lead_m: Floats
     farthest: int
     swept: int
 
@@ -34,7 +30,7 @@ class Decisions:
     def __len__(self) -> int:
         return len(self.node)
 
-    def at_nodes(self, nodes: int) -> NDArray[np.int64]:
+    def at_nodes(self, nodes: int) -> Ints:
         """Number of the decision at each of the first `nodes` path nodes, R where there is none."""
         numbers = np.full(nodes, len(self.node))
         numbers[self.node] = np.arange(len(self.node))

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from plant_models import Plant
+from plant_models.frozen_arrays import Floats
 from plant_models.stage_regulator import RegulatorClock
 from synth.problem.resolution import Resolution
 
@@ -20,11 +18,11 @@ if TYPE_CHECKING:
 class Policy(Protocol):
     """What a regulator compares measured speeds with."""
 
-    def at_decisions(self, decisions: Decisions) -> NDArray[np.float64]:
+    def at_decisions(self, decisions: Decisions) -> Floats:
         """Its lines (C, R, K + 1), m/s, by command, decision and stage."""
         ...
 
-    def slopes(self, decisions: Decisions, by_command: NDArray[np.float64]) -> NDArray[np.float64]:
+    def slopes(self, decisions: Decisions, by_command: Floats) -> Floats:
         """Derivatives by what the policy consists of, from those by `at_decisions`, (I, C, R, K + 1)."""
         ...
 
@@ -59,7 +57,7 @@ class DecisionEpochs(Protocol):
         """Where decisions are taken."""
         ...
 
-    def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
+    def entry(self, plant: Plant, grid: Grid) -> Floats:
         """Probability (M + 1, E) that the first decision is at path node r with energy j."""
         ...
 

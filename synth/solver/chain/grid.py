@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import psutil
-from numpy.typing import NDArray
 
 from plant_models import Plant
 from plant_models.errors import require
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.problem.resolution import Resolution
 
 MARGIN_CELLS = 10
@@ -23,7 +21,6 @@ EVEN = 1e-9
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Grid:
     """Nodes of the state space.
 
@@ -32,18 +29,18 @@ class Grid:
     Sweeps count path in quanta of ΔS. Where the nodes are uneven, each quantum stands for the path between its nodes.
     """
 
-    path_m: NDArray[np.float64]
+    path_m: Floats
     path_step_m: float
-    energy_m2_s2: NDArray[np.float64]
-    speed_m_s: NDArray[np.float64]
+    energy_m2_s2: Floats
+    speed_m_s: Floats
 
     @property
-    def stretch(self) -> NDArray[np.float64] | float:
+    def stretch(self) -> Floats | float:
         """Width of every quantum over ΔS, (N,); 1 where all are alike."""
         widths = np.diff(self.path_m) / self.path_step_m
         return 1.0 if np.ptp(widths) < EVEN else widths
 
-    def counted_m(self, node: int, travel_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    def counted_m(self, node: int, travel_m: Floats) -> Floats:
         """Path from a node on, as sweeps count it; a stall, −1, stays one."""
         quanta = np.interp(self.path_m[node] + travel_m, self.path_m, np.arange(len(self.path_m))) - node
         return np.where(travel_m < 0.0, travel_m, quanta * self.path_step_m)

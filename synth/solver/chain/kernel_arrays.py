@@ -4,30 +4,30 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.kernels.sweep.chain_arrays import ChainArrays, Grid, Landings, Modes, Scenarios, Track
+from synth.kernels.sweep import chain_arrays as kernel
 from synth.kernels.sweep.pass_time import Times
 from synth.solver.chain.chain import Chain
 
 
-def chain_arrays(c: Chain, commands: int | None = None) -> ChainArrays:
+def chain_arrays(c: Chain, commands: int | None = None) -> kernel.ChainArrays:
     """All but policy, scenarios and aim; of so many commands, by default all."""
     a, commands = c.landings, c.decisions.commands if commands is None else commands
-    return ChainArrays(
-        Grid(c.grid.speed_m_s, c.grid.path_step_m, c.grid.energy_step_m2_s2),
-        Track(c.drive_m_s2, c.brake_m_s2_per_kpa),
-        Modes(c.actuator.mode_stage, c.actuator.mode_overpressure_kpa, c.entry_mode),
+    return kernel.ChainArrays(
+        kernel.Grid(c.grid.speed_m_s, c.grid.path_step_m, c.grid.energy_step_m2_s2),
+        kernel.Track(c.drive_m_s2, c.brake_m_s2_per_kpa),
+        kernel.Modes(c.actuator.mode_stage, c.actuator.mode_overpressure_kpa, c.entry_mode),
         c.path_noise,
         c.transient_noise,
-        Landings(a.change_chain[:commands], a.end_mode, a.ends, a.factors),
+        kernel.Landings(a.change_chain[:commands], a.end_mode, a.ends, a.factors),
         c.decisions.at_nodes(len(c.drive_m_s2)),
         c.epochs.hold_period_s,
         c.entry,
     )
 
 
-def scenario_arrays(c: Chain, chosen: slice = slice(None)) -> Scenarios:
+def scenario_arrays(c: Chain, chosen: slice = slice(None)) -> kernel.Scenarios:
     """The `chosen` scenarios."""
-    return Scenarios(c.scenarios.factor[chosen], c.scenarios.extra_m_s2[chosen])
+    return kernel.Scenarios(c.scenarios.factor[chosen], c.scenarios.extra_m_s2[chosen])
 
 
 def pass_times(c: Chain) -> Times:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.stage_regulator import Actuator
 from synth.kernels.sweep.landing import Ground, Transients, land
 from synth.kernels.vector.packs import EIGHT, SIXTEEN
@@ -25,7 +23,6 @@ FINE_CELLS_PER_QUANTUM = 4
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Landings:
     """End of every change of stage that may be commanded, from every decision, for friction `factors` (F,).
 
@@ -34,32 +31,27 @@ class Landings:
     up. `end_mode` of the transients.
     """
 
-    factors: NDArray[np.float64]
-    ends: NDArray[np.float64]
-    change_chain: NDArray[np.int64]
-    end_mode: NDArray[np.int64]
-    overpressure_kpa: NDArray[np.float64]
-    samples: NDArray[np.int64]
+    factors: Floats
+    ends: Floats
+    change_chain: Ints
+    end_mode: Ints
+    overpressure_kpa: Floats
+    samples: Ints
     points: int
 
     @property
-    def travel_m(self) -> NDArray[np.float64]:
+    def travel_m(self) -> Floats:
         """Path until the end of the transient, or to S_exit, as sweeps count it, (R, ·, F, E); −1 for a stall."""
         return self.ends[..., 0, : self.points]
 
     @property
-    def energy_m2_s2(self) -> NDArray[np.float64]:
+    def energy_m2_s2(self) -> Floats:
         """v²/2 at the end of the transient, (R, ·, F, E)."""
         return self.ends[..., 1, : self.points]
 
 
 def make_landings(
-    plant: Plant,
-    grid: Grid,
-    decisions: Decisions,
-    actuator: Actuator,
-    period_s: float,
-    factors: NDArray[np.float64],
+    plant: Plant, grid: Grid, decisions: Decisions, actuator: Actuator, period_s: float, factors: Floats
 ) -> Landings:
     """Integrate the motion through every change of stage (`land`), for friction `factors` (F,).
 
@@ -95,9 +87,7 @@ def make_landings(
     return Landings(factors, ends, change_chain, actuator.chain_mode[used], overpressure, samples, len(grid.speed_m_s))
 
 
-def shared_beginnings(
-    overpressure: NDArray[np.float64], steps: NDArray[np.int64], held: Sequence[float]
-) -> NDArray[np.int64]:
+def shared_beginnings(overpressure: Floats, steps: Ints, held: Sequence[float]) -> Ints:
     """The transients (C, 3) in an order to integrate them in: each, the earlier one it branches off from, where.
 
     Valves know nothing of the goal until the pressure is there: from one pressure all changes in one direction begin
@@ -118,12 +108,12 @@ def shared_beginnings(
     return np.array(found)
 
 
-def in_whole_packs(speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
+def in_whole_packs(speed_m_s: Floats) -> Floats:
     """The speeds, the last one repeated, so that whole packs may be read from any of them on (`kernels.packs`)."""
     return np.pad(speed_m_s, (0, EIGHT + -(len(speed_m_s) + EIGHT) % SIXTEEN), mode="edge")
 
 
-def friction_factors(plant: Plant) -> NDArray[np.float64]:
+def friction_factors(plant: Plant) -> Floats:
     """Factors ξ, at most `FACTOR_STEP` apart, that cover four standard deviations of ξ_cut and three of η."""
     cv, std = plant.friction_cv, plant.friction.path_std
     low = min(max(plant.friction.floor, 1.0 - 4.0 * cv) * max(1.0 - 3.0 * std, 0.0), 0.9)

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import PointSensors
-from plant_models.frozen_arrays import frozen_arrays
-
-Floats = NDArray[np.float64]
+from plant_models.frozen_arrays import Floats, frozen_arrays
 
 SHARE_OF_CELL = 0.4
 """Std of a cell of the speed grid, as part of its width, about what a probability that is put into cells forgets."""
@@ -20,7 +16,6 @@ SLOWEST_M_S = 1e-2
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PassageMeasurement:
     """Readings are ∫ dv/σ(v), so that every reading has std 1; σ: error of the sensor and width of a cell together.
 

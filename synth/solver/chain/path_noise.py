@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Friction
+from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.sweep.chain_arrays import PathNoise, TransientNoise
 
 
@@ -34,9 +34,7 @@ def correlated_noise(friction: Friction, quantum_m: float, levels: int) -> PathN
     return PathNoise(values, matrix / matrix.sum(axis=1, keepdims=True), stationary)
 
 
-def transient_noise(
-    chain: PathNoise, overpressure: NDArray[np.float64], periods: NDArray[np.int64], longest: int
-) -> TransientNoise:
+def transient_noise(chain: PathNoise, overpressure: Floats, periods: Ints, longest: int) -> TransientNoise:
     """Exact first and second moments of Σ g_t η_t along the chain, weights g_t following the brake force.
 
     `overpressure` (C, max(periods)·substeps): force profile over time, of which the first `periods` of each row
@@ -62,15 +60,15 @@ def transient_noise(
     return TransientNoise(zeroth, mean, np.sqrt(variance))
 
 
-def one_quantum_on(matrices: NDArray[np.float64], transition: NDArray[np.float64]) -> NDArray[np.float64]:
+def one_quantum_on(matrices: Floats, transition: Floats) -> Floats:
     """`matrices` @ `transition`, summed level by level: BLAS would round by its own kernel for the processor."""
-    total: NDArray[np.float64] = matrices[..., :, :1] * transition[0]
+    total: Floats = matrices[..., :, :1] * transition[0]
     for level in range(1, len(transition)):
         total = total + matrices[..., :, level : level + 1] * transition[level]
     return total
 
 
-def force_weights(overpressure: NDArray[np.float64], periods: NDArray[np.int64], longest: int) -> NDArray[np.float64]:
+def force_weights(overpressure: Floats, periods: Ints, longest: int) -> Floats:
     """g (C, R, R): share of the brake work done in quantum t = 0 … r of a transient of r + 1 quanta."""
     steps = overpressure.shape[1]
     used = np.rint(periods * (steps / periods.max())).astype(int)

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Scenarios:
     """Hidden constants of a pass: friction factor ξ_cut, added acceleration by w − E w, weights; shape (I,)."""
 
-    factor: NDArray[np.float64]
-    extra_m_s2: NDArray[np.float64]
-    weight: NDArray[np.float64]
+    factor: Floats
+    extra_m_s2: Floats
+    weight: Floats
 
 
 RARE, RARE_IN_A_CHECK = 0.1, 0.03
@@ -41,9 +37,7 @@ def check_scenarios(plant: Plant, friction_nodes: int, resistance_nodes: int) ->
     return paired(plant, *equally_spaced_normal(friction_nodes), resistance_nodes, RARE_IN_A_CHECK)
 
 
-def paired(
-    plant: Plant, z: NDArray[np.float64], z_weight: NDArray[np.float64], resistance_nodes: int, rare: float
-) -> Scenarios:
+def paired(plant: Plant, z: Floats, z_weight: Floats, resistance_nodes: int, rare: float) -> Scenarios:
     """Nodes `z` of the standard normal law of ξ_cut with their weights, each with those of w unless it is `rare`.
 
     The law of ξ_cut is kept; that of w but for the cuts whose friction is rare.
@@ -57,14 +51,14 @@ def paired(
     )
 
 
-def equally_spaced_normal(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def equally_spaced_normal(count: int) -> tuple[Floats, Floats]:
     """Nodes from −4 to 4 and trapezoidal weights of the standard normal law, (count,) each."""
     z = np.linspace(-4.0, 4.0, count)
     weight = np.exp(-0.5 * z**2)
     return z, weight / weight.sum()
 
 
-def resistance_scenarios(plant: Plant, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def resistance_scenarios(plant: Plant, count: int) -> tuple[Floats, Floats]:
     """(added acceleration of w − E w in m/s², probability) at Gauss nodes of the gamma law."""
     w, weight = plant.resistance.nodes(count)
     return -plant.cut.reduced_gravity_m_s2 * 1e-3 * (w - plant.resistance.mean_n_per_kn), weight

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, PlantError, PointSensors
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.point_sensors import Passage, deciding_passages
 from synth.problem.resolution import Resolution
 from synth.solver.chain.decisions import Decisions
@@ -46,7 +46,7 @@ class PlaceEpochs:
         """One: the clock's steps are short."""
         return 1
 
-    def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
+    def entry(self, plant: Plant, grid: Grid) -> Floats:
         """Entry speed by its law, all at the first place; the mean energy is kept."""
         count = 2000 if plant.entry.high_m_s > plant.entry.low_m_s else 1
         at_entrance = plant.entry.speed_m_s((np.arange(count) + 0.5) / count)
@@ -105,16 +105,16 @@ class SensorPassages(PlaceEpochs):
         node = nodes_of(place_m, grid.path_step_m, len(grid.path_m) - 1)
         return Decisions(node, place_m, np.full(len(node), 0.5 * self.clock.base_m), plant.top_stage, plant.top_stage)
 
-    def _places_m(self, plant: Plant) -> NDArray[np.float64]:
+    def _places_m(self, plant: Plant) -> Floats:
         """Path of the passages from the first on."""
         place_m = np.array([each.path_m for each in self.passages(plant)]) - plant.start_m
         rank = np.arange(len(place_m)) * APART_M
         apart = np.maximum.accumulate(place_m - rank) + rank
-        places: NDArray[np.float64] = np.minimum(apart, plant.exit_m - plant.start_m - APART_M - rank[::-1])
+        places: Floats = np.minimum(apart, plant.exit_m - plant.start_m - APART_M - rank[::-1])
         return places
 
 
-def nodes_of(place_m: NDArray[np.float64], step_m: float, steps: int) -> NDArray[np.int64]:
+def nodes_of(place_m: Floats, step_m: float, steps: int) -> Ints:
     """Nodes, `step_m` apart from 0 on, next to rising places; where two would share one, the later takes the next.
 
     None is the last of the path, node `steps`: there the cut has left. Those that would come there stay before it.

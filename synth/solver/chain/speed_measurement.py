@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from typing import Protocol, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import DopplerSensor
+from plant_models.frozen_arrays import Floats
 from plant_models.speed_sensor import measured_speed_std
-
-Floats = NDArray[np.float64]
 
 
 class SpeedMeasurement(Protocol):

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Plant
+from plant_models.frozen_arrays import Floats
 from synth.problem.resolution import Resolution
 from synth.solver.chain.decisions import Decisions
 from synth.solver.chain.grid import Grid, make_grid
@@ -48,7 +48,7 @@ class TimeSamples:
         node = np.arange(len(grid.path_m) - 1)
         return Decisions(node, node.astype(np.float64) * grid.path_step_m, np.zeros(len(node)), plant.top_stage, 1)
 
-    def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
+    def entry(self, plant: Plant, grid: Grid) -> Floats:
         """The first sample lies within a period of where the regulator acts."""
         return entry_distribution(plant, grid)
 
@@ -65,7 +65,7 @@ class TimeSamples:
         return quantised_measurement(self.clock)
 
 
-def entry_distribution(plant: Plant, grid: Grid) -> NDArray[np.float64]:
+def entry_distribution(plant: Plant, grid: Grid) -> Floats:
     """Entry speed by its law, sampling phase uniform: the first sample lies within v·T_c of where the regulator acts.
 
     With an approach, the speed there is that of a cut of mean resistance; the spread of the resistance moves it by less
@@ -90,7 +90,7 @@ def entry_distribution(plant: Plant, grid: Grid) -> NDArray[np.float64]:
     return entry
 
 
-def hat_integral(x: NDArray[np.float64]) -> NDArray[np.float64]:
+def hat_integral(x: Floats) -> Floats:
     """∫ from −1 to x of the hat function max(0, 1 − |t|)."""
     x = np.clip(x, -1.0, 1.0)
     return np.where(x < 0, 0.5 * (1 + x) ** 2, 1.0 - 0.5 * (1 - x) ** 2)

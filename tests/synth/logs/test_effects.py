@@ -21,7 +21,6 @@ from synth.logs.residual_tests import (
     wrong,
 )
 from synth.logs.unknowns import unknowns_of
-from synth.simulation import logged_passes
 from tests.effort import every
 from tests.synth.logs.other_laws import OtherLaws
 
@@ -44,7 +43,7 @@ def said(tests: dict[Effect, ResidualTest]) -> set[Effect]:
 
 
 def under(laws: OtherLaws, yard: Yard, monkeypatch: pytest.MonkeyPatch) -> FittingPasses:
-    monkeypatch.setattr(logged_passes, "rows_of_pass", laws.rows_of_pass)
+    monkeypatch.setattr("synth.simulation.logged_passes.rows_of_pass", laws.rows_of_pass)
     return yard.passes(TRUTHS[0], PASSES, SEED)
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from plant_models.frozen_arrays import Floats
 from synth.kernels.any_time.played_periods import joined_until
 from synth.kernels.compiling import part_inline
-from synth.kernels.loop.motion import MOVING, Cells, Floats, advance
+from synth.kernels.loop.motion import MOVING, Cells, advance
 from synth.kernels.loop.trace import note
 
 

@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from scripts.studies.any_time.kernels.rolled_period import roll_period
 from synth.kernels.any_time.any_time_law import AnyTimeLaw, wanted_stage
 from synth.kernels.any_time.driven_period import SampledDrive, play_period, wait_after_command
 from synth.kernels.compiling import kernel
-from synth.kernels.loop.lane_places import Floats, Ints
 from synth.kernels.loop.motion import LEFT, MOVING, Cells, Path, advance
 from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.regulator import Sensor, admitted, measure

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from scripts.studies.any_time.kernels.rolled_period import roll_period
 from scripts.studies.peers.kernels.observed_motion import KNOWN, observed
 from scripts.studies.peers.kernels.prediction import MeanPath, Prediction, stage_by_prediction
@@ -20,7 +21,6 @@ from synth.kernels.any_time.any_time_law import AnyTimeLaw, wanted_stage
 from synth.kernels.any_time.driven_period import SampledDrive, play_period
 from synth.kernels.compiling import kernel, part
 from synth.kernels.loop.drive import Drive
-from synth.kernels.loop.lane_places import Floats
 from synth.kernels.loop.motion import LEFT, MOVING, Cells, Path, advance
 from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.regulator import Sensor, admitted, measure

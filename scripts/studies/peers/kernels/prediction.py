@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from plant_models.frozen_arrays import Floats
 from synth.kernels.any_time.driven_period import SampledDrive, play_period
 from synth.kernels.compiling import part
-from synth.kernels.loop.lane_places import Floats
 from synth.kernels.loop.motion import MOVING, advance
 from synth.kernels.loop.regulator import admitted
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from plant_models.frozen_arrays import Floats
 from scripts.studies.peers.kernels.prediction import MeanPath, line_square
 from synth.kernels.compiling import part
-from synth.kernels.loop.lane_places import Floats
 
 INTEGRAL, CLOCK, LOW, SHARE, HIGH_FIRST = range(5)
 """Places of the state: integral of the error, m/s; time in the pulse period, s (negative: none has begun); the lower of

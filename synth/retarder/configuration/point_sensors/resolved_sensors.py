@@ -10,9 +10,8 @@ from plant_models import Plant, PlantError, PointSensors, every_axle, first_axle
 from plant_models.library import WHEEL_SENSORS, Library, SourcedValue, load_wheel_sensor
 from plant_models.point_sensors import Axles
 from synth.frame.settings.numbers import library_values, numbers_of
-from synth.retarder.configuration.plant_fault import in_file
+from synth.retarder.configuration.plant_fault import in_file, require_held
 from synth.retarder.configuration.point_sensors.settings import PointSensorSettings
-from synth.retarder.configuration.position_choice import require_held
 from synth.solver.chain.sensor_passages import with_point_sensors
 
 SECTION: Final = "sensors."

@@ -11,8 +11,8 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.picture.house_style import (
     BLUE,
     ENTRANCE_STYLE,
@@ -92,9 +92,7 @@ def draw_stage(axes: Axes, table: PassageTable, stage: int, traces: Sequence[Pas
     axes.set(xlim=(columns[0][0] - 0.2, table.retarder.exit_m), ylim=(low, high))
 
 
-def wanted_edges_m_s(
-    table: PassageTable, passage: int, stage: int, window_m_s: tuple[float, float]
-) -> NDArray[np.float64]:
+def wanted_edges_m_s(table: PassageTable, passage: int, stage: int, window_m_s: tuple[float, float]) -> Floats:
     """Speeds within the window between which each of the stages 0 … K is wanted, (K + 2,), as the rule has it."""
     row = table.switching_m_s[passage, stage].astype(float)
     if passage < table.before_entrance:

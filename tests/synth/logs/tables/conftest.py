@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import pytest
 
+from synth.frame.workers.engine import Teller
 from synth.logs.identified_config import with_numbers
 from synth.logs.retune.tuned_books import Case, class_setups, tuned_tables
 from synth.retarder.configuration.config_file import ConfigSource, source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.watcher import Teller
 from tests.corpus import Corpus
 from tuning_tables import ControllerTable
 
