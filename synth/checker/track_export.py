@@ -16,16 +16,16 @@ from synth.checker.table_reading import Table
 
 WORDS: Final = ("s_bits", "v_bits", "overpressure_bits", "estimate_bits")
 VALUES: Final = ("s_m", "v_m_s", "overpressure_kpa", "estimate_m_s", "unseen_samples", "alarms")
-HEAD: Final = ["track", "table", "id", *WORDS, *VALUES]
+TRACK_HEAD: Final = ["track", "table", "id", *WORDS, *VALUES]
 
 Sample = tuple[int, int, int, int, float, float]
 
 
-def differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iterator[tuple[str, str]]:
+def track_differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iterator[tuple[str, str]]:
     """(about, sentence) for each wrong track; `numbered`: whether `tables` have the order of the book."""
-    rows = rows_below(HEAD, content)
-    if any(len(row) != len(HEAD) for row in rows):
-        raise DamagedError(f"one of its rows has not {len(HEAD)} fields")
+    rows = rows_below(TRACK_HEAD, content)
+    if any(len(row) != len(TRACK_HEAD) for row in rows):
+        raise DamagedError(f"one of its rows has not {len(TRACK_HEAD)} fields")
     numbers = {table.id: number for number, table in enumerate(tables)}
     tracked = set()
     for (track, number, name), group in groupby(rows, lambda row: (row[0], row[1], row[2])):

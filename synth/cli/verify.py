@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from synth.frame.known_defects import Concerned, concerned
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.manner import Manner
-from synth.frame.terminal.printed_page import Exhibit
+from synth.frame.terminal.printed_page import Printed
 from synth.frame.terminal.printed_page import Verdict as Told
 from synth.frame.terminal.telling import INPUT_FAULT, LIMITS_MISSED, say
 
@@ -43,7 +43,7 @@ def verify_command(source: Path, passes: int, seed: int, output: Path | None, ma
     if output is not None:
         from synth.cli.printed_report import write_report
 
-        page: list[Exhibit] = [verdict_words(verdict, code), *told]
+        page: list[Printed] = [verdict_words(verdict, code), *told]
         write_report("verify", f"Check of {source.name}", page, source, output, steps(code))
     manner.give(lambda: document(verdict, defects, code), lambda: [*told, verdict_words(verdict, code)])
     return code

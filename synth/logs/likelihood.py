@@ -10,9 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.measured.drive_rows import Commands, drive_rows
 from synth.kernels.measured.pass_filter import BySpeed, Cuts, Rows, Spread, filter_passes
@@ -21,15 +20,11 @@ from synth.logs.fitting_passes import FittingPasses
 from synth.logs.pass_rows import PassRows, pass_rows
 from synth.logs.released_drive import OPEN_BAND_KPA
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 USUAL_KPA = 300.0
 """Where a force that is not straight in the pressure is that of the model."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Innovations:
     """k observations of m passes: `innovation`, `variance` (k,) and `pass_of` (k,).
 

@@ -10,9 +10,9 @@ import math
 
 import numpy as np
 
+from plant_models.frozen_arrays import Floats
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from plant_models.rolling.roll_track import RollTrack
-from synth.simulation.free_roll import Floats
 
 TABLE_M = 0.25
 """Distance of the table's places."""

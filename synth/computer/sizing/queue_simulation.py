@@ -30,7 +30,6 @@ CONFIDENCE = 0.95
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Requests:
     """Requests in the order in which they come: times in s, which stream, and the service that each needs, (n,)."""
 
@@ -40,7 +39,6 @@ class Requests:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Served:
     """What became of `requests`: when the service of each began, and when it was done, (n,)."""
 
