@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 from synth.frame.known_defects import Concerned, concerned
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.manner import Manner
-from synth.frame.terminal.printed_page import Printed
-from synth.frame.terminal.printed_page import Verdict as Told
+from synth.frame.terminal.printed_page import Printed, PrintedVerdict
 from synth.frame.terminal.telling import INPUT_FAULT, LIMITS_MISSED, say
 
 if TYPE_CHECKING:
@@ -177,9 +176,9 @@ def words(verdict: Verdict) -> list[str]:
     return [*lines, *(f"{finding.about}: {finding.kind.value}: {finding.sentence}" for finding in verdict.others)]
 
 
-def verdict_words(verdict: Verdict, code: int) -> Told:
+def verdict_words(verdict: Verdict, code: int) -> PrintedVerdict:
     """What it comes to."""
     found = state(verdict.findings) if verdict.findings else "nothing found"
     found += ", but made by a version with an unsafe defect" if code and not verdict.code else ""
     count = len(tables_of(verdict))
-    return Told(code == 0, f"{counted(count, 'table')}, {counted(len(verdict.files), 'file')}: {found}")
+    return PrintedVerdict(code == 0, f"{counted(count, 'table')}, {counted(len(verdict.files), 'file')}: {found}")
