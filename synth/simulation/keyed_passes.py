@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.rolling.keyed_numbers import Ints, keyed_uniform, keyed_words
+from plant_models.frozen_arrays import Ints
+from plant_models.rolling.keyed_numbers import keyed_uniform, keyed_words
 from plant_models.rolling.random_numbers import Purpose
 from synth.kernels.loop.normal_numbers import normal_rows
 from synth.simulation.random_passes import NOISE_SAMPLES, TOGETHER, RandomPasses
