@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.computer.sizing.demand_service import Discipline
-from synth.computer.sizing.service_law import Floats
 from synth.computer.sizing.task import Stream, require_not_overloaded
 from synth.frame.interval import Interval
 
