@@ -49,7 +49,7 @@ def unit_text(unit: Unit) -> str:
 
 def section_lines(block: Block) -> Iterator[str]:
     """The sections of a block."""
-    layout = partial(declared, depth=2)
+    layout = partial(scl_variable, depth=2)
     arrays = [each for each in block.constants if is_array(each)]
     constants = [each for each in block.constants if not is_array(each)]
     yield from section("    VAR_INPUT", block.inputs, layout, "    END_VAR")
