@@ -28,15 +28,13 @@ USUAL_KPA = 300.0
 class Innovations:
     """k observations of m passes: `innovation`, `variance` (k,) and `pass_of` (k,).
 
-    The first `readings` of them are of the sensor, at the rows `row_of`; then come `gauged` of the gauge; each row by
-    row. `cuts`: what is known of the cuts in the end; `pressure_kpa` (n,) by the numbers given.
+    The first `readings` of them are of the sensor; then come `gauged` of the gauge; each row by row. `cuts`: what is known of the cuts in the end; `pressure_kpa` (n,) by the numbers given.
     """
 
     innovation: Floats
     variance: Floats
     pass_of: Ints
     readings: int
-    row_of: Ints
     gauged: int
     cuts: Cuts
     pressure_kpa: Floats
@@ -135,7 +133,7 @@ class Likelihood:
             std = measured_speed_std(values[asked.NOISE], self.passes.plant.sensor.resolution_m_s)
             columns.append((self.rows.show_m_s[shown] - values[asked.BIAS], std**2 / counted, shown))
         joined = [np.concatenate(column) for column in zip(*columns, strict=True)]
-        return Innovations(joined[0], joined[1], joined[2], int(seen.sum()), np.flatnonzero(seen), gauged, cuts, kpa)
+        return Innovations(joined[0], joined[1], joined[2], int(seen.sum()), gauged, cuts, kpa)
 
 
 def likelihood_of(passes: FittingPasses, slope_key: str, settled: bool = False) -> Likelihood:
