@@ -28,7 +28,8 @@ USUAL_KPA = 300.0
 class Innovations:
     """k observations of m passes: `innovation`, `variance` (k,) and `pass_of` (k,).
 
-    The first `readings` of them are of the sensor; then come `gauged` of the gauge; each row by row. `cuts`: what is known of the cuts in the end; `pressure_kpa` (n,) by the numbers given.
+    The first `readings` of them are of the sensor; then come `gauged` of the gauge; each row by row. `cuts`: what is
+    known of the cuts in the end; `pressure_kpa` (n,) by the numbers given.
     """
 
     innovation: Floats
