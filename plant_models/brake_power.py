@@ -11,17 +11,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.cut import GRAVITY_M_S2, Car, Cut, couple
 from plant_models.errors import require
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.motion import path_breaks_m, path_coefficients
 from plant_models.retarder import RetarderPosition
 from plant_models.stage_regulator import resting_modes
 from plant_models.track_profile import TrackProfile
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 MASSES_T = (20.0, 100.0)
 """Masses of a car between which, and beyond, the work is linear: force laws are constant or linear in mass."""

@@ -8,9 +8,9 @@ from statistics import NormalDist
 from typing import ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats
 
 LEAST_INSIDE = 1e-3
 """A normal law must have this share of its cuts between its limits, else the limits say more than the law."""
@@ -47,7 +47,7 @@ class EntryLaw(Protocol):
         """The law in words."""
         ...
 
-    def speed_m_s(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    def speed_m_s(self, u: Floats) -> Floats:
         """Entry speeds: the inverse of the distribution function.
 
         Parameters
@@ -104,7 +104,7 @@ class EntrySpeed:
         """See `EntryLaw`."""
         return f"uniform from {self.low_m_s:g} to {self.high_m_s:g} m/s"
 
-    def speed_m_s(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    def speed_m_s(self, u: Floats) -> Floats:
         """Entry speed for uniform `u` in [0, 1)."""
         return self.low_m_s + (self.high_m_s - self.low_m_s) * u
 
@@ -171,7 +171,7 @@ class NormalEntrySpeed:
             f"{self.high_m_s:g} m/s"
         )
 
-    def speed_m_s(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    def speed_m_s(self, u: Floats) -> Floats:
         """See `EntryLaw`."""
         below, inside = self._shares()
         law = NormalDist(self.mean_m_s, self.std_m_s)
@@ -256,7 +256,7 @@ class HistogramEntrySpeed:
         """See `EntryLaw`."""
         return f"a histogram of {len(self.shares)} bins from {self.low_m_s:g} to {self.high_m_s:g} m/s"
 
-    def speed_m_s(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    def speed_m_s(self, u: Floats) -> Floats:
         """See `EntryLaw`."""
         filled = [i for i, share in enumerate(self.shares) if share > 0.0]
         share = np.array([self.shares[i] for i in filled]) / sum(self.shares)
@@ -264,7 +264,7 @@ class HistogramEntrySpeed:
         width = np.array([self.edges_m_s[i + 1] - self.edges_m_s[i] for i in filled])
         below = np.concatenate([[0.0], np.cumsum(share)[:-1]])
         place = np.searchsorted(below, u, side="right") - 1
-        speed: NDArray[np.float64] = low[place] + width[place] * np.minimum((u - below[place]) / share[place], 1.0)
+        speed: Floats = low[place] + width[place] * np.minimum((u - below[place]) / share[place], 1.0)
         return speed
 
     def stretched(self, low_m_s: float, high_m_s: float) -> EntryLaw:

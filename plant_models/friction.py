@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require_between
+from plant_models.frozen_arrays import Floats
 
 MOST_CV, MOST_MEAN_CV = 0.6, 0.3
 
@@ -79,7 +79,7 @@ class Friction:
         """Coefficient of variation of ξ_cut with N̄ = `mean_braked_axles`."""
         return math.sqrt(self.common_cv**2 + self.axle_cv**2 / max(mean_braked_axles, 1.0))
 
-    def cut_factor(self, z: NDArray[np.float64], cv: float) -> NDArray[np.float64]:
+    def cut_factor(self, z: Floats, cv: float) -> Floats:
         """The friction factor ξ_cut.
 
         Parameters
@@ -96,7 +96,7 @@ class Friction:
         """
         return np.maximum(self.floor, 1.0 + cv * z)
 
-    def path_cell_std(self, cell_m: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    def path_cell_std(self, cell_m: Floats | float) -> Floats:
         """Std of η as a constant per path cell of length `cell_m`.
 
         Chosen so that the work of η over many cells has the variance of the continuous process:
@@ -106,6 +106,6 @@ class Friction:
         x = np.asarray(cell_m, dtype=np.float64) / (2.0 * self.correlation_length_m)
         return self.path_std * np.sqrt(np.tanh(x) / x)
 
-    def path_correlation(self, distance_m: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    def path_correlation(self, distance_m: Floats | float) -> Floats:
         """Correlation of η over `distance_m`."""
         return np.exp(-np.asarray(distance_m, dtype=np.float64) / self.correlation_length_m)

@@ -8,19 +8,15 @@ a cut and a position is i and β, exactly averaged over path cells.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.cut import Cut
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.retarder import RetarderPosition
 from plant_models.track_profile import TrackProfile
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PathCoefficients:
     """What of a cut and a position acts on the motion, as means over n cells of the path of the first axle.
 
@@ -40,12 +36,12 @@ class PathCoefficients:
     See `path_coefficients`.
     """
 
-    edges_m: NDArray[np.float64]
-    gravity_m_s2: NDArray[np.float64]
-    brake_m_s2_per_kpa: NDArray[np.float64]
+    edges_m: Floats
+    gravity_m_s2: Floats
+    brake_m_s2_per_kpa: Floats
     resistance_m_s2_per_n_kn: float
 
-    def free_m_s2(self, resistance_n_per_kn: float) -> NDArray[np.float64]:
+    def free_m_s2(self, resistance_n_per_kn: float) -> Floats:
         """Acceleration of a cut with the brake released.
 
         Parameters
@@ -61,19 +57,17 @@ class PathCoefficients:
         return self.gravity_m_s2 - self.resistance_m_s2_per_n_kn * resistance_n_per_kn
 
 
-def braked_axles(position: RetarderPosition, cut: Cut, s_m: NDArray[np.float64]) -> NDArray[np.int64]:
+def braked_axles(position: RetarderPosition, cut: Cut, s_m: Floats) -> Ints:
     """N(s): wheel pairs inside any retarder of the position when the first axle stands at `s_m`."""
     axle = np.asarray(s_m)[..., None] - np.asarray(cut.axle_offsets_m)
     inside = np.zeros(axle.shape, dtype=bool)
     for start, end in position.zones_m:
         inside |= (axle >= start) & (axle < end)
-    count: NDArray[np.int64] = inside.sum(axis=-1)
+    count: Ints = inside.sum(axis=-1)
     return count
 
 
-def path_breaks_m(
-    position: RetarderPosition, cut: Cut, profile: TrackProfile, start_m: float = 0.0
-) -> NDArray[np.float64]:
+def path_breaks_m(position: RetarderPosition, cut: Cut, profile: TrackProfile, start_m: float = 0.0) -> Floats:
     """Sorted positions in [`start_m`, S_exit], both included, where N(s) or the grade under an axle changes."""
     offsets = np.asarray(cut.axle_offsets_m)
     marks = [edge for zone in position.zones_m for edge in zone] + list(profile.starts_m)
@@ -83,9 +77,7 @@ def path_breaks_m(
     return np.unique(np.concatenate([[start_m], np.round(inner, 9), [exit_m]]))
 
 
-def path_coefficients(
-    position: RetarderPosition, cut: Cut, profile: TrackProfile, edges_m: NDArray[np.float64]
-) -> PathCoefficients:
+def path_coefficients(position: RetarderPosition, cut: Cut, profile: TrackProfile, edges_m: Floats) -> PathCoefficients:
     """Reduce the motion of a cut through a position to means over cells of the path.
 
     Parameters
@@ -144,10 +136,8 @@ def mean_braked_axles(position: RetarderPosition, cut: Cut) -> float:
     return float((axles * length).sum() / length[axles > 0].sum())
 
 
-def cell_means(
-    fine_edges: NDArray[np.float64], values: NDArray[np.float64], edges: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def cell_means(fine_edges: Floats, values: Floats, edges: Floats) -> Floats:
     """Means over coarse cells of a function constant between `fine_edges` (a refinement of `edges`)."""
     integral = np.concatenate([[0.0], np.cumsum(values * np.diff(fine_edges))])
-    means: NDArray[np.float64] = np.diff(np.interp(edges, fine_edges, integral)) / np.diff(edges)
+    means: Floats = np.diff(np.interp(edges, fine_edges, integral)) / np.diff(edges)
     return means

@@ -7,9 +7,10 @@ deceleration, `motion.path_coefficients`; how the slope varies by chance, `frict
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import Floats
 
 
-def overpressure_kpa(pressure_kpa: NDArray[np.float64] | float, touch_kpa: float) -> NDArray[np.float64]:
+def overpressure_kpa(pressure_kpa: Floats | float, touch_kpa: float) -> Floats:
     """p = max(0, P − P0), kPa, of the same shape."""
     return np.maximum(0.0, np.asarray(pressure_kpa, dtype=np.float64) - touch_kpa)

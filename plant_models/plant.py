@@ -6,13 +6,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.approach import AT_THE_ENTRANCE, Approach
 from plant_models.cut import Cut
 from plant_models.entry_speed import EntryLaw
 from plant_models.errors import require
 from plant_models.friction import Friction
+from plant_models.frozen_arrays import Floats
 from plant_models.motion import mean_braked_axles, path_breaks_m, path_coefficients
 from plant_models.retarder import RetarderPosition
 from plant_models.rolling_resistance import RollingResistance
@@ -120,9 +120,7 @@ class Plant:
         """Highest stage that may be commanded while the first axle is before the entrance."""
         return min(self.top_stage, self.approach.entrance_stage)
 
-    def start_speed_m_s(
-        self, entrance_speed_m_s: NDArray[np.float64], resistance_n_per_kn: NDArray[np.float64] | float
-    ) -> NDArray[np.float64]:
+    def start_speed_m_s(self, entrance_speed_m_s: Floats, resistance_n_per_kn: Floats | float) -> Floats:
         """Speed where the regulator begins to act: nothing brakes between there and the entrance.
 
         Parameters
@@ -143,7 +141,7 @@ class Plant:
         gained = self._gained_m2_s2(resistance_n_per_kn)
         return np.sqrt(np.maximum(entrance_speed_m_s**2 - 2.0 * gained, SLOWEST_START_M_S**2))
 
-    def _gained_m2_s2(self, resistance_n_per_kn: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    def _gained_m2_s2(self, resistance_n_per_kn: Floats | float) -> Floats:
         """Kinetic energy per mass that a cut gains on the approach; negative where it is slowed down."""
         edges = path_breaks_m(self.position, self.cut, self.profile, self.start_m)
         edges = np.append(edges[edges < 0.0], 0.0)

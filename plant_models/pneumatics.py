@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import PlantError, require, require_between
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.pressure_regulator import connected, converted_kpa, flowed_kpa, flowing_time_s, mismatch_kpa, relay
 from plant_models.valve_drive import ValveDrive, wait_after_command
 
@@ -189,7 +188,6 @@ class Pneumatics:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PressureHistory:
     """Pressure after one command, as n pieces P∞ + (P_start − P∞)·exp(−(t − t_start)/T).
 
@@ -216,10 +214,10 @@ class PressureHistory:
     array([  0., 285.])
     """
 
-    starts_s: NDArray[np.float64]
-    pressures_kpa: NDArray[np.float64]
-    asymptotes_kpa: NDArray[np.float64]
-    time_constants_s: NDArray[np.float64]
+    starts_s: Floats
+    pressures_kpa: Floats
+    asymptotes_kpa: Floats
+    time_constants_s: Floats
 
     @property
     def duration_s(self) -> float:
@@ -231,7 +229,7 @@ class PressureHistory:
         """Pressure that is held in the end."""
         return float(self.pressures_kpa[-1])
 
-    def pressure_kpa(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
+    def pressure_kpa(self, t_s: Floats) -> Floats:
         """Pressure at some times.
 
         Parameters
@@ -249,7 +247,7 @@ class PressureHistory:
         asymptote = self.asymptotes_kpa[piece]
         return asymptote + (self.pressures_kpa[piece] - asymptote) * decay
 
-    def overpressure_integral(self, t_s: NDArray[np.float64], touch_kpa: float) -> NDArray[np.float64]:
+    def overpressure_integral(self, t_s: Floats, touch_kpa: float) -> Floats:
         """∫₀ᵗ max(0, P − touch) dt, in closed form piece by piece.
 
         Parameters
@@ -274,12 +272,10 @@ class PressureHistory:
         return total
 
 
-def exponential_overpressure(
-    x_s: NDArray[np.float64], start_kpa: float, asymptote_kpa: float, constant_s: float
-) -> NDArray[np.float64]:
+def exponential_overpressure(x_s: Floats, start_kpa: float, asymptote_kpa: float, constant_s: float) -> Floats:
     """∫₀ˣ max(0, a + (b − a)·e^(−t/T)) dt for b = `start_kpa`, a = `asymptote_kpa`, T = `constant_s`."""
 
-    def free(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def free(x: Floats) -> Floats:
         return asymptote_kpa * x - (start_kpa - asymptote_kpa) * constant_s * np.expm1(-x / constant_s)
 
     if start_kpa >= 0 and asymptote_kpa >= 0:

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.cut import Cut
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats
 
 MOST_SENSORS = 32
 SHORTEST_SECTION_M = 0.3
@@ -155,7 +155,7 @@ class PointSensors:
         """Std of a measured time, quantisation as an equivalent noise; 1 µs at least."""
         return max(math.hypot(self.timer_noise_s, self.timer_resolution_s / math.sqrt(12.0)), 1e-6)
 
-    def reading_std_m_s(self, speed_m_s: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    def reading_std_m_s(self, speed_m_s: Floats | float) -> Floats:
         """Standard deviation of a reading: v²·σ_t/base and v times the tolerance of the base, together.
 
         Parameters

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require_between
+from plant_models.frozen_arrays import Floats
 
 USUAL_NOISE_KPA = 2.0
 """Of a gauge that nobody has measured: 0.2 % of a range of 1000 kPa. ASSUMED, engineering judgement: a usual
@@ -29,7 +29,7 @@ class PressureGauge:
         require_between("gauge: noise_kpa", self.noise_kpa, 0.0, 100.0)
         require_between("gauge: resolution_kpa", self.resolution_kpa, 0.0, 100.0)
 
-    def reading_kpa(self, pressure_kpa: NDArray[np.float64], z: NDArray[np.float64]) -> NDArray[np.float64]:
+    def reading_kpa(self, pressure_kpa: Floats, z: Floats) -> Floats:
         """What it shows at `pressure_kpa`, with the standard normal numbers `z` of the same shape."""
         shown = pressure_kpa + self.noise_kpa * z
         if self.resolution_kpa > 0.0:

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require_between
+from plant_models.frozen_arrays import Floats
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class RollingResistance:
         """Gamma scale std²/mean, N/kN."""
         return self.std_n_per_kn**2 / self.mean_n_per_kn
 
-    def sample(self, rng: np.random.Generator, size: int) -> NDArray[np.float64]:
+    def sample(self, rng: np.random.Generator, size: int) -> Floats:
         """Independent draws.
 
         Parameters
@@ -76,7 +76,7 @@ class RollingResistance:
             return np.full(size, self.mean_n_per_kn)
         return rng.gamma(self.shape, self.scale_n_per_kn, size)
 
-    def nodes(self, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def nodes(self, count: int) -> tuple[Floats, Floats]:
         """Gauss quadrature of the gamma law.
 
         Parameters

@@ -10,20 +10,17 @@ dead band, a stage rests at P_k − ε when it is reached from below and at P_k 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.pads import overpressure_kpa
 from plant_models.pneumatics import PressureHistory
 from plant_models.retarder import RetarderPosition
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Actuator:
     """Modes and commands of a position for a cut that may use stages 0 … K.
 
@@ -34,13 +31,13 @@ class Actuator:
     counted from the sample at which the command was decided (computing delay and valve delay included).
     """
 
-    mode_stage: NDArray[np.int64]
-    mode_pressure_kpa: NDArray[np.float64]
-    mode_overpressure_kpa: NDArray[np.float64]
-    command: NDArray[np.int64]
-    chain_mode: NDArray[np.int64]
-    chain_samples: NDArray[np.int64]
-    chain_overpressure_kpa: NDArray[np.float64]
+    mode_stage: Ints
+    mode_pressure_kpa: Floats
+    mode_overpressure_kpa: Floats
+    command: Ints
+    chain_mode: Ints
+    chain_samples: Ints
+    chain_overpressure_kpa: Floats
     substeps: int
 
     @property

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class TrackProfile:
         """One grade everywhere."""
         return cls((0.0,), (grade_permille,))
 
-    def grade_permille(self, s_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    def grade_permille(self, s_m: Floats) -> Floats:
         """Grade at the positions `s_m`."""
         index = np.clip(np.searchsorted(self.starts_m, s_m, side="right") - 1, 0, None)
         return np.asarray(self.grades_permille)[index]

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 import pytest
 
 from synth.frame.terminal import printed_page
-from synth.frame.terminal.printed_page import Exhibit, Verdict
+from synth.frame.terminal.printed_page import Printed, PrintedVerdict
 from synth.frame.terminal.printed_table import PrintedTable
 
 WIDTHS = (60, 80, 100, 140)
@@ -17,7 +17,7 @@ WIDTHS = (60, 80, 100, 140)
 
 ABSENT = "–"
 
-Page = tuple[Exhibit, ...]
+Page = tuple[Printed, ...]
 LinesOf = Callable[[Page, int | None], Iterator[tuple[str, str]]]
 Read = list[dict[str, str]]
 """The rows of a table: cells by heading."""
@@ -65,7 +65,7 @@ def require_nothing_cut(page: Page, lines_of: LinesOf = printed_page.page_lines)
             if isinstance(exhibit, PrintedTable):
                 require_whole_table(exhibit, lines, width)
             else:
-                text = exhibit.sentence if isinstance(exhibit, Verdict) else exhibit
+                text = exhibit.sentence if isinstance(exhibit, PrintedVerdict) else exhibit
                 require_whole_words(text, lines, width or len(text) + 20)
 
 

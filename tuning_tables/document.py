@@ -8,10 +8,10 @@ A document has a head, the members that the class of its kind declares, and a ch
 
 from __future__ import annotations
 
-from typing import Final, TypeVar
+from typing import Final
 
 from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
-from tuning_tables.declared.json_form import read, written
+from tuning_tables.declared.json_form import _T, read, written
 from tuning_tables.declared.place import Place
 from tuning_tables.declared.texts import Text
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OtherKind, UnknownFormat
@@ -24,8 +24,6 @@ VERSION: Final = 1
 HEAD: Final = ("format", "version", "kind", "exported_by")
 EXPORTED_BY: Final = Text("program that wrote the file")
 LONGEST_REASON: Final = 400
-
-_T = TypeVar("_T")
 
 
 def to_document(table: AnyTable, exported_by: str = "") -> dict[str, object]:

@@ -21,30 +21,24 @@ h = T1 - T0 exceeds it by at most h^2/8 max d2V/dT2 <= h^2 / (12 sqrt(3) T0) = 0
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
 from itertools import pairwise
-from typing import Final
 
 import numpy as np
 
 from tuning_tables.active_table import ActiveTable, active, between
 from tuning_tables.book_categories import category_numbers, exported_number
-from tuning_tables.book_classes import tables_by_class
+from tuning_tables.book_classes import require_book, tables_by_class
 from tuning_tables.book_families import families_of
 from tuning_tables.errors import InvalidTable
 from tuning_tables.line_order import UNIT_ROUNDOFF
 from tuning_tables.programs import choose
-from tuning_tables.requirement import require_kind, require_tuple
 from tuning_tables.stage import Stage
 from tuning_tables.surface_order import NO_PRESSURE, range_above, reach_kpa, stage_gap, surface_bound
 from tuning_tables.table import ControllerTable
-
-LEAST_FLOAT32: Final = float(np.finfo(np.float32).smallest_normal)
-LARGEST_FLOAT32: Final = float(np.finfo(np.float32).max)
 
 
 class Status(IntEnum):
@@ -99,24 +93,7 @@ class TableBook:
     tables: tuple[ControllerTable, ...]
 
     def __post_init__(self) -> None:
-        require_tuple(self.tables, "tables")
-        if not self.tables:
-            raise InvalidTable("a book holds at least one table.")
-        for index, table in enumerate(self.tables):
-            require_kind(table, f"tables[{index}]", ControllerTable)
-        first, times = self.tables[0], Counter(table.id for table in self.tables)
-        for table in self.tables:
-            if position_of(table) != position_of(first):
-                raise InvalidTable(
-                    f"{table.id} is for the retarder {table.retarder.name}, {first.id} for {first.retarder.name}, "
-                    "or their zones, dead bands or clocks differ, but a book serves one position: export them apart."
-                )
-            if times[table.id] > 1:
-                raise InvalidTable(f"the id {table.id} is given to {times[table.id]} tables of the book.")
-            for key, value in (("cut.mass_t", table.cut.mass_t), ("target_speed_m_s", table.target_speed_m_s)):
-                if not LEAST_FLOAT32 <= value <= LARGEST_FLOAT32:
-                    raise InvalidTable(f"{key} of {table.id} is {value!r}, which float32 cannot hold.")
-        category_numbers(self.tables)
+        require_book(self.tables, ControllerTable, position_of, "zones, dead bands or clocks")
         for slower, faster in self.neighbours():
             require_order_between(slower, faster)
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.cut import Car
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.library.weight_category import WeightCategories, WeightCategory
-
-Floats = NDArray[np.float64]
 
 AXLES_OF_A_CATEGORY = 4
 """The limits of weight categories are masses of 4-axle cars; others are compared by axle load."""
@@ -49,7 +47,7 @@ class CarMix:
         require_between("car mix: underload_mean_t", self.underload_mean_t, 0.01, 100.0)
 
     @property
-    def axles(self) -> NDArray[np.int64]:
+    def axles(self) -> Ints:
         """Axles of each type."""
         return np.array([len(c.car.axle_offsets_m) for c in self.cars])
 
@@ -61,15 +59,13 @@ class CarMix:
         require(len(able) > 0, f"car mix: no car of it can be in the weight category {category.label}")
         return CarMix(able, self.following_share, self.underload_mean_t)
 
-    def types(self, u: Floats) -> NDArray[np.int64]:
+    def types(self, u: Floats) -> Ints:
         """The type of cars for uniform `u`."""
         shares = np.array([car.share for car in self.cars])
         bounds = np.cumsum(shares) / shares.sum()
         return np.minimum(np.searchsorted(bounds, u, side="right"), len(shares) - 1)
 
-    def masses_t(
-        self, categories: WeightCategories, category: WeightCategory, types: NDArray[np.int64], u: Floats
-    ) -> Floats:
+    def masses_t(self, categories: WeightCategories, category: WeightCategory, types: Ints, u: Floats) -> Floats:
         """Masses for uniform `u`: uniform within the category; in the heaviest, gross mass less an exponential
         under-load, cut off where the category ends ([kozachenko-aimed])."""
         limits = np.array([mass_limits_t(categories, category, c.car) for c in self.cars])

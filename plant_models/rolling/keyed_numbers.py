@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from plant_models.rolling.random_numbers import Purpose
 
-Ints = NDArray[np.int64]
 Words = NDArray[np.uint64]
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
@@ -33,7 +33,7 @@ def keyed_words(seed: int, purpose: Purpose, keys: tuple[Ints, ...], columns: in
     return mixed(state + GOLDEN * np.arange(1, columns + 1, dtype=np.uint64)[:, None])
 
 
-def keyed_uniform(seed: int, purpose: Purpose, keys: tuple[Ints, ...], columns: int) -> NDArray[np.float64]:
+def keyed_uniform(seed: int, purpose: Purpose, keys: tuple[Ints, ...], columns: int) -> Floats:
     """Uniform numbers of n cuts, (columns, n), strictly between 0 and 1; see `keyed_words`."""
     words = keyed_words(seed, purpose, keys, columns) >> np.uint64(12)
     return (words.astype(np.float64) + 0.5) * 2.0**-52

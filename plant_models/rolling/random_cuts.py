@@ -7,12 +7,11 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from plant_models.library.weight_category import WeightCategories, WeightCategory
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY, CarMix
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
@@ -20,13 +19,10 @@ from plant_models.rolling.resistance_law import ResistanceLaw
 from plant_models.rolling.roll_track import Bend
 from plant_models.rolling.weather import Weather
 
-Floats = NDArray[np.float64]
-
 MOST_CARS = 60
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class DrawnCuts:
     """n cuts of up to `cars` cars each; arrays of shape (n, cars), of cuts (n,), of bends (n, bends).
 
@@ -37,7 +33,7 @@ class DrawnCuts:
     """
 
     mix: CarMix
-    types: NDArray[np.int64]
+    types: Ints
     mass_t: Floats
     basic_n_per_kn: Floats
     head_wind_m_s: Floats
@@ -54,7 +50,7 @@ class DrawnCuts:
         return int(self.types.shape[1])
 
     @property
-    def cars_of_cut(self) -> NDArray[np.int64]:
+    def cars_of_cut(self) -> Ints:
         """Cars of each cut, (n,)."""
         return np.asarray(np.count_nonzero(self.mass_t, axis=1))
 
@@ -75,7 +71,7 @@ class DrawnCuts:
         found.setflags(write=False)
         return found
 
-    def resistance_at(self, law: ResistanceLaw, rows: NDArray[np.int64], speed_m_s: Floats) -> Floats:
+    def resistance_at(self, law: ResistanceLaw, rows: Ints, speed_m_s: Floats) -> Floats:
         """Resistance of the cuts `rows` on straight track of the hump slope at `speed_m_s`, air and wind included,
         N/kN."""
         against = speed_m_s + self.head_wind_m_s[rows]
@@ -115,7 +111,7 @@ class DrawnCuts:
         """From the coupler to the nearest axle, for each type of the mix."""
         return np.array([(c.car.length_m - c.car.axle_offsets_m[-1]) / 2.0 for c in self.mix.cars])
 
-    def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64] | slice) -> DrawnCuts:
+    def chosen(self, which: Bools | Ints | slice) -> DrawnCuts:
         """Some of these cuts."""
         arrays = {f.name: getattr(self, f.name)[which] for f in fields(self) if f.name != "mix"}
         return DrawnCuts(mix=self.mix, **arrays)
@@ -177,7 +173,7 @@ class CutPopulation:
         ).on_bends(self.law, self.bends)
 
 
-def air_n_per_kn(mix: CarMix, weather: Weather, types: NDArray[np.int64], mass_t: Floats) -> Floats:
+def air_n_per_kn(mix: CarMix, weather: Weather, types: Ints, mass_t: Floats) -> Floats:
     """Resistance of the air of cuts per (m/s)², (n,), from C_x1·S_1 + Σ C_xj·S_j: cars behind the first count by their
     following share, those of mass 0 not at all."""
     areas = np.where(mass_t > 0.0, np.array([c.drag_area_m2 for c in mix.cars])[types], 0.0)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from enum import IntEnum
 
 import numpy as np
-from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import Floats
 
 BLOCK = 1000
 """Cuts that share one random stream; fixed, because cut i must not depend on how many are asked for."""
@@ -38,7 +39,7 @@ class Purpose(IntEnum):
     LOST_READING = 25
 
 
-def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> NDArray[np.float64]:
+def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> Floats:
     """Numbers in (0, 1) of cuts `first` … `first + count − 1` of the endless row `seed`, shape (count, columns).
 
     Row i is the same whatever `first` and `count`, and its first columns whatever `columns`.

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gammaincinv, ndtri
 
 from plant_models.errors import require_between
+from plant_models.frozen_arrays import Floats
 from plant_models.rolling.roll_track import Bend
 from plant_models.rolling_resistance import RollingResistance
-
-Floats = NDArray[np.float64]
 
 LARGEST_ERLANG_ORDER = 50
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require, require_between
+from plant_models.frozen_arrays import Floats
 from plant_models.track_profile import TrackProfile
 
 LONGEST_TRACK_M = 10_000.0
@@ -73,7 +73,7 @@ class RollTrack:
         """Where the grade changes, and the end."""
         return (*self.profile.starts_m, self.end_m)
 
-    def fall_m(self, x_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    def fall_m(self, x_m: Floats) -> Floats:
         """How far the track has fallen from the crest to `x_m`; before the crest 0, after the end as far as there."""
         breaks = np.asarray(self.breaks_m)
         falls = np.concatenate(([0.0], np.cumsum(np.diff(breaks) * np.asarray(self.profile.grades_permille) * 1e-3)))

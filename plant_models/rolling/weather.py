@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require_between
+from plant_models.frozen_arrays import Floats
 
 AIR_NORM = 17.8
 """kgf/t · (273 + t) · t / (m² · (m/s)²): [hump-norm]; half the density of air, 353/(273 + t), over g gives 17.99."""
@@ -34,6 +34,6 @@ class Weather:
         """Resistance of the air to C_x·S = `drag_area_m2` at 1 m/s against it, times the mass in tonnes, N/kN · t."""
         return AIR_NORM * drag_area_m2 / (273.0 + self.temperature_c)
 
-    def head_winds_m_s(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
+    def head_winds_m_s(self, z: Floats) -> Floats:
         """Winds against cuts for standard normal `z`."""
         return np.asarray(self.head_wind_mean_m_s + self.head_wind_std_m_s * z)

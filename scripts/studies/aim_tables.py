@@ -46,11 +46,10 @@ class Row:
 
 @dataclass(frozen=True)
 class AimTables(Findings):
-    """All rows; `judged_on`: cuts that each figure is of."""
+    """All rows."""
 
     config_sha256: str
     seed: int
-    judged_on: int
     distances_m: tuple[float, ...]
     accepted: bool
     verdict: str
@@ -95,7 +94,6 @@ def run(options: Options, tell: Tell) -> AimTables:
     return AimTables(
         config_sha256=config.sha256,
         seed=config.simulation.seed,
-        judged_on=book.tables[0].speeds.order.report_cuts,
         distances_m=config.aim.free_distances_m,
         accepted=verdict.accepted,
         verdict=verdict.sentence,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from scripts.studies.cases import of_masses
 from scripts.studies.markdown_table import MarkdownTable, around, table
@@ -22,6 +22,9 @@ from synth.retarder.shown_case import ShownCase, shown_case
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
 from synth.simulation.replicates import Interval
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SHOWN: Final = 52.0, 3.0
 """Mass in t and exit speed in m/s of the case that is drawn."""
@@ -182,3 +185,10 @@ def changed(name: str, found: Outcome) -> Changed:
 
 
 METHOD = Method(Options, Options(masses_t=(52.0,)), Results, run)
+
+
+def figures(found: Results) -> Mapping[str, Figure]:
+    """The case that is shown, where the book has it."""
+    from synth.retarder.pictures.case_picture import case_picture
+
+    return {} if found.shown is None else {"case": case_picture(found.shown)}

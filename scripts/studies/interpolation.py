@@ -59,7 +59,6 @@ class Row:
     between: bool
     tuned_rms_m_s: float
     book_rms_m_s: float
-    tuned_bias_m_s: float
     book_bias_m_s: float
     excess_m2_s2: float
     excess_ci95_m2_s2: Interval
@@ -164,7 +163,7 @@ def compared(label: str, plant: Plant, tables: list[ControllerTable], parts: int
         rows.append(
             Row(
                 label, target, choice.status is Status.BETWEEN, rms_of(error, weight)[0], rms_of(between, weight)[0],
-                mean_of(error, weight).value, mean_of(between, weight).value, excess.value, excess.ci95,
+                mean_of(between, weight).value, excess.value, excess.ci95,
             )
         )  # fmt: skip
     return rows

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.simulation.replicates import Interval, half_width, rms_of, share_of
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def near_ratio(sample: ExitSample, reference: ExitSample, target_m_s: float) -> 
     return math.exp(a - b), (math.exp(a - b - half), math.exp(a - b + half))
 
 
-def log_rms_near(error: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+def log_rms_near(error: Floats, weight: Floats) -> tuple[float, Floats]:
     """(logarithm of the rms of the passes near the target, what each pass adds to it to first order, in all 0)."""
     near = weight * (np.abs(error) <= NEAR_M_S)
     square, total = near * error**2, float(weight.sum())

@@ -33,7 +33,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         16.0,
         "reference/results.md",
         "scripts.studies.book",
-        "scripts.studies.book_picture",
+        "scripts.studies.book",
     ),
     Study(
         "command-times",
@@ -198,7 +198,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         20.0,
         "explanation/structure.md",
         "scripts.studies.structure.study",
-        "scripts.studies.structure.picture",
+        "scripts.studies.structure.study",
     ),
     Study(
         "switching-price",
@@ -213,7 +213,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         51.0,
         "explanation/choices.md#time",
         "scripts.studies.time_price.study",
-        "scripts.studies.time_price.picture",
+        "scripts.studies.time_price.study",
     ),
     Study(
         "verification",

@@ -11,13 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import Bools, Floats
 from synth.kernels.loop.passes import LONGEST_PASS_S
 from synth.simulation.random_passes import RandomPasses
-
-Floats = NDArray[np.float64]
 
 SensorFault = Callable[[RandomPasses, Plant, Floats], RandomPasses]
 """(passes, plant, time that each pass takes without the fault, s) → the same passes with the fault."""
@@ -86,7 +84,7 @@ def reading_times_s(passes: RandomPasses, plant: Plant) -> Floats:
     return np.asarray((passes.phase_u[:, None] + np.arange(count)) * plant.sensor.sample_period_s)
 
 
-def without_readings(passes: RandomPasses, missing: NDArray[np.bool_]) -> RandomPasses:
+def without_readings(passes: RandomPasses, missing: Bools) -> RandomPasses:
     """`passes` with NaN where a reading is `missing`, of the shape of `passes.noise_z`."""
     return replace(passes, noise_z=np.where(missing, np.float32(np.nan), passes.noise_z).astype(np.float32))
 

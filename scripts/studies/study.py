@@ -67,8 +67,7 @@ class Method(Generic[_Options, _Findings]):
 class Study:
     """Name, the question that it answers (one sentence), seconds on two cores, page of docs/, module.
 
-    `pictures`: the module whose `figures` draws the findings, '' where nothing is drawn. It knows the findings, and
-    they do not know it.
+    `pictures`: the module whose `figures` draws the findings, '' where nothing is drawn; what draws is loaded then.
     """
 
     name: str

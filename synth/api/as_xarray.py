@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.api.passes import Simulated
 from synth.frame.input_error import InputError
 from synth.logs.fitting_passes import FittingPasses
@@ -177,7 +178,7 @@ def aim_variables(table: AimTable) -> Iterator[tuple[str, Variable]]:
             yield column.name, (column.axes[1:] or axes[: values.ndim], values, attributes)
 
 
-def by_sample(log: PassLog, values: NDArray[Any]) -> NDArray[np.float64]:
+def by_sample(log: PassLog, values: NDArray[Any]) -> Floats:
     """One entry a row as (passes, samples), NaN behind the last row of a pass."""
     counts = np.diff(log.first_row)
     wide = np.full((len(log), int(counts.max(initial=0))), np.nan)

@@ -9,7 +9,7 @@ from typing import Any, Final, NoReturn
 
 from synth.checker.finding import DamagedError, shown
 
-LARGEST_BYTES: Final = 4 * 1024 * 1024
+LARGEST_JSON_BYTES: Final = 4 * 1024 * 1024
 POLYNOMIAL: Final = 0xEDB88320
 """04C11DB7 with its bits reversed: the reflected form."""
 CHECK_VALUE: Final = 0xCBF43926
@@ -17,7 +17,7 @@ CHECK_VALUE: Final = 0xCBF43926
 ESCAPES: Final = {'"': '\\"', "\\": "\\\\", "\b": "\\b", "\t": "\\t", "\n": "\\n", "\f": "\\f", "\r": "\\r"}
 
 
-def parse_json(content: bytes, largest_bytes: int = LARGEST_BYTES) -> Any:
+def parse_json(content: bytes, largest_bytes: int = LARGEST_JSON_BYTES) -> Any:
     """The JSON value in `content`: UTF-8, no key twice in an object, finite numbers; `DamagedError` otherwise."""
     if len(content) > largest_bytes:
         raise DamagedError(f"it has {len(content)} bytes, but at most {largest_bytes} are allowed")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from synth.checker.book_layout import SWITCHING, with_infinities
@@ -12,6 +12,8 @@ from synth.checker.canonical import canonical_form, crc32
 from synth.checker.finding import DamagedError, shown
 
 Rows = dict[tuple[str, str], tuple[str, ...]]
+Same = Callable[[str, tuple[str, ...], list[Any]], bool]
+"""Whether the cells of a row, of a kind of record, hold values."""
 
 
 def read_rows(content: bytes) -> Rows:
@@ -38,18 +40,23 @@ def read_rows(content: bytes) -> Rows:
     return found
 
 
-def differences(rows: Rows, document: Mapping[str, Any]) -> Iterator[str]:
+def sheet_differences(rows: Rows, document: Mapping[str, Any]) -> Iterator[str]:
     """Each row that is not what the document of a table, less its checksum, says."""
     told = with_exporter(document, rows)
     wanted = dict(rows_of(told, ""))
     wanted["text", "crc32"] = [checksum_of(told)]
+    yield from row_differences(rows, wanted, same)
+
+
+def row_differences(rows: Rows, wanted: Mapping[tuple[str, str], list[Any]], is_same: Same) -> Iterator[str]:
+    """Each row that is not what is `wanted`."""
     for key in sorted(wanted.keys() | rows.keys()):
         name = ",".join(key)
         if key not in rows:
             yield f"the row {name} is missing"
         elif key not in wanted:
             yield f"the row {name} is in no table"
-        elif not same(key[0], rows[key], wanted[key]):
+        elif not is_same(key[0], rows[key], wanted[key]):
             yield f"the row {name} holds {shown(rows[key])}, but the table says {shown(wanted[key])}"
 
 

@@ -9,23 +9,26 @@ from functools import partial
 from pathlib import Path
 from typing import Final, TypeAlias, TypeVar
 
-from synth.checker import code_export, csv_export, golden_export, line_numbers, track_export
-from synth.checker.aim import csv_export as aim_csv_export
-from synth.checker.aim import numbers as aim_numbers
+from synth.checker.aim.csv_export import aim_differences, aim_sheet_differences
+from synth.checker.aim.numbers import due_of_aims
 from synth.checker.aim.reading import Aim
 from synth.checker.book_categories import without_number
 from synth.checker.category_constants import ascii_comment
-from synth.checker.code_export import Due
+from synth.checker.code_export import Due, c_differences, st_differences
 from synth.checker.code_file import AIMS, FOLDERS, LINES, PASSAGES, CodeFile, CodeKind, code_files
+from synth.checker.csv_export import read_rows, sheet_differences
 from synth.checker.export_check import Check, Differences, findings_of
 from synth.checker.finding import DamagedError, Finding, Kind
-from synth.checker.passages import golden_stages
-from synth.checker.passages import numbers as passage_numbers
+from synth.checker.golden_export import vector_differences
+from synth.checker.line_numbers import due_of_lines
+from synth.checker.passages.golden_stages import stage_differences
+from synth.checker.passages.numbers import due_of_passages
 from synth.checker.passages.reading import PassageTable
 from synth.checker.plc_text import structured_text
 from synth.checker.source import Source, named
 from synth.checker.source_file import content_of, text_of
 from synth.checker.table_reading import Table
+from synth.checker.track_export import track_differences
 
 PLACE: Final = re.compile(r"[/(]\*\s+(\d{1,6}): ([^*]*?) \*[/)]")
 """How all forms name a table: its number in the export, and its id in ASCII, perhaps on several lines."""
@@ -77,28 +80,28 @@ def code_differences(code: CodeFile, source: Source) -> Differences:
     if code.path.suffix == ".c":
         text = text_of(code.path)
         header = text_of(code.path.with_suffix(".h"))
-        yield from code_export.c_differences(text, header, code.word, code.kind, due(code.kind, source, text))
+        yield from c_differences(text, header, code.word, code.kind, due(code.kind, source, text))
         return
     text = "\n".join(structured_text(file) for file in code.files())
-    yield from code_export.st_differences(text, code.word, code.kind, due(code.kind, source, text))
+    yield from st_differences(text, code.word, code.kind, due(code.kind, source, text))
 
 
 def due(kind: CodeKind, source: Source, text: str) -> Due:
     """What code of a kind must hold of the tables that are there, if it is a `text` with such comments."""
     if kind is AIMS:
-        return aim_numbers.due(as_told(source.aims, text))
+        return due_of_aims(as_told(source.aims, text))
     if kind is PASSAGES:
-        return passage_numbers.due(in_order(source.passages, source, text))
-    return line_numbers.due(in_order(source.tables, source, text))
+        return due_of_passages(in_order(source.passages, source, text))
+    return due_of_lines(in_order(source.tables, source, text))
 
 
 def golden_check(file: Path, source: Source, kinds: Sequence[CodeKind]) -> Callable[[], Differences] | None:
     """How the answers beside code are compared, by the name of their file; None for those of other kinds."""
     checks: Mapping[str, tuple[CodeKind, Callable[[], Differences]]] = {
-        "golden_vectors": (LINES, partial(golden_differences, file, source)),
-        "golden_tracks": (LINES, partial(track_differences, file, source)),
-        "golden_aims": (AIMS, partial(golden_aim_differences, file, source)),
-        "golden_stages": (PASSAGES, partial(golden_stage_differences, file, source)),
+        "golden_vectors": (LINES, lambda: golden_differences(file, source)),
+        "golden_tracks": (LINES, lambda: track_differences(content_of(file), source.tables, source.has_book)),
+        "golden_aims": (AIMS, lambda: aim_differences(content_of(file), source.aims)),
+        "golden_stages": (PASSAGES, lambda: stage_differences(content_of(file), source.passages)),
     }
     for ending, (kind, compare) in checks.items():
         if file.stem.endswith(ending) and kind in kinds:
@@ -112,22 +115,7 @@ def golden_differences(file: Path, source: Source) -> Differences:
     text = content.decode("utf-8", "replace")
     rows = dict.fromkeys(re.findall(r'^(\d{1,6}),"?([^",]*)"?,', text, re.MULTILINE))
     order = "".join(f"/* {number}: {ascii_comment(name)} */" for number, name in rows)
-    yield from golden_export.differences(content, in_order(source.tables, source, order))
-
-
-def track_differences(file: Path, source: Source) -> Differences:
-    """The golden tracks in `file`."""
-    yield from track_export.differences(content_of(file), source.tables, source.has_book)
-
-
-def golden_aim_differences(file: Path, source: Source) -> Differences:
-    """The golden aims in `file`."""
-    yield from aim_csv_export.golden_differences(content_of(file), source.aims)
-
-
-def golden_stage_differences(file: Path, source: Source) -> Differences:
-    """The golden stages in `file`."""
-    yield from golden_stages.differences(content_of(file), source.passages)
+    yield from vector_differences(content, in_order(source.tables, source, order))
 
 
 def check_sheets(source: Source, folder: Path, check: Check) -> list[Finding]:
@@ -154,18 +142,14 @@ def is_aim_csv(file: Path) -> bool:
 
 def csv_differences(file: Path, tables: Mapping[str, AnyTable], seen: set[str]) -> Differences:
     """The CSV table in `file`, whose id is added to `seen`."""
-    rows = csv_export.read_rows(content_of(file))
+    rows = read_rows(content_of(file))
     name = (rows.get(("text", "id")) or ("",))[0]
     table = tables.get(name)
     if table is None:
         yield "", f"it is of the table {name!r}, which no other file holds"
         return
     seen.add(name)
-    found = (
-        aim_csv_export.differences(rows, table)
-        if isinstance(table, Aim)
-        else csv_export.differences(rows, table.document)
-    )
+    found = aim_sheet_differences(rows, table) if isinstance(table, Aim) else sheet_differences(rows, table.document)
     yield from ((name, sentence) for sentence in found)
 
 

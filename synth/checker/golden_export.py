@@ -12,15 +12,15 @@ from synth.checker.float32 import decide, from_bits, rises
 from synth.checker.source_file import rows_below
 from synth.checker.table_reading import Table
 
-HEAD: Final = ["table", "id", "stage", "s_m_bits", "v_m_s_bits", "answer", "s_m", "v_m_s"]
-HEAD_WITH_GAUGE: Final = [*HEAD[:5], "pressure_kpa_bits", *HEAD[5:], "pressure_kpa"]
+VECTOR_HEAD: Final = ["table", "id", "stage", "s_m_bits", "v_m_s_bits", "answer", "s_m", "v_m_s"]
+VECTOR_HEAD_WITH_GAUGE: Final = [*VECTOR_HEAD[:5], "pressure_kpa_bits", *VECTOR_HEAD[5:], "pressure_kpa"]
 """Where a table has slopes."""
 
 
-def differences(content: bytes, tables: Sequence[Table]) -> Iterator[tuple[str, str]]:
+def vector_differences(content: bytes, tables: Sequence[Table]) -> Iterator[tuple[str, str]]:
     """(about, sentence) for tables with wrong vectors, the first of each; `tables` in the order of the book."""
     has_gauge = any(table.has_gauge for table in tables)
-    head = HEAD_WITH_GAUGE if has_gauge else HEAD
+    head = VECTOR_HEAD_WITH_GAUGE if has_gauge else VECTOR_HEAD
     rows = rows_below(head, content)
     seen: set[int] = set()
     wrong: set[int] = set()

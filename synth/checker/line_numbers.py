@@ -14,7 +14,7 @@ OF_LINES: Final = ("targetms", "coefficient", "slope")
 """In these two tables of one family may differ."""
 
 
-def due(tables: Sequence[Table]) -> Due:
+def due_of_lines(tables: Sequence[Table]) -> Due:
     """What an export of these tables must hold, in their order."""
     categories = {table.category: table.category_number or 0 for table in tables}
     return Due([table.id for table in tables], held_of(tables), categories)

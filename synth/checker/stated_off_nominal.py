@@ -32,7 +32,7 @@ NOT_POSSIBLE: Final[Mapping[str, Any]] = {
     **dict.fromkeys(("change", "rms_m_s", "ratio", "overspeed", "stalled"), OrNull(TEXT)),
     "impossible": TEXT,
 }
-FIGURES: Final = ("rms_m_s", "ratio", "overspeed", "stalled")
+CONDITION_FIGURES: Final = ("rms_m_s", "ratio", "overspeed", "stalled")
 SHARES: Final = ("overspeed", "stalled")
 
 
@@ -60,7 +60,7 @@ def condition_fault(row: Any, validated: Any) -> str | None:
         return str(error)
     if impossible:
         return None
-    for name, of in ((name, row[name]) for name in FIGURES if row[name] is not None):
+    for name, of in ((name, row[name]) for name in CONDITION_FIGURES if row[name] is not None):
         if not 0.0 <= of["low95"] <= of["value"] <= of["high95"]:
             return f"{name} is {shown(of['value'])}, which is outside its interval {shown([of['low95'], of['high95']])}"
         if of["n"] < 1 or not isinstance(validated, int) or of["n"] > validated:

@@ -16,16 +16,16 @@ from synth.checker.table_reading import Table
 
 READINGS: Final = ("s_m", "v_m_s", "overpressure_kpa", "estimate_m_s")
 WORDS: Final = tuple(f"{name}_bits" for name in READINGS)
-HEAD: Final = ["track", "table", "id", *WORDS, "unseen_samples", "alarms", *READINGS]
+TRACK_HEAD: Final = ["track", "table", "id", *WORDS, "unseen_samples", "alarms", *READINGS]
 
 Sample = tuple[int, int, int, int, float, float]
 
 
-def differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iterator[tuple[str, str]]:
+def track_differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iterator[tuple[str, str]]:
     """(about, sentence) for each wrong track; `numbered`: whether `tables` have the order of the book."""
-    rows = rows_below(HEAD, content)
-    if any(len(row) != len(HEAD) for row in rows):
-        raise DamagedError(f"one of its rows has not {len(HEAD)} fields")
+    rows = rows_below(TRACK_HEAD, content)
+    if any(len(row) != len(TRACK_HEAD) for row in rows):
+        raise DamagedError(f"one of its rows has not {len(TRACK_HEAD)} fields")
     numbers = {table.id: number for number, table in enumerate(tables)}
     tracked = set()
     for (track, number, name), group in groupby(rows, lambda row: (row[0], row[1], row[2])):

@@ -9,13 +9,23 @@ from typing import Annotated
 import typer
 
 from synth.cli import hump_commands, sweep_commands
-from synth.cli.arguments import ExportSource, PageFolder, SourceOrDirectory
 from synth.cli.guide import TOP
 from synth.cli.init_commands import add_init_command
 from synth.cli.listed import COMMANDS
 from synth.frame.arguments import directory, in_its_manner, whole_number
 from synth.frame.command_line import add_listed, listed_group
 from synth.frame.terminal.manner import Manner
+
+SourceOrDirectory = Annotated[
+    Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or what a tune left.")
+]
+PageFolder = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Also write a page there, report.html."),
+]
+ExportSource = Annotated[
+    Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or a folder of tables.")
+]
 
 app = typer.Typer(
     name="retarder-synth",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.frame.printed_numbers import ranges
 from synth.frame.terminal.manner import Manner
-from synth.frame.terminal.printed_page import Exhibit
+from synth.frame.terminal.printed_page import Printed
 from synth.frame.terminal.telling import OK
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def check_command(source: Path, manner: Manner) -> int:
     def document() -> Any:
         return plain({"path": str(source), **figures_of(found), **tables_of(found), "ignored": read.ignored})
 
-    def page() -> Iterator[Exhibit]:
+    def page() -> Iterator[Printed]:
         yield from brief_exhibits(found, "--json")
         yield from (f"warning: {each.sentence}" for each in checked.warnings)
         if read.ignored:

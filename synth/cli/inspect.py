@@ -22,7 +22,7 @@ from synth.frame.exhibits import Column, Table
 from synth.frame.known_defects import Concerned, concerned
 from synth.frame.printed_numbers import counted, decimals
 from synth.frame.terminal.manner import Manner
-from synth.frame.terminal.printed_page import Exhibit
+from synth.frame.terminal.printed_page import Printed
 from synth.frame.terminal.printed_table import IN_JSON, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.frame.terminal.telling import OK
@@ -92,7 +92,7 @@ class Inspected:
         found |= {"known_defects": [each.document for each in self.defects]}
         return found | ({"summary": self.summary} if self.summary else {})
 
-    def page(self) -> Iterator[Exhibit]:
+    def page(self) -> Iterator[Printed]:
         """It in words."""
         tables, mixed = self.tables, is_mixed(self.tables.lines)
         for file in tables.files:
@@ -139,9 +139,9 @@ def file_document(file: TableFile) -> dict[str, Any]:
     return {"path": str(file.path), "kind": file.kind, "checksum": "right", "tables": tables}
 
 
-def table_page(table: ControllerTable, says_none: bool) -> list[Exhibit]:
+def table_page(table: ControllerTable, says_none: bool) -> list[Printed]:
     """A table in words, a line a fact, and its lines; `says_none`: one fact about a missing estimator too."""
-    words: list[Exhibit] = [
+    words: list[Printed] = [
         *table_words(table),
         f"    lines      degree {table.degree}, path {table.valid.s_m[0]:g} to {table.valid.s_m[1]:g} m, "
         f"speed {table.valid.v_m_s[0]:g} to {table.valid.v_m_s[1]:g} m/s",

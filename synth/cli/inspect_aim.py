@@ -9,7 +9,7 @@ import numpy as np
 from synth.cli.inspect_table import told_document
 from synth.frame.exhibits import Column, Row, Table
 from synth.frame.printed_numbers import counted, decimals
-from synth.frame.terminal.printed_page import Exhibit
+from synth.frame.terminal.printed_page import Printed
 from synth.frame.terminal.printed_table import IN_JSON, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.retarder.forms.table_file import AimFile
@@ -24,7 +24,7 @@ def aim_document(file: AimFile) -> dict[str, Any]:
     return {"path": str(file.path), "kind": "aim table", "checksum": "right", "tables": [document]}
 
 
-def aim_page(file: AimFile) -> list[Exhibit]:
+def aim_page(file: AimFile) -> list[Printed]:
     """An aim table in words, a line a fact, and some of its exit speeds."""
     table = file.table
     required, (low, high) = table.required, table.bounds_m_s

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from synth.frame.results_directory import ResultsDirectory
-    from synth.frame.terminal.printed_page import Exhibit
+    from synth.frame.terminal.printed_page import Printed
     from synth.retarder.forms.tables_at import TablesAt
 
 
@@ -38,7 +38,7 @@ class Drawn:
         """The same for programs."""
         return {"pictures": list(self.files)}
 
-    def page(self) -> Iterator[Exhibit]:
+    def page(self) -> Iterator[Printed]:
         """The same in words."""
         yield f"{counted(len(self.files), 'picture')} and report.html in {self.output}"
 
@@ -52,7 +52,7 @@ def asked_drawing(output: Path | None, config: Path | None) -> AskedDrawing | No
     return None
 
 
-def draw(source: Path, tables: TablesAt, asked: AskedDrawing, page: Sequence[Exhibit], manner: Manner) -> Drawn:
+def draw(source: Path, tables: TablesAt, asked: AskedDrawing, page: Sequence[Printed], manner: Manner) -> Drawn:
     """Draw the `tables` at `source`, passes only for those that a class of the configuration fits; and leave `page`."""
     from synth.aim.pictures.commands import aim_figures
     from synth.cli.inspect_pictures import Surroundings, figures_of

@@ -8,7 +8,7 @@ from typing import Any
 from synth.cli.inspect_table import table_words, told_document
 from synth.frame.exhibits import Column, Table
 from synth.frame.printed_numbers import decimals
-from synth.frame.terminal.printed_page import Exhibit
+from synth.frame.terminal.printed_page import Printed
 from synth.frame.terminal.printed_table import IN_JSON, PrintedTable
 from synth.frame.terminal.printed_words import NO_BREAK
 from synth.retarder.highest_stage import highest_stage
@@ -23,7 +23,7 @@ def passage_document(table: PassageTable) -> dict[str, Any]:
     return {**told_document(table), "category_number": table.cut.number}
 
 
-def passage_page(table: PassageTable) -> list[Exhibit]:
+def passage_page(table: PassageTable) -> list[Printed]:
     """A table in words, a line a fact, then its switching speeds."""
     sensors = table.sensors
     places = ", ".join(f"{place:g}" for place in sensors.path_m)

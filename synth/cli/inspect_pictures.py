@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tuning_tables.passages.passage_table import PassageTable
     from tuning_tables.table_kinds import StageTable
 
-Drawn = TypeVar("Drawn")
+Simulated = TypeVar("Simulated")
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Surroundings:
     asked: bool
     manner: Manner
 
-    def passes(self, simulate: Callable[[], Drawn]) -> Drawn | None:
+    def passes(self, simulate: Callable[[], Simulated]) -> Simulated | None:
         """What `simulate` gives; None, with a word why, where no class fits and no configuration was asked for."""
         from synth.frame.input_error import InputError
         from synth.kernels.cache import guarded

@@ -11,7 +11,7 @@ from synth.frame.page.document import Stamp
 from synth.frame.page.printed_document import printed_document
 from synth.frame.perform import PAGE
 from synth.frame.results_directory import require_own, results_directory
-from synth.frame.terminal.printed_page import Exhibit
+from synth.frame.terminal.printed_page import Printed
 
 
 def require_place(command: str, output: Path) -> None:
@@ -22,7 +22,7 @@ def require_place(command: str, output: Path) -> None:
 
 
 def write_report(
-    command: str, title: str, page: Sequence[Exhibit], source: Path, output: Path, steps: Sequence[str] = ()
+    command: str, title: str, page: Sequence[Printed], source: Path, output: Path, steps: Sequence[str] = ()
 ) -> None:
     """Write `page` of `command` about `source` into `output`; `InputError` where that is not its own directory."""
     from synth.retarder.forms.table_file import files_at
@@ -31,7 +31,7 @@ def write_report(
         directory.write(PAGE, report_of(title, page, steps))
 
 
-def report_of(title: str, page: Sequence[Exhibit], steps: Sequence[str] = ()) -> bytes:
+def report_of(title: str, page: Sequence[Printed], steps: Sequence[str] = ()) -> bytes:
     """The page as it is stored."""
     stamp = Stamp(title, creation_time(), version("retarder-synth"))
     return printed_document(stamp, page, steps).encode()

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 from synth.frame.known_defects import Concerned, concerned
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.manner import Manner
-from synth.frame.terminal.printed_page import Exhibit
-from synth.frame.terminal.printed_page import Verdict as Told
+from synth.frame.terminal.printed_page import Printed, PrintedVerdict
 from synth.frame.terminal.telling import INPUT_FAULT, LIMITS_MISSED, say
 
 if TYPE_CHECKING:
@@ -43,7 +42,7 @@ def verify_command(source: Path, passes: int, seed: int, output: Path | None, ma
     if output is not None:
         from synth.cli.printed_report import write_report
 
-        page: list[Exhibit] = [verdict_words(verdict, code), *told]
+        page: list[Printed] = [verdict_words(verdict, code), *told]
         write_report("verify", f"Check of {source.name}", page, source, output, steps(code))
     manner.give(lambda: document(verdict, defects, code), lambda: [*told, verdict_words(verdict, code)])
     return code
@@ -177,9 +176,9 @@ def words(verdict: Verdict) -> list[str]:
     return [*lines, *(f"{finding.about}: {finding.kind.value}: {finding.sentence}" for finding in verdict.others)]
 
 
-def verdict_words(verdict: Verdict, code: int) -> Told:
+def verdict_words(verdict: Verdict, code: int) -> PrintedVerdict:
     """What it comes to."""
     found = state(verdict.findings) if verdict.findings else "nothing found"
     found += ", but made by a version with an unsafe defect" if code and not verdict.code else ""
     count = len(tables_of(verdict))
-    return Told(code == 0, f"{counted(count, 'table')}, {counted(len(verdict.files), 'file')}: {found}")
+    return PrintedVerdict(code == 0, f"{counted(count, 'table')}, {counted(len(verdict.files), 'file')}: {found}")

@@ -17,12 +17,12 @@ RELIABILITY = "reliability"
 def require_input(key: str) -> None:
     """Raise `PlantError` unless `key` is a number that may be uncertain."""
     parts: dict[str, type[Section]] = {RELIABILITY: Upkeep}
-    for name, field in EconomicCase.model_fields.items():
-        assert isinstance(field.annotation, type), name
-        parts[name] = field.annotation
+    for name, declared in EconomicCase.model_fields.items():
+        assert isinstance(declared.annotation, type), name
+        parts[name] = declared.annotation
     part, _, name = key.partition(".")
     require(part in parts, f"range: input is {key!r}; it must begin with one of {', '.join(f'{p}.' for p in parts)}")
-    known = [each for each, field in parts[part].model_fields.items() if setting_unit(field)]
+    known = [each for each, declared in parts[part].model_fields.items() if setting_unit(declared)]
     require(name in known, f"range: input is {key!r}; {part} has {', '.join(known)}")
 
 

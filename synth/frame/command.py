@@ -11,35 +11,17 @@ import hashlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from plant_models.library import SourcedValue
 from synth.frame.exhibits import Chapter, Chart
 from synth.frame.settings.options import Options
+from synth.frame.settings.output import OutputSettings
 from synth.frame.settings.toml_file import read_text
 
 if TYPE_CHECKING:
     from synth.frame.results_directory import ResultsDirectory
     from synth.frame.terminal.progress import Progress
-
-
-class WrittenOutput(Protocol):
-    """What is written besides figures."""
-
-    @property
-    def plots(self) -> bool:
-        """Draw the pictures."""
-        ...
-
-    @property
-    def report(self) -> bool:
-        """Write the page."""
-        ...
-
-    @property
-    def workbook(self) -> bool:
-        """Write all tables into one workbook."""
-        ...
 
 
 S = TypeVar("S")
@@ -74,7 +56,7 @@ class Head:
     title: str
     canonical_json: str
     parameters: tuple[SourcedValue, ...]
-    output: WrittenOutput
+    output: OutputSettings
     warnings: tuple[str, ...] = ()
     reads: tuple[Path, ...] = ()
 

@@ -13,15 +13,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.likelihood import Innovations, Likelihood, likelihood_of
 from synth.logs.unknowns import OF_VALVES, VALVE_TIMES, Unknown, slope_of, values_at
-
-Floats = NDArray[np.float64]
 
 STEP, SIDE = 1e-3, (3e-3, 6e-3)
 """Of the differences that stand for derivatives, in standard deviations of what is known before: to both sides of a
@@ -63,7 +60,6 @@ CENTRAL = Side(-STEP, STEP)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Linearised:
     """Log-likelihood, scores (m, p) and information (p, p) at one point, without what was known before."""
 
@@ -73,7 +69,6 @@ class Linearised:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Estimate:
     """What the passes say of the `unknowns`.
 
@@ -209,7 +204,6 @@ def beside_edges(target: Posterior, u: Floats) -> tuple[Floats, Linearised]:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Turned:
     """`target` in variables z in which the summit is about as wide in all directions as it seems to be at `start`."""
 

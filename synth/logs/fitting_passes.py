@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Cut, Plant
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Ints, frozen_arrays
 from synth.frame.input_error import InputError
 from synth.logs.released_drive import released_drive_vents
 from tuning_tables.pass_log.pass_log import PassLog
 
-Ints = NDArray[np.int64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class FittingPasses:
     """A log whose passes all belong to classes of one position.
 

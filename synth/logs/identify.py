@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.frame.input_error import InputError
 from synth.logs import unknowns as asked
 from synth.logs.estimate import Estimate, estimate
@@ -18,14 +17,11 @@ from synth.logs.residual_tests import ResidualTest, residual_tests, wrong
 from synth.logs.unknowns import slope_of, unknowns_of, values_at
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 
-Floats = NDArray[np.float64]
-
 LEAST_PASSES = 40
 """Fewer tell nothing of twenty numbers."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Fit:
     """How well numbers describe n passes: friction ξ of each cut (m,), its standard deviation (m,), standardised
     innovations of the readings (k,), pressures at all rows (n,)."""

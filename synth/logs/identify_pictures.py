@@ -6,16 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.frame.picture.house_style import BLUE, GREY, INK, PALE_GREY, VERMILLION, dress, new_figure, place
 from synth.logs import unknowns as asked
 from synth.logs.identify import Identified
 
 AFTER_S, BIN_S = 1.5, 0.05
 """How long after a command pressures are shown, and of how much time a point is the mean."""
-
-Floats = NDArray[np.float64]
 
 
 def numbers(found: Identified) -> Figure:
@@ -74,7 +72,7 @@ def pressures(found: Identified) -> Figure:
     return figure
 
 
-def since_command(found: Identified) -> tuple[Floats, NDArray[np.int64]]:
+def since_command(found: Identified) -> tuple[Floats, Ints]:
     """Time since the last command at each row, inf before the first; and the stages before and after it (n, 2)."""
     log = found.passes.log
     since, kind = np.full(len(log.time_s), np.inf), np.zeros((len(log.time_s), 2), dtype=np.int64)

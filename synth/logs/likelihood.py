@@ -10,9 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.measured.drive_rows import Commands, drive_rows
 from synth.kernels.measured.pass_filter import BySpeed, Cuts, Rows, Spread, filter_passes
@@ -21,27 +20,22 @@ from synth.logs.fitting_passes import FittingPasses
 from synth.logs.pass_rows import PassRows, pass_rows
 from synth.logs.released_drive import OPEN_BAND_KPA
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 USUAL_KPA = 300.0
 """Where a force that is not straight in the pressure is that of the model."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Innovations:
     """k observations of m passes: `innovation`, `variance` (k,) and `pass_of` (k,).
 
-    The first `readings` of them are of the sensor, at the rows `row_of`; then come `gauged` of the gauge; each row by
-    row. `cuts`: what is known of the cuts in the end; `pressure_kpa` (n,) by the numbers given.
+    The first `readings` of them are of the sensor; then come `gauged` of the gauge; each row by row. `cuts`: what is
+    known of the cuts in the end; `pressure_kpa` (n,) by the numbers given.
     """
 
     innovation: Floats
     variance: Floats
     pass_of: Ints
     readings: int
-    row_of: Ints
     gauged: int
     cuts: Cuts
     pressure_kpa: Floats
@@ -140,7 +134,7 @@ class Likelihood:
             std = measured_speed_std(values[asked.NOISE], self.passes.plant.sensor.resolution_m_s)
             columns.append((self.rows.show_m_s[shown] - values[asked.BIAS], std**2 / counted, shown))
         joined = [np.concatenate(column) for column in zip(*columns, strict=True)]
-        return Innovations(joined[0], joined[1], joined[2], int(seen.sum()), np.flatnonzero(seen), gauged, cuts, kpa)
+        return Innovations(joined[0], joined[1], joined[2], int(seen.sum()), gauged, cuts, kpa)
 
 
 def likelihood_of(passes: FittingPasses, slope_key: str, settled: bool = False) -> Likelihood:

@@ -7,26 +7,20 @@ set anew within a pass, it is the path that was set right (`path_resets`).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Cut, Plant, path_coefficients
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from plant_models.motion import braked_axles, mean_braked_axles, path_breaks_m
 from synth.logs.fitting_passes import FittingPasses
 from tuning_tables.pass_log.path_resets import path_resets_m, path_set_right_m
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 PART_S = 0.025
 """Longest part of the time between two rows over which a pressure counts by its mean."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PassRows:
     """n rows of m passes. From each row to the next, 0 from the last row of a pass:
 
@@ -112,7 +106,7 @@ def on(edges: Floats, values: Floats, at: Floats) -> Floats:
     return np.asarray(np.interp(at, edges, values) + slope * np.maximum(at - edges[-1], 0.0))
 
 
-def right_steps(reset_m: Floats, first_row: Ints) -> NDArray[np.bool_]:
+def right_steps(reset_m: Floats, first_row: Ints) -> Bools:
     """From each row to the next, whether the path is known to count right, (n,): in a pass without a correction
     everywhere; in others between the first and the last one, for ahead of them it is off by the correction."""
     right = np.ones(len(reset_m), dtype=np.bool_)

@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Ints
 from plant_models.pneumatics import Pneumatics
 from tuning_tables.pass_log.pass_log import PassLog
 
@@ -41,7 +41,7 @@ def released_drive_vents(log: PassLog, stage_pressures_kpa: tuple[float, ...], p
     return bool(abs(np.median(released) - air) < 0.5 * band)
 
 
-def last_rows_of_visits(log: PassLog) -> NDArray[np.int64]:
+def last_rows_of_visits(log: PassLog) -> Ints:
     """The last row with a reading of each visit to a stage, of those that lasted `REST_S` by then."""
     begins = np.diff(log.stage, prepend=-1) != 0
     begins[log.first_row[:-1]] = True

@@ -15,15 +15,13 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats, Ints
 from synth.logs import unknowns as asked
 from synth.logs.estimate import STEP, Z95, Estimate, Posterior, posterior
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.holm import rejected
 from synth.logs.likelihood import Likelihood
-
-Floats = NDArray[np.float64]
 
 SIGNIFICANCE: Final = 0.01
 """Of all tests together (Holm)."""
@@ -147,7 +145,7 @@ def neighbour_tests(whole: Posterior, found: Estimate) -> Iterator[ResidualTest]
             )  # fmt: skip
 
 
-def products(innovation: Floats, pass_of: NDArray[np.int64], passes: int) -> Floats:
+def products(innovation: Floats, pass_of: Ints, passes: int) -> Floats:
     """Sum of the products of neighbours and their number, by pass, (2, m)."""
     same = pass_of[1:] == pass_of[:-1]
     where, product = pass_of[1:][same], (innovation[1:] * innovation[:-1])[same]

@@ -6,14 +6,10 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from plant_models.frozen_arrays import Floats
 from plant_models.library import SourcedValue
 from plant_models.pressure_gauge import USUAL_NOISE_KPA
 from synth.logs.fitting_passes import FittingPasses
-
-Floats = NDArray[np.float64]
 
 FORCE, PNEUMATICS, FRICTION, SENSOR = "retarder.force.", "retarder.pneumatics.", "friction.", "sensor."
 TOUCH_PRESSURE = FORCE + "touch_pressure_kpa"

@@ -10,13 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.checker import code_export, golden_export, line_numbers, track_export
+from synth.checker.code_export import c_differences, st_differences
 from synth.checker.code_file import LINES
 from synth.checker.finding import Kind
+from synth.checker.golden_export import vector_differences
+from synth.checker.line_numbers import due_of_lines
 from synth.checker.plant import UnusableConfigError, plant_of
 from synth.checker.source import read_source
 from synth.checker.summary import read_summary
 from synth.checker.table_reading import read_table
+from synth.checker.track_export import track_differences
 from synth.checker.verdict import CONFIRMED, verify
 from tests.checker.planted_fault import Document, alone, found, look, rewrite
 from tests.controller_code.sample_book import approaching_book
@@ -137,13 +140,13 @@ def test_exports_of_many_shapes_are_those_of_the_exporter(estimators: bool, tmp_
     tables = [read_table(to_json(table)) for table in book.tables]
     files = c_files(book)
     code, header = (files[f"retarder_table.{suffix}"].decode("ascii") for suffix in ("c", "h"))
-    due = line_numbers.due(tables)
-    assert list(code_export.c_differences(code, header, "RETARDER", LINES, due)) == []
-    assert list(golden_export.differences(files["golden_vectors.csv"], tables)) == []
+    due = due_of_lines(tables)
+    assert list(c_differences(code, header, "RETARDER", LINES, due)) == []
+    assert list(vector_differences(files["golden_vectors.csv"], tables)) == []
     text = st_files(book)[TABLE_FILE].decode("ascii")
-    assert list(code_export.st_differences(text, "RETARDER", LINES, due)) == []
+    assert list(st_differences(text, "RETARDER", LINES, due)) == []
     if estimators:
-        assert list(track_export.differences(files["golden_tracks.csv"], tables, True)) == []
+        assert list(track_differences(files["golden_tracks.csv"], tables, True)) == []
     write_book(book.tables, tmp_path / "book.h5")
     source = read_source(tmp_path / "book.h5")
     assert source.findings == ()

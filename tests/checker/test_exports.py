@@ -12,8 +12,8 @@ from pathlib import Path
 import h5py
 import pytest
 
-from synth.checker import golden_export
 from synth.checker.finding import DamagedError, Kind
+from synth.checker.golden_export import vector_differences
 from synth.checker.table_reading import Table, read_table
 from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
 from tests.controller_code.sample_book import FOUR_AXLES, surface_book, table_of
@@ -103,7 +103,7 @@ def surfaces(tables: int = 12) -> tuple[bytes, list[Table]]:
 
 def disagreements(golden: bytes, tables: list[Table]) -> list[str]:
     """All sentences about golden vectors."""
-    return [sentence for _, sentence in golden_export.differences(golden, tables)]
+    return [sentence for _, sentence in vector_differences(golden, tables)]
 
 
 def test_golden_vectors_of_surfaces_are_found_right() -> None:

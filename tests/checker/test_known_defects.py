@@ -12,8 +12,7 @@ import pytest
 from scripts.documentation.known_defects_page import defects_text
 from synth.checker.code_file import code_at
 from synth.cli import main
-from synth.frame import known_defects
-from synth.frame.known_defects import Defect, release
+from synth.frame.known_defects import PLACE, Defect, known_defects, release
 from tests.tuning_tables.every_kind import smallest_aim, smallest_lines, smallest_points
 from tuning_tables import document, write_json
 from tuning_tables.document import to_document
@@ -30,7 +29,7 @@ def unsafe(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.M
     """Whether the made-up defect, which the program then knows, makes tables unsafe."""
     listed = {**vars(MADE_UP), "unsafe": request.param}
     (tmp_path / "defects.json").write_text(json.dumps({"defects": [listed]}), encoding="utf-8")
-    monkeypatch.setattr(known_defects, "PLACE", tmp_path / "defects.json")
+    monkeypatch.setattr("synth.frame.known_defects.PLACE", tmp_path / "defects.json")
     return bool(request.param)
 
 
@@ -90,7 +89,7 @@ def test_inspect_warns_of_a_table_by_the_version_that_exported_it(
         write_json(smallest_lines(), tmp_path / "later.json")
     write_json(smallest_lines(), tmp_path / "now.json")
     monkeypatch.setattr(
-        known_defects, "known_defects", lambda: (replace(MADE_UP, introduced="98", steps=("exported",)),)
+        "synth.frame.known_defects.known_defects", lambda: (replace(MADE_UP, introduced="98", steps=("exported",)),)
     )
     for name in ("later", "now"):
         assert main(["inspect", str(tmp_path / f"{name}.json")]) == 0
@@ -107,9 +106,9 @@ def test_the_page_has_a_row_for_each() -> None:
 
 
 def test_the_list_that_ships_is_in_order() -> None:
-    listed = json.loads(known_defects.PLACE.read_text(encoding="utf-8"))["defects"]
+    listed = json.loads(PLACE.read_text(encoding="utf-8"))["defects"]
     assert [each for each in listed if list(each) != KEYS] == []
-    found = known_defects.known_defects()
+    found = known_defects()
     assert len({each.id for each in found}) == len(found)
     for each in found:
         assert release(each.introduced)

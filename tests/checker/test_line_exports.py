@@ -11,7 +11,7 @@ import pytest
 from synth.checker.code_export import c_differences, st_differences
 from synth.checker.code_file import LINES
 from synth.checker.finding import DamagedError
-from synth.checker.line_numbers import due
+from synth.checker.line_numbers import due_of_lines
 from synth.checker.table_reading import Table, read_table
 from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
 from tests.st_files import st_files
@@ -36,8 +36,8 @@ def exported(tables: int = 3) -> tuple[dict[str, str], tuple[Table, ...]]:
 def sentences(texts: dict[str, str], tables: tuple[Table, ...]) -> list[str]:
     """All that is found in both languages."""
     found = [
-        *c_differences(texts["retarder_table.c"], texts["retarder_table.h"], "RETARDER", LINES, due(tables)),
-        *st_differences(texts[TABLE_FILE], "RETARDER", LINES, due(tables)),
+        *c_differences(texts["retarder_table.c"], texts["retarder_table.h"], "RETARDER", LINES, due_of_lines(tables)),
+        *st_differences(texts[TABLE_FILE], "RETARDER", LINES, due_of_lines(tables)),
     ]
     return [sentence for _, sentence in found]
 

@@ -18,7 +18,8 @@ from synth.retarder.forms.table_forms import FORMS
 from tests.controller_code.passage_tables import passage_table
 from tests.controller_code.sample_book import sample_book
 from tests.tuning_tables.aim.made_tables import category_table
-from tuning_tables import exporter, read_table, write_book
+from tuning_tables import read_table, write_book
+from tuning_tables.exporter import exporting_version
 from tuning_tables.self_test_size import SMALL
 from tuning_tables.table_kinds import AnyTable
 
@@ -28,10 +29,10 @@ TABLES: Sequence[AnyTable] = (sample_book().tables[0], passage_table("light"), c
 @pytest.fixture
 def later(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """The program as a later version of it."""
-    exporter.exporting_version.cache_clear()
-    monkeypatch.setattr(exporter, "version", lambda _: "98.7")
+    exporting_version.cache_clear()
+    monkeypatch.setattr("tuning_tables.exporter.version", lambda _: "98.7")
     yield "retarder-synth 98.7"
-    exporter.exporting_version.cache_clear()
+    exporting_version.cache_clear()
 
 
 def content(file: bytes) -> bytes:

@@ -18,7 +18,7 @@ from scripts.studies.in_the_loop.controller_process import COMMAND, sources_of
 from scripts.studies.in_the_loop.held_words import held_record, held_words, places, sealed
 from synth.checker.code_export import c_differences, st_differences
 from synth.checker.code_file import LINES
-from synth.checker.line_numbers import due, held_of
+from synth.checker.line_numbers import due_of_lines, held_of
 from synth.checker.table_reading import Table, read_table
 from tests.controller_code.conftest import Built, ToChange
 from tests.controller_code.unlike_pairs import BETWEEN_M_S, CASES, LIGHT, LIKE, UNLIKE, axles_of, pairs
@@ -127,8 +127,8 @@ def test_the_checker_finds_the_same_families_and_every_wrong_one() -> None:
         st = text[: column.start(1)] + ",".join(families) + text[column.end(1) :]
         c = another(source, FAMILY, number, str(family))
         told = f"familyno of table {number} is {family}, but the table says {float(pairs().families[number])}"
-        assert [each for _, each in st_differences(st, "RETARDER", LINES, due(tables))] == [told], case
-        assert told in [each for _, each in c_differences(c, header, "RETARDER", LINES, due(tables))], case
+        assert [each for _, each in st_differences(st, "RETARDER", LINES, due_of_lines(tables))] == [told], case
+        assert told in [each for _, each in c_differences(c, header, "RETARDER", LINES, due_of_lines(tables))], case
 
 
 def test_the_pairs_are_what_they_say() -> None:

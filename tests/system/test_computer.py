@@ -14,7 +14,7 @@ import pytest
 
 from synth.cli import main
 from synth.frame.results_directory import SUMMARY
-from synth.frame.terminal.printed_page import Verdict
+from synth.frame.terminal.printed_page import PrintedVerdict
 from synth.frame.terminal.printed_table import PrintedTable
 from tests.printed_page import Page, page_about
 
@@ -101,7 +101,7 @@ def test_limits_that_are_missed_are_told_and_change_the_exit_code(tmp_path: Path
     summary, page = told(tmp_path / "out"), page_about(pages, tmp_path / "out")
     limits = summary["limits"]
     assert [limit["kept"] for limit in limits] == [False, False, False]
-    assert page[-2] == Verdict(False, "; ".join(limit["sentence"] for limit in limits))
+    assert page[-2] == PrintedVerdict(False, "; ".join(limit["sentence"] for limit in limits))
     assert next(each.table.title for each in page if isinstance(each, PrintedTable)) == "Over all uncertain inputs"
 
 

@@ -22,7 +22,7 @@ import pytest
 
 from synth.cli import main
 from synth.frame.exhibits import Column, Table
-from synth.frame.terminal.printed_page import Verdict, page_lines
+from synth.frame.terminal.printed_page import PrintedVerdict, page_lines
 from synth.frame.terminal.printed_table import PrintedTable, table_lines
 from synth.frame.terminal.printed_words import wrapped
 from tests.printed_page import (
@@ -100,7 +100,9 @@ def test_only_a_word_longer_than_a_line_is_broken_and_behind_a_sign() -> None:
 
 
 def test_a_page_keeps_tables_apart_and_colours_a_verdict() -> None:
-    lines = list(page_lines(("before", TABLE, Verdict(False, "too slow"), Verdict(True, "all kept")), None))
+    lines = list(
+        page_lines(("before", TABLE, PrintedVerdict(False, "too slow"), PrintedVerdict(True, "all kept")), None)
+    )
     assert lines[:2] == [("before", ""), ("", "")]
     assert lines[-3:] == [("", ""), ("not accepted: too slow", "bold red"), ("accepted: all kept", "bold green")]
 

@@ -15,7 +15,7 @@ from tuning_tables.language.records import SizedRecord
 from tuning_tables.programs.passage_table import HeldPassages
 from tuning_tables.programs.tracker import LONGEST_WAIT_S, TRACKER, begin_cut
 
-Asked = tuple[Rule, Mapping[str, float], tuple[tuple[str, Place, float], ...]]
+AskedOfRule = tuple[Rule, Mapping[str, float], tuple[tuple[str, Place, float], ...]]
 """A rule, what it is asked with, and what is changed before."""
 
 
@@ -32,7 +32,9 @@ def odd_passages(record: SizedRecord, first: Values, rules: tuple[Rule, Rule, Ru
         yield OddQuestion(changes, rule, given, float(rule.function(table, *state, *given.values())))
 
 
-def asked(record: SizedRecord, held: HeldPassages, believed: Rule, wanted: Rule, at_pulse: Rule) -> Iterator[Asked]:
+def asked(
+    record: SizedRecord, held: HeldPassages, believed: Rule, wanted: Rule, at_pulse: Rule
+) -> Iterator[AskedOfRule]:
     """Table 0 as it is, then with numbers for which there is no room, then with a gate before the entrance."""
     room, sensor = record.room, int(held.sensor[0])
     speed_m_s = float(np.ceil(8.0 * held.least_m_s) / 8.0)

@@ -50,30 +50,30 @@ def decisions(record: SizedRecord) -> Iterator[Asked]:
     gauge = [("has_gauge", (), 0.0)] if record.room["gauge"] else []
     base = (*((name, (), float(number)) for name, number in numbers),
             *(("has_line", (stage, side), float(there)) for stage, side, there in has), *lines, *gauge)  # fmt: skip
-    yield base, at(0, 0.5, 4.0)
-    yield (), at(0, 0.5, 3.0)
-    yield (), at(1, 0.5, 1.0)
-    yield (), at(1, 0.5, 4.0)
-    yield (), at(0, -0.5, 4.0)
-    yield (("entrance_stage", (), 0.0),), at(0, -0.5, 4.0)
-    yield (), at(0, 0.5, 4.0)
-    yield (("at_any_time", (), 1.0),), at(0, 0.5, 4.0)
+    yield base, for_decide(0, 0.5, 4.0)
+    yield (), for_decide(0, 0.5, 3.0)
+    yield (), for_decide(1, 0.5, 1.0)
+    yield (), for_decide(1, 0.5, 4.0)
+    yield (), for_decide(0, -0.5, 4.0)
+    yield (("entrance_stage", (), 0.0),), for_decide(0, -0.5, 4.0)
+    yield (), for_decide(0, 0.5, 4.0)
+    yield (("at_any_time", (), 1.0),), for_decide(0, 0.5, 4.0)
     # An answer that leaves the table, below and above.
-    yield (("has_line", (0, LOWER), 1.0), ("coefficient", (0, LOWER, 0), 2.0)), at(0, 0.5, 1.0)
-    yield (("has_line", (1, UPPER), 1.0), ("coefficient", (1, UPPER, 0), 3.0)), at(1, 0.5, 4.0)
-    yield (("stages", (), stages + 1.0),), at(0, 0.5, 4.0)
-    yield (("stages", (), 2.0), ("powers", (), powers + 1.0)), at(0, 0.5, 4.0)
-    yield (("powers", (), 0.0),), at(0, 0.5, 4.0)
-    yield (("powers", (), 1.0),), at(0, 0.5, 4.0)
+    yield (("has_line", (0, LOWER), 1.0), ("coefficient", (0, LOWER, 0), 2.0)), for_decide(0, 0.5, 1.0)
+    yield (("has_line", (1, UPPER), 1.0), ("coefficient", (1, UPPER, 0), 3.0)), for_decide(1, 0.5, 4.0)
+    yield (("stages", (), stages + 1.0),), for_decide(0, 0.5, 4.0)
+    yield (("stages", (), 2.0), ("powers", (), powers + 1.0)), for_decide(0, 0.5, 4.0)
+    yield (("powers", (), 0.0),), for_decide(0, 0.5, 4.0)
+    yield (("powers", (), 1.0),), for_decide(0, 0.5, 4.0)
     if stages > 2:
         # Stage 1, too, is lowered at this speed: the opposite answer ends the command.
         turned = (("coefficient", (1, LOWER, 0), 5.0), ("at_any_time", (), 0.0), ("stages", (), 3.0))
-        yield turned, at(0, 0.5, 4.0)
+        yield turned, for_decide(0, 0.5, 4.0)
         behind = (("stages", (), 2.0), ("has_line", (2, LOWER), 1.0), ("coefficient", (2, LOWER, 0), 5.0))
-        yield behind, at(2, 0.5, 1.0)
+        yield behind, for_decide(2, 0.5, 1.0)
 
 
-def at(stage: int, s_m: float, v_m_s: float) -> Mapping[str, float]:
+def for_decide(stage: int, s_m: float, v_m_s: float) -> Mapping[str, float]:
     """The numbers that `decide` takes."""
     return {"stage": stage, "s_m": s_m, "v_m_s": v_m_s, "pressure_kpa": 0.0}
 

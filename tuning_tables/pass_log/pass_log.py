@@ -8,9 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.errors import InvalidTable
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from tuning_tables.pass_log.log_columns import Floats, Ints
 
 ROWS = ("time_s", "path_m", "speed_m_s", "pressure_kpa", "stage")
 PASSES = ("cut_id", "mass_t", "axles", "category", "target_m_s", "stopped_by_hand")

@@ -10,8 +10,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from tuning_tables.pass_log.log_columns import Floats, Ints
 
 LEAST_RESET_M: Final = 0.1
 """Smaller corrections are hardly told from noise, and do little."""

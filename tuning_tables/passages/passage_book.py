@@ -8,19 +8,15 @@ more tables.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from tuning_tables.book_categories import category_numbers
-from tuning_tables.book_classes import tables_by_class
-from tuning_tables.errors import InvalidTable
+from tuning_tables.book_classes import require_book, tables_by_class
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.requirement import require_kind, require_tuple
-from tuning_tables.table_book import LARGEST_FLOAT32, LEAST_FLOAT32, Status
+from tuning_tables.table_book import Status
 
 
 @dataclass(frozen=True)
@@ -61,24 +57,7 @@ class PassageBook:
     tables: tuple[PassageTable, ...]
 
     def __post_init__(self) -> None:
-        require_tuple(self.tables, "tables")
-        if not self.tables:
-            raise InvalidTable("a book holds at least one table.")
-        for index, table in enumerate(self.tables):
-            require_kind(table, f"tables[{index}]", PassageTable)
-        first, times = self.tables[0], Counter(table.id for table in self.tables)
-        for table in self.tables:
-            if position_of(table) != position_of(first):
-                raise InvalidTable(
-                    f"{table.id} and {first.id} are for other retarders, dead bands or sensors, but a book "
-                    "serves one position: export them apart."
-                )
-            if times[table.id] > 1:
-                raise InvalidTable(f"the id {table.id} is given to {times[table.id]} tables of the book.")
-            for key, value in (("cut.mass_t", table.cut.mass_t), ("target_speed_m_s", table.target_speed_m_s)):
-                if not LEAST_FLOAT32 <= value <= LARGEST_FLOAT32:
-                    raise InvalidTable(f"{key} of {table.id} is {value!r}, which float32 cannot hold.")
-        category_numbers(self.tables)
+        require_book(self.tables, PassageTable, position_of, "zones, dead bands or sensors")
 
     def __repr__(self) -> str:
         return f"PassageBook({len(self.tables)} tables of {self.tables[0].retarder.name})"

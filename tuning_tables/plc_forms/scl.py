@@ -38,7 +38,7 @@ def part_text(part: Part) -> str:
 def unit_text(unit: Unit) -> str:
     """A unit."""
     if isinstance(unit, Structure):
-        rows = [row for member in unit.members for row in declared(member, 2)]
+        rows = [row for member in unit.members for row in scl_variable(member, 2)]
         head = [f'TYPE "{unit.name}"', "VERSION : 0.1", *line_comment(unit.note), "    STRUCT"]
         return "\n".join([*head, *rows, "    END_STRUCT;", "END_TYPE", ""])
     head = [f'FUNCTION_BLOCK "{unit.name}"', "{ S7_Optimized_Access := 'TRUE' }", "VERSION : 0.1"]
@@ -49,7 +49,7 @@ def unit_text(unit: Unit) -> str:
 
 def section_lines(block: Block) -> Iterator[str]:
     """The sections of a block."""
-    layout = partial(declared, depth=2)
+    layout = partial(scl_variable, depth=2)
     arrays = [each for each in block.constants if is_array(each)]
     constants = [each for each in block.constants if not is_array(each)]
     yield from section("    VAR_INPUT", block.inputs, layout, "    END_VAR")
@@ -62,7 +62,7 @@ def section_lines(block: Block) -> Iterator[str]:
     yield from section("    VAR CONSTANT", constants, layout, "    END_VAR")
 
 
-def declared(variable: Variable, depth: int) -> Sequence[str]:
+def scl_variable(variable: Variable, depth: int) -> Sequence[str]:
     """A declaration with what it means beside it, or above it where there is no room."""
     pad = " " * 4 * depth
     lines = with_values(f"{pad}{variable.name} : {type_text(variable.type)}", variable)

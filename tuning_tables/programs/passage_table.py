@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Final, NamedTuple
+from typing import Annotated, Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from tuning_tables.language.records import real, record_of, whole
-
-Floats = npt.NDArray[np.float32]
-Whole = npt.NDArray[Any]
+from tuning_tables.programs.line_table import Floats, Whole
 
 NONE: Final = -1
 """No passage."""

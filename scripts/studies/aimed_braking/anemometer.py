@@ -5,17 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.rolling.random_numbers import Purpose
 from synth.aim.knowledge import Requirement, likelihood, not_falling
 from synth.aim.limit_speed import thresholds_of
 from synth.aim.readings import Reading, TrueReadings
 from synth.aim.scene import SceneCuts
-
-Floats = NDArray[np.float64]
 
 TAIL = 0.001
 """Share of winds and readings beyond each end of the nodes; they get the commands of the end."""
@@ -38,7 +35,6 @@ class WindByAnemometer:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class CommandsByReadingAndWind:
     """`speeds_m_s` (winds, readings) at the nodes `winds` and `readings`; linear between, constant beyond."""
 

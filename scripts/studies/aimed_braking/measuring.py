@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from plant_models.frozen_arrays import Floats
 from scripts.studies.aimed_braking.anemometer import ByReadingAndWind, WindByAnemometer
 from scripts.studies.aiming.hump import POINTS, weight_category, with_bends
 from scripts.studies.aiming.places import FreeDistance
@@ -20,8 +18,6 @@ from synth.aim.knowledge import ByCategory, ByReading, Knowledge
 from synth.aim.position_models import NormalPosition
 from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene
-
-Floats = NDArray[np.float64]
 
 EXIT_STD_M_S = 0.03
 """What the exported tables reach at other positions (docs/reference/results.md)."""

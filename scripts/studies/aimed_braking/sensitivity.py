@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from plant_models.rolling.car_mix import CarMix
 from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
 from scripts.studies.aiming.hump import grades_of, weight_category, with_bends, with_grades, with_mix, with_weather
@@ -19,8 +19,6 @@ from synth.aim.knowledge import ByCategory, Knowledge
 from synth.aim.position_models import NormalPosition
 from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene
-
-Floats = NDArray[np.float64]
 
 EXIT_STD_M_S = 0.1
 MEASURED_STD_M_S = 0.03

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from scripts.studies.aiming.places import Places
 from synth.aim.outcome import Couplings, couplings
 from synth.aim.position_models import ExitSpeeds, PositionModel
 from synth.aim.scene import SceneCuts
 
-Floats = NDArray[np.float64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class RolledCuts:
     """Cuts with the places where they meet standing cars, `arrivals_m` (n, k), and the highest exit speeds that do not
     couple too fast there, `critical_m_s` (n, k). No position counts yet. Build it with `rolled_cuts`."""
@@ -34,7 +28,6 @@ class RolledCuts:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class AimedCuts:
     """Cuts at a position: `thresholds_m_s` (n, k) are the commands above which they couple too fast."""
 

@@ -10,15 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from scripts.studies.aiming.aimed_cuts import AimedCuts
 from scripts.studies.aiming.recorded_cuts import NearestRecord
 from synth.aim.knowledge import Commands, Knowledge, Requirement
 from synth.aim.scene import SceneCuts
-
-Floats = NDArray[np.float64]
 
 BOUNDS_M_S = (0.5, 7.0)
 """Commands that a park position is given."""
@@ -34,7 +31,6 @@ NEAR = 0.001
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Commanded:
     """What n cuts are commanded, `speed_m_s` (n,), and the share `unserved` that is commanded the lowest speed because
     no command serves it."""

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from scripts.studies.aiming.aimed_cuts import rolled_cuts
 from scripts.studies.aiming.places import FromCrest
 from scripts.studies.aiming.trial import Cuts, Draws, judged
 from synth.aim.knowledge import Knowledge
 from synth.aim.position_models import PositionModel
 from synth.aim.scene import SceneCuts
-
-Floats = NDArray[np.float64]
 
 NORM_GAP_M = 3.0
 """Mean gap a car that is allowed at a probability of over-speed of 0.1 ([kozachenko-aimed], its reference 1)."""

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.aim.scene import SceneCuts
-
-Floats = NDArray[np.float64]
 
 
 class Places(Protocol):

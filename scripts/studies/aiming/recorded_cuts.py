@@ -5,18 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import KDTree
 from scipy.special import ndtri
 
 from plant_models.errors import require, require_between
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.rolling.random_numbers import Purpose
 from synth.aim.knowledge import Requirement
 from synth.aim.limit_speed import bounded
 from synth.aim.scene import SceneCuts
-
-Floats = NDArray[np.float64]
 
 STOPPED_S = 1e6
 """Time that stands for a cut that stopped between two points."""
@@ -46,7 +43,6 @@ class ControlPoints:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class CommandsByRecords:
     """Exit speeds of the nearest record less a margin: `times_s` (records, 2), `speeds_m_s` (records, k)."""
 
@@ -91,7 +87,7 @@ class NearestRecord:
         return CommandsByRecords(self.points, times[: self.records], recorded - margin, requirement.bounds_m_s)
 
 
-def nearest(records_s: Floats, times_s: Floats) -> NDArray[np.int64]:
+def nearest(records_s: Floats, times_s: Floats) -> Ints:
     """The record nearest to each row of `times_s` by (t1' − t1)² + (t2' − t2)²."""
     return np.asarray(KDTree(records_s).query(times_s)[1])
 

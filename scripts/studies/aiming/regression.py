@@ -6,20 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 
 from plant_models.errors import require
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.aim.knowledge import Requirement
 from synth.aim.limit_speed import bounded
 from synth.aim.readings import Reading
 from synth.aim.scene import SceneCuts
 
-Floats = NDArray[np.float64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class CommandsByPolynomial:
     """`polynomials` of the reading, one for each place, margin included; readings beyond `range` count as its ends."""
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from plant_models.library.weight_category import WeightCategory
 from scripts.studies.aiming.aimed_cuts import AimedCuts, RolledCuts, rolled_cuts
 from scripts.studies.aiming.levelled import levelled
@@ -17,8 +17,6 @@ from synth.aim.outcome import Couplings
 from synth.aim.position_models import PositionModel
 from synth.aim.scene import AimScene, SceneCuts
 from synth.simulation.replicates import Interval, student_quantile
-
-Floats = NDArray[np.float64]
 
 HARD_M_S = (1.5, 2.0)
 """Coupling speeds that the dissertation counts besides the limit."""

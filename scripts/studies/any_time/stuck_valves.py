@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from scripts.studies.any_time.findings import Ratio, StuckFigures, Way, Ways
 from scripts.studies.any_time.kernels.stuck_valves import Asking, Stuck, run_stuck_passes
 from scripts.studies.near_target import near_target
@@ -21,8 +21,6 @@ from synth.simulation.controllers import fixed
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample, PassTrace
 from tuning_tables import Decisions
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

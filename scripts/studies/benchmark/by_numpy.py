@@ -7,13 +7,11 @@ packs or caches. Values have axes (I, H, L, E, T): scenario, resting mode, noise
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
-from scripts.studies.benchmark.numpy_landings import Floats, Outcome, Stencil, outcomes, stencil_at
+from plant_models.frozen_arrays import Floats, frozen_arrays
+from scripts.studies.benchmark.numpy_landings import Outcome, Stencil, outcomes, stencil_at
 from synth.problem.aim import Aim
 from synth.solver.backward_induction import ROUNDINGS, TIE_M2_S2, hidden_prior, true_speed_weights
 from synth.solver.chain.chain import Chain
@@ -23,7 +21,6 @@ SIX_SIGMA = 6.0
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Swept:
     """Values at entry (I, H, L, E, T), lines (N, K + 1, T).
 
@@ -38,7 +35,6 @@ class Swept:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Costs:
     """At the exit (E, T), of a stall (T,), of a command (T,)."""
 
@@ -212,7 +208,7 @@ def sampled(
     out = np.empty_like(holding)
     for h, k in enumerate(chain.actuator.mode_stage):
         down, up = chances((lower[k] - speed) / noise), chances((speed - upper[k]) / noise)
-        gone: NDArray[np.float64] = np.zeros_like(holding[:, h])
+        gone: Floats = np.zeros_like(holding[:, h])
         for chance, c in ((down, chain.landings.change_chain[0, h]), (up, chain.landings.change_chain[1, h])):
             if c >= 0:
                 gone = gone + chance * changing[c]

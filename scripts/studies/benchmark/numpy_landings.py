@@ -7,24 +7,20 @@ E): change of stage, scenario, noise level before, energy.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.kernels.sweep.flow import LINEAR_CELLS
 from synth.solver.chain.chain import Chain
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.int64]
+Indices = Ints
 
 ALMOST = 1e-9
 """Of a quantum: a landing so little before a node is at it."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Stencil:
     """Four neighbouring energies: the first of them, and their weights (…, 4)."""
 
@@ -33,7 +29,6 @@ class Stencil:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Outcome:
     """One noise level after a change, and one side of the law of the friction met: where it ends.
 
@@ -48,7 +43,7 @@ class Outcome:
     stalled: Floats
 
     @property
-    def weighty(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    def weighty(self) -> tuple[Bools, Bools]:
         """Where the four values of either node have a weight at all."""
         return (self.back.weights != 0.0).any(axis=-1), (self.forth.weights != 0.0).any(axis=-1)
 
@@ -85,7 +80,6 @@ def stencil_at(position: Floats, points: int, share: Floats) -> Stencil:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Ends:
     """Path (…, E) and energy at the end of a change; a negative path is a stall."""
 
@@ -129,9 +123,7 @@ def outcomes(chain: Chain, n: int, slope: Floats) -> Iterator[Outcome]:
             yield outcome(chain, n, slope[..., level, :], ends, 0.5 * share, usual < 0.0, level)
 
 
-def outcome(
-    chain: Chain, n: int, slope: Floats, ends: Ends, share: Floats, stalls: NDArray[np.bool_], level: int
-) -> Outcome:
+def outcome(chain: Chain, n: int, slope: Floats, ends: Ends, share: Floats, stalls: Bools, level: int) -> Outcome:
     """Where these `ends` lie among the nodes; `slope` (I, H, N) at the level reached."""
     points, left = chain.landings.points, len(chain.drive_m_s2) - n
     cells, quanta = 1.0 / chain.grid.energy_step_m2_s2, 1.0 / chain.grid.path_step_m

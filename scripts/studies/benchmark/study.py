@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from scripts.studies.benchmark.by_numpy import Swept, sweep_by_numpy
 from scripts.studies.benchmark.findings import LANES, Benchmark, Limit, Way
 from scripts.studies.benchmark.machine_rates import load_loop, multiply_add_loop
@@ -127,7 +127,7 @@ def line_difference(swept: Swept, exact: Sequence[Solution]) -> float:
     return max(apart(mine, theirs) for mine, theirs in pairs)
 
 
-def apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+def apart(one: Floats, other: Floats) -> float:
     """Largest distance where both are finite; a large number where one alone is, or where the infinities differ."""
     both = np.isfinite(one) & np.isfinite(other)
     if not np.array_equal(one[~both], other[~both]):

@@ -6,16 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require
+from plant_models.frozen_arrays import Floats, Ints
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_figures import FEWEST_TRAINS, ratio, share
 from synth.hump.trains.train_memory import TrainMemory
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Interval = tuple[float, float, float]
 """Value, and the ends of its 95 % interval."""
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Ints, frozen_arrays
 from scripts.studies.control_computer.failure_costs_of_hump import cuts_before_stop
 from scripts.studies.humping.runs import Group, Kept, measured_each
 from scripts.studies.study import Tell
@@ -22,12 +21,11 @@ BATCH = 50
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Humped:
     """What trains came to, and how many cuts of each were let go before one stood in a position, (trains,)."""
 
     outcomes: TrainOutcomes
-    before_stop: NDArray[np.int64]
+    before_stop: Ints
 
 
 def humped_of(trial: HumpTrial, trains: TrainCuts, memory: TrainMemory) -> Humped:

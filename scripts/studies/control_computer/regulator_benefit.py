@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import PlantError, require
+from plant_models.frozen_arrays import Floats
 from synth.computer.economics.hump_day_change import TrainSums, same_trains
 from synth.computer.economics.hump_rates import HumpRates
 from synth.computer.economics.hump_work import HumpWork, hump_work
@@ -17,8 +17,6 @@ from synth.computer.economics.savings import operating_savings, released_capital
 from synth.computer.economics.traffic import Handling, Traffic
 from synth.frame.interval import Interval
 from synth.hump.trains.outcomes import TrainOutcomes
-
-Floats = NDArray[np.float64]
 
 FEWEST_REPLICATES = 100
 

@@ -6,12 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import Floats
 from synth.simulation.random_passes import RandomPasses
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
 from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop, TableController
 from synth.simulation.passes import PassTrace
@@ -15,17 +14,14 @@ from tuning_tables.active_table import ActiveTable
 from tuning_tables.correction import Correction, begun_correction
 from tuning_tables.programs.correct import learn_exit, usable_exit
 
-Floats = NDArray[np.float64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PassSequence:
     """n passes, arrays (n,): true exit speed - target, the correction each ran under, whether it was learnt from."""
 
     error_m_s: Floats
     correction_m_s: Floats
-    usable: NDArray[np.bool_]
+    usable: Bools
 
 
 def corrected(table: ActiveTable, correction_m_s: np.float32) -> ActiveTable:

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from scripts.studies.cases import Case, named_cases
 from scripts.studies.correction.ageing import Ageing, ageings
 from scripts.studies.correction.findings import Corrected, Row
@@ -37,8 +37,6 @@ from tuning_tables.correction import Correction
 
 FRESH = 15485863
 """Added to the configured seed: passes that no tuning has seen."""
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -65,7 +65,6 @@ class Row:
     rms_m_s: float
     rms_ci95_m_s: Interval
     outside: float
-    near_rms_m_s: float
     near_ratio: float
     near_ratio_ci95: Interval
 
@@ -185,7 +184,7 @@ def case_row(
         rows.append(
             Row(
                 degree, fitted.get(degree), predicted[degree], rms, rms_ci95,
-                share_of(np.abs(error) > NEAR_M_S, weight)[0], rms_of(error, both)[0], ratio, ratio_ci95,
+                share_of(np.abs(error) > NEAR_M_S, weight)[0], ratio, ratio_ci95,
             )
         )  # fmt: skip
     return CaseRow(f"{plant.cut.mass_t:g} t to {target:g} m/s", tuple(rows))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import Floats
 from scripts.studies.plant_changes import friction, times
 from scripts.studies.sensor_fault import LostForGood, SensorFault, at_random, no_fault
 from synth.simulation.closed_loop import Controller, simulate
@@ -67,7 +67,7 @@ def braking(plant: Plant, share: float) -> Plant:
     return friction(share, 1.0)(plant)
 
 
-def simulated(wrong: Wrong, controller: Controller, passes: RandomPasses, transit_s: NDArray[np.float64]) -> ExitSample:
+def simulated(wrong: Wrong, controller: Controller, passes: RandomPasses, transit_s: Floats) -> ExitSample:
     """All passes with the fault, some at a time; `transit_s` (n,): how long each takes where nothing is wrong."""
     parts = []
     for start in range(0, len(passes), TOGETHER):

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from scripts.studies.aiming.trial import Value
 from scripts.studies.humping.base_trial import FEEDBACK
 from scripts.studies.humping.day_figures import PERCENT
@@ -16,8 +15,6 @@ from scripts.studies.markdown_table import MarkdownTable, plus_minus, table
 from synth.hump.trains.hump_position import Arrivals, HumpPosition, Passed, evenly_braked_s
 from synth.hump.trains.train_figures import ratio
 from synth.hump.trains.trial import HumpTrial
-
-Bools = NDArray[np.bool_]
 
 TRAINS = 100
 """Enough: exit speeds are told of every pass."""
@@ -65,7 +62,6 @@ def exits_of(trials: Mapping[str, HumpTrial], trains: int) -> tuple[Exits, ...]:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class BrakedPasses:
     """Passes, an entry each, of `trains` trains: whose train and category, exit less command, and the times: as it was,
     and of even braking."""

@@ -18,7 +18,6 @@ from tuning_tables.table_book import TableBook
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Questions:
     """Readings and commands, and what the Python rule answers: stages (n,), statuses (m,), words (m, words)."""
 
@@ -31,7 +30,6 @@ class Questions:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Tracks:
     """Samples, dtype SAMPLE, (n,), and what the Python estimator answers to each: speed, estimate, alarms, (n, 18)."""
 

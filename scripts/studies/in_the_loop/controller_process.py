@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Bools
 from scripts.studies.in_the_loop.held_words import table_words
 from synth.cli.qualification.c_code import CONTRACT as CONTRACT
 from tuning_tables.c_source import c_files
@@ -71,9 +72,9 @@ class Controller:
         answers = words.reshape(len(commands), 1 + self.table_words).astype(np.uint32)
         return answers[:, 0].view(np.int32), answers[:, 1:]
 
-    def intact(self, words: NDArray[np.uint32]) -> NDArray[np.bool_]:
+    def intact(self, words: NDArray[np.uint32]) -> Bools:
         """Whether the checksums of the tables `words` (n, words) are right: (n,)."""
-        sound: NDArray[np.bool_] = np.frombuffer(self._answer(("intact",), words), f"{self.order}i4") == 1
+        sound: Bools = np.frombuffer(self._answer(("intact",), words), f"{self.order}i4") == 1
         return sound
 
     def dump(self) -> NDArray[np.uint32]:

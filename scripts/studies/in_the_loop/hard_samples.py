@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from scripts.studies.in_the_loop.controller_process import BEGIN, ESTIMATE_WORDS, GIVEN, ON, SAMPLE
 from tuning_tables.estimator import Estimator
 from tuning_tables.golden_tracks import LARGEST_OVERPRESSURE_KPA, LARGEST_SPEED_M_S, golden_tracks
@@ -76,7 +77,7 @@ def _tracks_of(number: int, estimator: Estimator | None, tracks: int, rng: np.ra
     return found
 
 
-def _with_faults(measured: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
+def _with_faults(measured: Floats, rng: np.random.Generator) -> Floats:
     """`measured` (tracks, samples), most tracks with a fault of the radar over some samples from any moment on.
 
     No reading, 0, the last one again and again, spikes, or a bias; for a few samples, many, or all that follow.

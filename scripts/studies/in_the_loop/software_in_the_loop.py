@@ -9,7 +9,6 @@ from __future__ import annotations
 import ctypes
 import os
 import subprocess
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -47,7 +46,7 @@ BEGIN: Final = -2
 
 @dataclass(frozen=True)
 class Comparison:
-    """The same passes with the rule in the simulator and with the controller process, and what each took.
+    """The same passes with the rule in the simulator and with the controller process.
 
     `differing`: passes of which exit speed, time, stall or number of switchings differ in any bit.
     """
@@ -55,8 +54,6 @@ class Comparison:
     inside: ExitSample
     process: ExitSample
     differing: int
-    inside_s: float
-    process_s: float
 
 
 def closed_loop_with_process(
@@ -65,17 +62,14 @@ def closed_loop_with_process(
     """Run `passes` of `plant` under `table`, number `number` in the book of `controller`, both ways."""
     loop = close_loop(plant, len(table.stages))
     draws = loop.draws(passes)
-    started = time.perf_counter()
     inside = loop.run(TableController(table), draws)
-    turned = time.perf_counter()
     with line.connected(controller, number):
         process = run_passes(loop, TableController(table), draws, line)
-    ended = time.perf_counter()
     pairs = [(getattr(inside, name), getattr(process, name)) for name in vars(inside)]
     differs = np.zeros(len(inside), dtype=np.bool_)
     for one, other in pairs:
         differs |= one != other
-    return Comparison(inside, process, int(differs.sum()), turned - started, ended - turned)
+    return Comparison(inside, process, int(differs.sum()))
 
 
 def run_passes(loop: ClosedLoop, controller: TableController, draws: Draws, line: PipeLine) -> ExitSample:

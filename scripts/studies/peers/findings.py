@@ -89,17 +89,13 @@ class Contest:
 
 @dataclass(frozen=True)
 class Peers(Findings):
-    """All cases. `free_m2_s2`: what a command costs the tables for which it is free; free peers pay nothing.
-
-    `evaluations`: the most that tuning a peer took.
-    """
+    """All cases; `evaluations`: the most that tuning a peer took."""
 
     config_sha256: str
     seed: int
     passes: int
     tuning_passes: int
     evaluations: int
-    free_m2_s2: float
     contests: tuple[Contest, ...]
 
     def tables(self) -> Mapping[str, MarkdownTable]:

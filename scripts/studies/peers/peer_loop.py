@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from plant_models.stage_regulator import resting_modes
 from scripts.studies.peers.kernels.peer_loop import Hardware, run_peer_passes
 from scripts.studies.peers.kernels.prediction import MeanPath
@@ -38,9 +38,7 @@ class PeerLoop:
         sample, events = self._passes(regulator, draws, events)
         return trace_of(events, bool(sample.stalled[0]))
 
-    def _passes(
-        self, regulator: PeerRegulator, draws: Draws, events: NDArray[np.float64]
-    ) -> tuple[ExitSample, NDArray[np.float64]]:
+    def _passes(self, regulator: PeerRegulator, draws: Draws, events: Floats) -> tuple[ExitSample, Floats]:
         exits = empty_exits(len(draws.cut_factor))
         peer = regulator.peer(self.loop)
         count = run_peer_passes(self.loop.path, self.hardware, peer, self.path, draws, exits, events)
@@ -64,6 +62,6 @@ def mean_path(loop: ClosedLoop) -> MeanPath:
     )  # fmt: skip
 
 
-def left(work: NDArray[np.float64]) -> NDArray[np.float64]:
+def left(work: Floats) -> Floats:
     """From each edge to the exit, (C + 1,), by `work` (C,) of the cells."""
     return fixed(np.append(np.cumsum(work[::-1])[::-1], 0.0), np.float64)

@@ -8,16 +8,13 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from scripts.studies.peers.peer_loop import PeerLoop
 from scripts.studies.peers.regulators import PeerRegulator, PredictiveController, PulseController
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.passes import ExitSample
 from tuning_tables import Decisions, Estimator
-
-Floats = NDArray[np.float64]
-
 
 STEP = 0.02
 """Of the bounds of a number, where its grid has one point."""

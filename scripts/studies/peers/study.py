@@ -109,7 +109,7 @@ def run(options: Options, tell: Tell) -> Peers:
                for each in case if (each.permission, each.price) == (permission, price)]  # fmt: skip
     return Peers(
         config.sha256, config.validation.seed + FRESH, options.passes, options.tuning, max(count for _, count in found),
-        FREE_M2_S2, tuple(ordered),
+        tuple(ordered),
     )  # fmt: skip
 
 

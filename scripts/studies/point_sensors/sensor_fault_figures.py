@@ -36,17 +36,13 @@ class FaultCase:
 
 @dataclass(frozen=True)
 class FaultFigures:
-    """Exits of passes with the faults of a case; `rms_ratio`: their rms over that of the same passes without fault.
-
-    `overspeed_more`, `stalled_more`: shares of cuts beyond those without fault. The interval is the paired one, 95 %.
-    """
+    """Exits of passes with the faults of a case; `rms_ratio`: their rms over that of the same passes without fault; the
+    interval is the paired one, 95 %."""
 
     name: str
     statistics: ExitStatistics
     rms_ratio: float
     rms_ratio_ci95: Interval
-    overspeed_more: float
-    stalled_more: float
 
 
 def fault_figures(
@@ -57,14 +53,11 @@ def fault_figures(
     `controller` needs limits for its tracker. `ValueError` for fewer than two replicates of passes.
     """
     whole = loop.run(controller, draws, together(loop.sensors, ()))
-    before = exit_statistics(whole, target_m_s)
-    found = [FaultFigures("no fault", before, 1.0, (1.0, 1.0), 0.0, 0.0)]
+    found = [FaultFigures("no fault", exit_statistics(whole, target_m_s), 1.0, (1.0, 1.0))]
     for case in cases:
         sample = loop.run(controller, draws, together(loop.sensors, case.faults))
-        after = exit_statistics(sample, target_m_s)
-        ratio, ci95 = rms_ratio(sample, whole, target_m_s)
-        more = after.overspeed - before.overspeed, after.stalled - before.stalled
-        found.append(FaultFigures(case.name, after, ratio, ci95, *more))
+        statistics = exit_statistics(sample, target_m_s)
+        found.append(FaultFigures(case.name, statistics, *rms_ratio(sample, whole, target_m_s)))
     return tuple(found)
 
 

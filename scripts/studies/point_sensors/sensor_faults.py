@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import PointSensors
+from plant_models.frozen_arrays import Bools, Floats
 from plant_models.rolling.keyed_numbers import keyed_uniform
 from plant_models.rolling.random_numbers import Purpose
 from synth.kernels.loop.passage_loop import WATCHED_FROM_S
@@ -33,7 +33,7 @@ class Scene:
     sensors: PointSensors
     draws: Draws
 
-    def uniform(self, stream: int, columns: int) -> NDArray[np.float64]:
+    def uniform(self, stream: int, columns: int) -> Floats:
         """Uniform numbers of each pass, (n, `columns`)."""
         words = np.ascontiguousarray(self.draws.noise_z[:, KEY_COLUMNS]).view(np.uint32).astype(np.int64)
         return keyed_uniform(stream, Purpose.SENSOR_FAULT, (words[:, 0], words[:, 1]), columns).T
@@ -225,17 +225,17 @@ class LoneAxle:
         return also(pairs, HeardPairs(by_the_clock, np.arange(len(path)), every, np.full_like(every, self.speed_m_s)))
 
 
-def of_sensor(pairs: HeardPairs, sensor: int | None) -> NDArray[np.bool_]:
+def of_sensor(pairs: HeardPairs, sensor: int | None) -> Bools:
     """Marks the rows that are heard from `sensor`, or all, (R,)."""
     return np.ones(len(pairs.sensor), dtype=np.bool_) if sensor is None else pairs.sensor == sensor
 
 
-def without(pairs: HeardPairs, lost: NDArray[np.bool_]) -> HeardPairs:
+def without(pairs: HeardPairs, lost: Bools) -> HeardPairs:
     """The pairs but those that `lost`, of a shape like (n, R), marks."""
     return replace(pairs, after_s=np.where(lost, np.nan, pairs.after_s))
 
 
-def taken(pairs: HeardPairs, rows: NDArray[np.bool_]) -> HeardPairs:
+def taken(pairs: HeardPairs, rows: Bools) -> HeardPairs:
     """The rows alone that `rows` (R,) marks."""
     return HeardPairs(pairs.source[rows], pairs.sensor[rows], pairs.after_s[:, rows], pairs.told_m_s[:, rows])
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.problem.aim import Aim
 from synth.retarder.sensors.tuned_passages import PassageChains, rounded
 from synth.solver.backward_induction import solve
@@ -74,9 +74,7 @@ def with_known_friction(chain: Chain, factor: float) -> Chain:
     return replace(chain, scenarios=Scenarios(np.array([float(factor)]), np.zeros(1), np.ones(1)))
 
 
-def squares_at(
-    check: Chain, speeds: PassageSpeeds, target_m_s: float, factor: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def squares_at(check: Chain, speeds: PassageSpeeds, target_m_s: float, factor: Floats) -> Floats:
     """Mean squared error at each friction factor (F,), the resistance at its mean."""
     nothing = np.zeros(len(factor))
     return mean_squares(check, speeds, target_m_s, Scenarios(factor, nothing, np.ones(len(factor))))
@@ -91,7 +89,7 @@ def resistance_effect(check: Chain, speeds: PassageSpeeds, target_m_s: float) ->
     return float(weight @ found[:-1] - found[-1])
 
 
-def mean_squares(check: Chain, speeds: PassageSpeeds, target_m_s: float, scenarios: Scenarios) -> NDArray[np.float64]:
+def mean_squares(check: Chain, speeds: PassageSpeeds, target_m_s: float, scenarios: Scenarios) -> Floats:
     """Mean squared error in every scenario."""
     densities = scenario_densities(replace(check, scenarios=scenarios), speeds)
     return np.array([each.rms_m_s(target_m_s) ** 2 for each in densities])

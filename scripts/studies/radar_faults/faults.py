@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Plant
+from plant_models.frozen_arrays import Floats
 from synth.kernels.loop.passes import LONGEST_PASS_S
 from synth.simulation.random_passes import RandomPasses
 
 Numbers = NDArray[np.float32]
-Floats = NDArray[np.float64]
 
 Change = Callable[[Numbers, DopplerSensor, np.random.Generator], Numbers]
 """(z of all readings (n, m), sensor, chance) → z with the fault at every reading."""

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import Floats
 from scripts.studies.cases import Case, of_masses
 from scripts.studies.options import option
 from scripts.studies.radar_faults.categories import CutClass, mistaken_rows, own_rows
@@ -98,14 +99,14 @@ def case_row_of(tuned: TunedCase, passes: RandomPasses, seed: int) -> CaseRow:
     return CaseRow(case.name, tuple(rows))
 
 
-def moments_s(transit_s: NDArray[np.floating], seed: int) -> NDArray[np.float64]:
+def moments_s(transit_s: NDArray[np.floating], seed: int) -> Floats:
     """When the fault of each pass begins: uniform over the time that it takes without, alike for all faults."""
     return np.asarray(chance(seed, MOMENT).random(len(transit_s)) * transit_s, dtype=np.float64)
 
 
 def with_fault(
     plant: Plant, controller: TableController, passes: RandomPasses, fault: RadarFault,
-    starts_s: NDArray[np.float64], seed: int,
+    starts_s: Floats, seed: int,
 ) -> WatchedPasses:  # fmt: skip
     """All passes with the fault, some at a time."""
     loop, parts = close_loop(plant, controller.stages), []

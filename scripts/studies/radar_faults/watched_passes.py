@@ -9,15 +9,13 @@ without fault every pass is the simulator's to the last bit.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cache
 from threading import Lock
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from scripts.studies.regulated_lane import compiled, loop_at_rest
 from synth.kernels.compiled_rules import compiled_rule
 from synth.kernels.loop import regulator
@@ -43,7 +41,7 @@ class FreezingSensor(NamedTuple):
     period_s: float
     noise_m_s: float
     resolution_m_s: float
-    last_m_s: NDArray[np.float64]
+    last_m_s: Floats
 
 
 class Together(NamedTuple):
@@ -52,11 +50,10 @@ class Together(NamedTuple):
     stages: int
     breaks: int
     tables: tuple[LineTable, ...]
-    now: NDArray[np.int64]
+    now: Ints
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class WatchedPasses:
     """`seen` (n,): bits of all alarms that a pass had at any sample; `at_end` (n,): those of its last sample.
 
@@ -64,9 +61,9 @@ class WatchedPasses:
     """
 
     sample: ExitSample
-    seen: NDArray[np.int64]
-    at_end: NDArray[np.int64]
-    table: NDArray[np.int64]
+    seen: Ints
+    at_end: Ints
+    table: Ints
 
 
 def watched_passes(loop: ClosedLoop, controller: TableController, draws: Draws) -> WatchedPasses:
@@ -101,7 +98,7 @@ def passes_by_weight(
     return WatchedPasses(sample_of(exits, draws), *found)
 
 
-def together(rules: Sequence[regulator.Rule], now: NDArray[np.int64]) -> Any:
+def together(rules: Sequence[regulator.Rule], now: Ints) -> Any:
     """One law of all `rules`, for `_watching`."""
     first = rules[0].table
     tables = Together(first.stages, first.breaks, tuple(each.table for each in rules), now)

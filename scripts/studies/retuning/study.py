@@ -81,7 +81,6 @@ class Row:
     new_rms_m_s: float
     truth_rms_m_s: float
     recovered: float
-    predicted_ratio: float
     predicted_ci95: Interval
 
 
@@ -199,7 +198,7 @@ def retuned(yards: Yards, logged: int, seed: int) -> list[Row]:
         old, new, best = (yards.rms(gain.case, each) for each in tables)
         share = (old - new) / (old - best) if abs(old - best) > 1e-12 else 0.0
         name = f"{gain.label} to {gain.target_m_s:g} m/s"
-        rows.append(Row(logged, seed, name, gain in found.changed, old, new, best, share, gain.ratio, gain.ratio_ci95))
+        rows.append(Row(logged, seed, name, gain in found.changed, old, new, best, share, gain.ratio_ci95))
     return rows
 
 

@@ -31,7 +31,6 @@ class OutcomeRow:
     stalled_ci95: Interval
     switchings: float
     retuned_rms_m_s: float | None = None
-    retuned_ci95_m_s: Interval | None = None
 
     @property
     def cell(self) -> str:

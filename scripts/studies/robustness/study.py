@@ -104,9 +104,7 @@ def tuned_for(config: ResolvedConfig, trial: Trial, wanted: Sequence[Perturbatio
 def with_tuned(outcome: OutcomeRow, tuned: Mapping[str, OutcomeRow]) -> OutcomeRow:
     """`outcome` with the rms of the table tuned for its plant, if there is one."""
     best = tuned.get(outcome.name)
-    if best is None:
-        return outcome
-    return replace(outcome, retuned_rms_m_s=best.rms_m_s, retuned_ci95_m_s=best.rms_ci95_m_s)
+    return outcome if best is None else replace(outcome, retuned_rms_m_s=best.rms_m_s)
 
 
 def with_ends_tuned(row: EndsRow, tuned: Mapping[str, OutcomeRow]) -> EndsRow:

@@ -6,13 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.rolling.random_cuts import DrawnCuts
 from plant_models.rolling.roll_track import RollTrack
 
-Floats = NDArray[np.float64]
 LONGEST_S = 5000.0
 
 
@@ -29,7 +27,6 @@ TIGHT, LOOSE = Accuracy(1e-8, 1e-9, 0.2), Accuracy(1e-5, 1e-6, 2.0)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Motion:
     """Speeds and times at stations, 0 and infinite behind a stop; the stop, infinite without one."""
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -39,6 +40,9 @@ from synth.simulation.passes import PassTrace
 from synth.simulation.structure.diagram import Diagram, Sketch
 from synth.simulation.structure.passage_diagram import passage_diagram
 from synth.simulation.structure.radar_diagram import radar_diagram
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SENSORS = PointSensors((-5.0, 4.0, 10.0, 17.0, 24.0, 30.0))
 BRAKING_STEP_M_S2 = 0.22
@@ -267,3 +271,14 @@ def energy_rule(plant: Plant, sensors: PointSensors, target_m_s: float) -> Passa
 
 
 METHOD = Method(Options, Options(entries=(0.5,)), Structure, run)
+
+
+def figures(found: Structure) -> Mapping[str, Figure]:
+    """A diagram for each measuring system."""
+    from synth.retarder.pictures.block_diagram import block_diagram
+    from synth.retarder.pictures.block_layout import POINT_SENSOR_ROUTES, RADAR_ROUTES
+
+    return {
+        "radar": block_diagram(found.radar_sketch, RADAR_ROUTES),
+        "point-sensors": block_diagram(found.point_sensor_sketch, POINT_SENSOR_ROUTES),
+    }

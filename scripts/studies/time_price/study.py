@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from scripts.studies.markdown_table import MarkdownTable, plus_minus, table
 from scripts.studies.options import option
@@ -21,6 +22,9 @@ from synth.retarder.pareto.pareto_front import ParetoFront, told
 from synth.retarder.tune_case import pareto_front
 from synth.simulation.stratified_passes import stratified_passes
 from tuning_tables import Generator
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FRESH = 49979687
 
@@ -100,3 +104,10 @@ def configured(cases: int) -> ResolvedConfig:
 
 
 METHOD = Method(Options, Options(passes=200, cases=1), TimePrice, run)
+
+
+def figures(found: TimePrice) -> Mapping[str, Figure]:
+    """`fronts`, rms over the mean time in the position, a panel for each case, as a tune draws them."""
+    from synth.retarder.pictures.pareto_fronts import pareto_fronts
+
+    return {"fronts": pareto_fronts(found.fronts)}

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from scripts.studies.aiming.aimed_cuts import rolled_cuts
 from scripts.studies.aiming.hump import POINTS, weight_category, with_bends
 from scripts.studies.aiming.places import FreeDistance
@@ -21,8 +21,6 @@ from synth.aim.knowledge import ByCategory, ByReading, Knowledge
 from synth.aim.position_models import NormalPosition, PositionModel
 from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene, SceneCuts
-
-Floats = NDArray[np.float64]
 
 BUNCH_SPEED_M_S = {"L": 4.5, "T": 3.5}
 """Out of the bunch position. From 4.5 m/s the park position cannot hold heavy cars; see `brake_saturated`."""

@@ -22,7 +22,7 @@ from synth.aim.scene import AimScene
 EXIT_STD_M_S = 0.03
 """Of the exit speed where lengths and errors of sensors are compared: what our tables leave, nearly."""
 
-WRONG, MISSED, BY_HAND = 0.1, 0.1, 0.1
+WRONG, MISSED, BRAKED_BY_HAND = 0.1, 0.1, 0.1
 """Shares of records, passages and cuts at fault; assumed."""
 
 HAND_STD_M_S = 0.5
@@ -101,11 +101,13 @@ def fault_rows(
     )
     for name, knowledge in asked:
         yield Detail(name, tried(cuts, place, position, knowledge, p, draws)[0])
-    by_hand = HandBraked(position, BY_HAND, HAND_STD_M_S)
+    by_hand = HandBraked(position, BRAKED_BY_HAND, HAND_STD_M_S)
     rows = []
     for design, report in cuts.drawn(draws, place):
         rows.append(judged(design.at(position), report.at(by_hand), two, p))
-    yield Detail(f"{100 * BY_HAND:g} % of the cuts braked by hand, σ {HAND_STD_M_S:g}", outcomes(np.array(rows))[0])
+    yield Detail(
+        f"{100 * BRAKED_BY_HAND:g} % of the cuts braked by hand, σ {HAND_STD_M_S:g}", outcomes(np.array(rows))[0]
+    )
 
 
 def approach_row(cuts: Cuts, position: PositionModel, metres: float, p: float, draws: Draws) -> Approach:

@@ -5,28 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
 from plant_models.rolling.random_numbers import Purpose
 from synth.aim.knowledge import ByCategory, Commands, Knowledge, Requirement
 from synth.aim.position_models import ExitSpeeds, PositionModel
 from synth.aim.scene import SceneCuts
-
-Floats = NDArray[np.float64]
 
 BY_HAND, HAND_SIZE = 1, 2
 """Columns of the numbers for exit errors: which cuts are braked by hand, and how far that misses."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class HandBrakedExits:
     """`exits`, but for the cuts `by_hand` (n,): they leave with the command and `error_m_s` (n,)."""
 
     exits: ExitSpeeds
-    by_hand: NDArray[np.bool_]
+    by_hand: Bools
     error_m_s: Floats
 
     def at(self, commanded_m_s: Floats) -> Floats:

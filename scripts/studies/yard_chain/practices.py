@@ -6,13 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from scripts.studies.aiming.trial import Value, value_if_known
 from scripts.studies.yard_chain.chain import CATEGORY, ESTIMATED, MEASURED, Kind
-
-Floats = NDArray[np.float64]
 
 TODAY_EXIT = "σ 0.4"
 
@@ -21,7 +18,6 @@ LIGHT_STRAIGHT, HEAVY_STRAIGHT = Kind("L", 1, True), Kind("T", 1, True)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Samples:
     """Figures of every replicate (replicates, knowledge, positions, places, FIGURES) with the names of two axes."""
 

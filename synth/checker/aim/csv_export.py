@@ -9,8 +9,8 @@ from typing import Any, Final
 from synth.checker.aim.reading import FIGURES, Aim
 from synth.checker.aim.rule import exit_speed
 from synth.checker.aim.sense import at
-from synth.checker.csv_export import Rows, checksum_of, rows_of, same, with_exporter
-from synth.checker.finding import DamagedError, shown
+from synth.checker.csv_export import Rows, checksum_of, row_differences, rows_of, same, with_exporter
+from synth.checker.finding import DamagedError
 from synth.checker.float32 import bits, from_bits, rounded
 from synth.checker.source_file import rows_below
 
@@ -21,7 +21,7 @@ GOLDEN_HEAD: Final = [
 ]  # fmt: skip
 
 
-def differences(rows: Rows, aim: Aim) -> Iterator[str]:
+def aim_sheet_differences(rows: Rows, aim: Aim) -> Iterator[str]:
     """Each row that is not what the table says."""
     whole = with_exporter(aim.document, rows)
     document = {**whole, "reported": {"passes": aim.document["reported"]["passes"]}}
@@ -34,14 +34,7 @@ def differences(rows: Rows, aim: Aim) -> Iterator[str]:
         resistance = aim.resistances[r] if aim.is_measured else None
         told = [at(nodes, place) for nodes in (aim.speeds, *aim.figures.values())]
         wanted["node", str(number)] = [aim.cars[c], aim.distances_m[d], resistance, *told]
-    for key in sorted(wanted.keys() | rows.keys()):
-        name = ",".join(key)
-        if key not in rows:
-            yield f"the row {name} is missing"
-        elif key not in wanted:
-            yield f"the row {name} is in no table"
-        elif not same_cells(key[0], rows[key], wanted[key]):
-            yield f"the row {name} holds {shown(rows[key])}, but the table says {shown(wanted[key])}"
+    yield from row_differences(rows, wanted, same_cells)
 
 
 def same_cells(record: str, cells: tuple[str, ...], values: list[Any]) -> bool:
@@ -56,7 +49,7 @@ def same_cells(record: str, cells: tuple[str, ...], values: list[Any]) -> bool:
     return same(record, tuple(cell for cell in given if cell), [value for value in values if value is not None])
 
 
-def golden_differences(content: bytes, aims: Sequence[Aim]) -> Iterator[tuple[str, str]]:
+def aim_differences(content: bytes, aims: Sequence[Aim]) -> Iterator[tuple[str, str]]:
     """(about, sentence) for tables with wrong golden aims, the first of each; each answer is worked out anew."""
     rows = rows_below(GOLDEN_HEAD, content)
     by_id = {aim.id: aim for aim in aims}

@@ -9,7 +9,7 @@ from synth.checker.code_export import Due
 from synth.checker.code_records import Numbers
 
 
-def due(aims: Sequence[Aim]) -> Due:
+def due_of_aims(aims: Sequence[Aim]) -> Due:
     """What an export of these tables must hold, in their order."""
     categories = {aim.category_name: aim.category for aim in aims}
     return Due([aim.id for aim in aims], [held(aim, aims) for aim in aims], categories)

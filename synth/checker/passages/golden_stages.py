@@ -15,7 +15,7 @@ from synth.checker.source_file import rows_below
 HEAD: Final = ["table", "id", "passage", "stage", "reading_m_s_bits", "wanted", "reading_m_s"]
 
 
-def differences(content: bytes, tables: Sequence[PassageTable]) -> Iterator[tuple[str, str]]:
+def stage_differences(content: bytes, tables: Sequence[PassageTable]) -> Iterator[tuple[str, str]]:
     """(about, sentence) for tables with wrong stages, the first of each."""
     rows = rows_below(HEAD, content)
     by_id = {table.id: table for table in tables}

@@ -10,7 +10,7 @@ from synth.checker.passages.reading import PassageTable
 from synth.checker.passages.rule import LARGEST, passages_heard
 
 
-def due(tables: Sequence[PassageTable]) -> Due:
+def due_of_passages(tables: Sequence[PassageTable]) -> Due:
     """What an export of these tables must hold, in their order."""
     categories = {table.category: table.category_number or 0 for table in tables}
     return Due([table.id for table in tables], [held(table, tables) for table in tables], categories)

@@ -8,13 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.computer.economics.hump_rates import RATES, HumpChange, HumpRates
 from synth.computer.economics.uncertainty.ranges import Range, range_of
 from synth.frame.interval import Interval
@@ -22,9 +20,6 @@ from synth.frame.settings.changed import made
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.shift_sums import longer_shifts, shift_sums
 from synth.hump.trains.train_figures import FEWEST_TRAINS, share, train_figures
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SECONDS_PER_H = 3600.0
 
@@ -41,7 +36,6 @@ NAMES = {
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class TrainSums:
     """Of n trains, or shifts of them, what each figure of `HumpRates` counts and what it is a share of: `hits`, `base`
     (8, n)."""

@@ -8,10 +8,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from synth.computer.economics.uncertainty.tornado import Tornado
+from synth.computer.pictures.pay_back_over_traffic import THOUSAND
 from synth.frame.picture.house_style import BLUE, INK, ORANGE, dress, legend_below, new_figure, place
 
 MOST_BARS = 14
-THOUSAND = 1000.0
 
 
 def tornado_bars(found: Tornado, currency: str) -> Figure:

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from synth.computer.pictures.pay_back_over_traffic import THOUSAND
 from synth.computer.reliability.duplex import single_availability
 from synth.computer.reliability.failure_losses import HOURS_PER_YEAR
 from synth.computer.resolved_computer import ResolvedComputer
@@ -22,7 +23,6 @@ from synth.frame.picture.house_style import (
 )
 
 INTERVALS = 200
-THOUSAND = 1000.0
 
 
 def upkeep_interval(config: ResolvedComputer) -> Figure:

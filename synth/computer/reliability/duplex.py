@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require
-
-Floats = NDArray[np.float64]
-
+from plant_models.frozen_arrays import Floats
 
 LONGEST_CHECK = 3.0
 """Up to so many mean times between failures of a check, availability falls for all longer periods. With 3.6 and more it

@@ -7,11 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.computer.reliability.failure_losses import HOURS_PER_YEAR
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.computer.sizing.demand_service import Discipline
-from synth.computer.sizing.service_law import Floats
 from synth.computer.sizing.task import Stream, require_not_overloaded
 from synth.frame.interval import Interval
 
@@ -30,7 +29,6 @@ CONFIDENCE = 0.95
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Requests:
     """Requests in the order in which they come: times in s, which stream, and the service that each needs, (n,)."""
 
@@ -40,7 +38,6 @@ class Requests:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Served:
     """What became of `requests`: when the service of each began, and when it was done, (n,)."""
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require
+from plant_models.frozen_arrays import Floats
 
-Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
 

@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
+from plant_models.frozen_arrays import Floats
 from synth.computer.sizing.demand_service import Discipline
 from synth.computer.sizing.laplace_inversion import Inverted, inverted
-from synth.computer.sizing.service_law import Complexes, Constant, Exponential, Floats
+from synth.computer.sizing.service_law import Complexes, Constant, Exponential
 from synth.computer.sizing.task import Stream, require_not_overloaded
 from synth.computer.sizing.waiting_transform import WaitLaw, sojourn_law, start_law
 

@@ -11,28 +11,28 @@ from synth.frame.page.document import Stamp, document
 from synth.frame.page.markup import Markup, element, joined
 from synth.frame.page.page_table import shown_table
 from synth.frame.page.told_page import VERDICTS, to_do_box
-from synth.frame.terminal.printed_page import Exhibit, Verdict
+from synth.frame.terminal.printed_page import Printed, PrintedVerdict
 from synth.frame.terminal.printed_table import PrintedTable
 
 INDENT: Final = "  "
 """A sentence that begins so is a fact of the one before it."""
 
 
-def printed_document(stamp: Stamp, page: Sequence[Exhibit], steps: Sequence[str] = ()) -> str:
+def printed_document(stamp: Stamp, page: Sequence[Printed], steps: Sequence[str] = ()) -> str:
     """One HTML document of `page`: its verdicts, and `steps` to take first, above all else."""
-    verdicts = (verdict_box(each) for each in page if isinstance(each, Verdict))
-    shown = joined(parts([each for each in page if not isinstance(each, Verdict)]))
+    verdicts = (sentence_box(each) for each in page if isinstance(each, PrintedVerdict))
+    shown = joined(parts([each for each in page if not isinstance(each, PrintedVerdict)]))
     return document(stamp, joined((*verdicts, to_do_box(steps))), (("found", "What was found", shown),))
 
 
-def verdict_box(verdict: Verdict) -> Markup:
+def sentence_box(verdict: PrintedVerdict) -> Markup:
     """The verdict in a sentence."""
     word, style = VERDICTS[verdict.kept]
     head, sentence = element("p", element("strong", word)), element("p", verdict.sentence)
     return element("section", head, sentence, class_=f"verdict {style}", id="verdict")
 
 
-def parts(page: Sequence[Exhibit]) -> Iterator[Markup]:
+def parts(page: Sequence[Printed]) -> Iterator[Markup]:
     """Sentences, facts in a list below the sentence that they belong to, and tables."""
     for is_fact, group in groupby(page, lambda each: isinstance(each, str) and each.startswith(INDENT)):
         if is_fact:
@@ -47,7 +47,7 @@ def fact(text: str) -> Markup:
     return element("li", element("strong", name), f" {told.strip()}") if told else element("li", name)
 
 
-def sentence_or_table(each: Exhibit) -> Markup:
+def sentence_or_table(each: Printed) -> Markup:
     """What is no fact of a sentence before it."""
     if isinstance(each, PrintedTable):
         return shown_table(replace(each.table, title=each.table.title or each.elsewhere), each.columns)

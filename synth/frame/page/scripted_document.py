@@ -13,12 +13,12 @@ from synth.frame.page.page_style import STYLE
 SPEED_UNITS: Final = files("synth.frame.page").joinpath("speed_units.js").read_text(encoding="utf-8")
 """The script of pages whose user chooses the unit of speeds."""
 
-POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"
+SCRIPT_POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"
 """Of the security of its content."""
 
 
 def scripted_document(
-    title: str, style: str, content: Sequence[Markup], data: object, scripts: Sequence[str], policy: str = POLICY
+    title: str, style: str, content: Sequence[Markup], data: object, scripts: Sequence[str], policy: str = SCRIPT_POLICY
 ) -> str:
     """One document: `content`, then `data` in the element "data", then `scripts` in their order.
 

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
-
 from pydantic import ValidationError
 
 from synth.frame.input_error import InputError
+from synth.frame.settings.changed import S
 from synth.frame.settings.file_fault import faults_in
-from synth.frame.settings.section import Section
 from synth.frame.settings.toml_file import Tree, toml_tree
-
-S = TypeVar("S", bound=Section)
 
 BUILT_IN = "built-in configuration"
 

@@ -11,7 +11,7 @@ from enum import Enum
 from typing import Any
 
 from synth.frame.input_error import InputError
-from synth.frame.terminal.printed_page import Exhibit, Verdict, print_page
+from synth.frame.terminal.printed_page import Printed, PrintedVerdict, print_page
 from synth.frame.terminal.telling import say
 
 
@@ -60,12 +60,12 @@ class Manner:
         if not self.quiet:
             say(sentence)
 
-    def give(self, document: Callable[[], Any], page: Callable[[], Iterable[Exhibit]]) -> None:
+    def give(self, document: Callable[[], Any], page: Callable[[], Iterable[Printed]]) -> None:
         """Print the results to stdout: the `document` for programs, or the `page`; of it at times the verdict alone."""
         if self.as_json:
             print(json.dumps(document(), indent=1, ensure_ascii=False))
         else:
-            print_page(*(each for each in page() if not self.quiet or isinstance(each, Verdict)))
+            print_page(*(each for each in page() if not self.quiet or isinstance(each, PrintedVerdict)))
 
 
 def manner_of(as_json: bool, quiet: bool, verbose: bool) -> Manner:

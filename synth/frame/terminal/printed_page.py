@@ -11,7 +11,7 @@ from synth.frame.terminal.printed_words import HANGING, wrapped
 
 
 @dataclass(frozen=True)
-class Verdict:
+class PrintedVerdict:
     """Whether the limits are kept, None where that is not decided, and the sentence that says so; in colour where the
     terminal has some."""
 
@@ -26,11 +26,11 @@ VERDICTS: Final = {
 }
 """Word and style."""
 
-Exhibit: TypeAlias = PrintedTable | Verdict | str
+Printed: TypeAlias = PrintedTable | PrintedVerdict | str
 """A string is a sentence, or a few; spaces at its beginning are kept."""
 
 
-def print_page(*page: Exhibit) -> None:
+def print_page(*page: Printed) -> None:
     """Print to stdout; where that is no terminal, nothing is left out and no line is broken."""
     from rich.console import Console
     from rich.text import Text
@@ -40,14 +40,14 @@ def print_page(*page: Exhibit) -> None:
         console.print(Text(line, style))
 
 
-def page_lines(page: tuple[Exhibit, ...], width: int | None) -> Iterator[tuple[str, str]]:
+def page_lines(page: tuple[Printed, ...], width: int | None) -> Iterator[tuple[str, str]]:
     """Lines, none longer than `width` characters, and their styles; a blank line stands on both sides of a table."""
     for place, exhibit in enumerate(page):
         if isinstance(exhibit, PrintedTable):
             apart = place > 0 and not isinstance(page[place - 1], PrintedTable)  # a table has a blank line below it
             lines = [*[""] * apart, *table_lines(exhibit, width), *[""] * (place < len(page) - 1)]
             yield from ((line, "") for line in lines)
-        elif isinstance(exhibit, Verdict):
+        elif isinstance(exhibit, PrintedVerdict):
             word, style = VERDICTS[exhibit.kept]
             yield from ((line, style) for line in sentence_lines(f"{word}: {exhibit.sentence}", width))
         else:

@@ -7,25 +7,25 @@ from pathlib import Path
 
 from synth.frame.exhibits import Exhibit as Shown
 from synth.frame.exhibits import Sentence, Table, exhibits_of
-from synth.frame.terminal.printed_page import Exhibit, Verdict
+from synth.frame.terminal.printed_page import Printed, PrintedVerdict
 from synth.frame.terminal.printed_table import PrintedTable
 from synth.frame.told import Told
 
 
-def page_of_run(told: Told, directory: Path, files: Sequence[str]) -> Iterator[Exhibit]:
+def page_of_run(told: Told, directory: Path, files: Sequence[str]) -> Iterator[Printed]:
     """What is printed of it; `files`: names of what was written."""
     yield from printed(told)
     yield f"{directory}: {', '.join(folders_and_files(files))}"
 
 
-def printed(told: Told) -> Iterator[Exhibit]:
+def printed(told: Told) -> Iterator[Printed]:
     """The brief exhibits in their order, then the verdict."""
     yield from brief_exhibits(exhibits_of(told.chapters), "summary.json")
     if told.verdict.limits:
-        yield Verdict(told.verdict.kept, told.verdict.sentence)
+        yield PrintedVerdict(told.verdict.kept, told.verdict.sentence)
 
 
-def brief_exhibits(exhibits: Iterable[Shown], elsewhere: str) -> Iterator[Exhibit]:
+def brief_exhibits(exhibits: Iterable[Shown], elsewhere: str) -> Iterator[Printed]:
     """Those that a terminal shows; `elsewhere` names the place of what it has no room for."""
     for each in exhibits:
         if isinstance(each, Sentence) and each.brief:

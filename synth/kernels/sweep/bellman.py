@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import Floats, Ints
+from plant_models.frozen_arrays import Floats
 from synth.kernels.compiling import kernel, part
 from synth.kernels.sweep.chain_arrays import Scenario, change_at
 from synth.kernels.sweep.drawn_lines import Drawing, Gains, add_gains, draw_lines

@@ -9,17 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.logs.drift.causes import Cause
 from synth.logs.drift.evidence import Evidence
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 RUN_LENGTH = 10_000.0
 """Passes between two false alarms, at least, of all charts together."""
@@ -32,7 +27,6 @@ WINDOW, FEWEST = 25, 10
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Charts:
     """The sums of all watched drifts: `sums` (m, charts) after each pass; `kinds`: (number of the cause, size)."""
 
@@ -86,7 +80,6 @@ def page_sums(steps: Floats, before: Floats | float = 0.0) -> Floats:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class CategoryExits:
     """Exits of the passes of one weight category, with a known target: `numbers` of the passes, `errors_m_s` of exit
     speed less target, `medians_m_s` running (`running_medians`). They are for the eye: no alarm comes from them."""

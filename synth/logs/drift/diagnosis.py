@@ -11,13 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.logs.drift.causes import TIMES, Cause
 from synth.logs.drift.charts import Charts
 from synth.logs.drift.evidence import Evidence
-
-Floats = NDArray[np.float64]
 
 BACK = 30
 """A drift may have begun so many passes before the chart that gave the alarm left 0."""

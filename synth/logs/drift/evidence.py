@@ -7,27 +7,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.logs import unknowns as asked
 from synth.logs.drift.causes import Cause
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.likelihood import Innovations, Likelihood, likelihood_of
 from synth.logs.unknowns import OF_VALVES
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 CHUNK = 250
 """Passes worked on at a time."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Evidence:
     """Of m passes for c causes: `ratios[i]` (m, sizes of cause i), logarithms, 0 at the neutral size.
 

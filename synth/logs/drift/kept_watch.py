@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.logs.drift.baseline import configured
 from synth.logs.drift.causes import Cause, causes_of
 from synth.logs.drift.charts import Charts, kinds_of, limit_of, page_sums, steps_of
@@ -23,8 +23,6 @@ from synth.retarder.configuration.resolved_config import ResolvedConfig
 from tuning_tables.pass_log.join_logs import join_logs
 from tuning_tables.pass_log.pass_log import ROWS, PassLog
 
-Floats = NDArray[np.float64]
-
 LEAST_KEPT: Final = 100
 """Passes that are kept at least: those ahead of a drift tell what exits were in order."""
 
@@ -33,7 +31,6 @@ MOST_KEPT: Final = 400
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class KeptWatch:
     """What is kept of a position between two runs.
 

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import Floats
 from synth.frame.picture.house_style import (
     BLUE,
     GREY,
@@ -111,7 +111,7 @@ def reach_m_s(exits: tuple[CategoryExits, ...]) -> float:
     return max([LEAST_REACH_M_S, *spreads, *medians])
 
 
-def spread_of(errors: NDArray[np.float64]) -> float:
+def spread_of(errors: Floats) -> float:
     """Standard deviation by the quartiles, which few large errors do not move."""
     low, high = np.quantile(errors, [0.25, 0.75])
     return float(high - low) / 1.3489795

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.logs import unknowns as asked
 from synth.logs.drift.causes import causes_of
 from synth.logs.drift.charts import CategoryExits, Charts, charts_of, running_medians
@@ -18,9 +17,6 @@ from synth.logs.drift.drift_size import DriftSize, drift_size
 from synth.logs.drift.evidence import Evidence, evidence_of
 from synth.logs.fitting_passes import FittingPasses
 from synth.problem.aim import OVERSPEED_M_S
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -47,7 +43,6 @@ class Drift:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Watch:
     """Charts along the passes that nobody stopped by hand, `errors_m_s` (m,) of their exits, and the drift if any.
 
@@ -62,7 +57,7 @@ class Watch:
     drift: Drift | None
 
     @cached_property
-    def full_brake(self) -> NDArray[np.bool_]:
+    def full_brake(self) -> Bools:
         """Passes with the highest stage that their class may be given until their last row, (m,): they may have left
         too fast whatever the table."""
         log = self.passes.log

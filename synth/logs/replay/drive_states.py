@@ -3,29 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.logs.fitting_passes import FittingPasses
 from synth.simulation.closed_loop import SUBSTEP_S
 from tuning_tables.pass_log.pass_log import PassLog
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class DriveStates:
     """Of n rows: `resting`: the command before has come to rest, by the model; `stage_before` in force until the row;
     `overpressure_kpa`: mean of max(0, P − P0) since the sample before, 0 at the first."""
 
-    resting: NDArray[np.bool_]
+    resting: Bools
     stage_before: Ints
     overpressure_kpa: Floats
 
@@ -46,7 +40,7 @@ def drive_states(passes: FittingPasses) -> DriveStates:
 class Columns(NamedTuple):
     """Memory for `DriveStates`, while it is filled."""
 
-    resting: NDArray[np.bool_]
+    resting: Bools
     stage_before: Ints
     overpressure_kpa: Floats
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.loop.motion import brake_rows
 from synth.kernels.loop.passes import Draws
@@ -22,9 +20,6 @@ from synth.simulation.controllers import fixed
 from synth.simulation.lost_readings import readings_z
 from synth.simulation.random_passes import RandomPasses
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 OTHER_RESISTANCE = 1.25
 """Times its mean: where the friction is asked for a second time."""
 
@@ -33,7 +28,6 @@ KNOWN_SPREAD = 1e-6
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class KnownCuts:
     """(m,) each. Of the resistance w: `resistance_n_per_kn`, `resistance_variance`; of the friction ξ, given w:
     `friction` at w = `at_n_per_kn`, `by_resistance` dξ/dw, `friction_std`. `force`: brake on the cut over that on one

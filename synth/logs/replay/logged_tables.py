@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Ints, frozen_arrays
 from synth.logs.fitting_passes import FittingPasses
 from tuning_tables import ControllerTable
 from tuning_tables.active_table import ActiveTable
 from tuning_tables.table_book import Choice, Status, TableBook
 
-Ints = NDArray[np.int64]
-
 NO_TABLE = -1
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class LoggedTables:
     """`tables` that passes are regulated with; `of_pass` (m,): number of that of each pass, `NO_TABLE` for none, and
     then `reason` (m of them) says why; '' otherwise."""

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.measured.pass_filter import SLOWEST_M_S
 from synth.logs import unknowns as asked
@@ -16,14 +14,11 @@ from synth.logs.fitting_passes import FittingPasses
 from synth.logs.likelihood import Innovations, Likelihood
 from synth.logs.pass_rows import on, scales, way_of
 
-Floats = NDArray[np.float64]
-
 LONGEST_GAP_S = 0.6
 """A pass whose last reading is longer before the exit has no measured exit."""
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class MeasuredExits:
     """(m,) of the passes: exit speed and its standard error, NaN if the log ends too early; 0 if the cut stood."""
 
@@ -56,7 +51,7 @@ def measured_exits(like: Likelihood, found: Innovations, values: Mapping[str, fl
     return MeasuredExits(np.where(stood, 0.0, speed), np.where(stood, 0.0, std))
 
 
-def last_readings(passes: FittingPasses, bias: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def last_readings(passes: FittingPasses, bias: float) -> tuple[Ints, Ints]:
     """Row of the last usable reading before the exit of each pass, and its number among the innovations, (m,); −1 for
     none. The first usable reading of a pass has no innovation."""
     log = passes.log
@@ -73,9 +68,7 @@ def last_readings(passes: FittingPasses, bias: float) -> tuple[NDArray[np.int64]
     return rows, np.where(rows >= 0, number[rows], -1)
 
 
-def to_the_exit(
-    like: Likelihood, found: Innovations, values: Mapping[str, float], rows: NDArray[np.int64]
-) -> tuple[Floats, Floats]:
+def to_the_exit(like: Likelihood, found: Innovations, values: Mapping[str, float], rows: Ints) -> tuple[Floats, Floats]:
     """Metres from `rows` (m,) to the exit, and energy per mass that is gained on them, by what is known of the cuts."""
     passes, log = like.passes, like.passes.log
     left, gained = np.zeros(len(log)), np.zeros(len(log))

@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.replay.known_cuts import KnownCuts, draws_of
 from synth.problem.aim import OVERSPEED_M_S
@@ -16,9 +15,6 @@ from synth.simulation.closed_loop import close_loop
 from synth.simulation.controllers import TableController
 from synth.simulation.random_passes import random_passes
 from tuning_tables.active_table import ActiveTable
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 TOGETHER = 4000
 """Passes of the closed loop in memory at a time."""
@@ -28,7 +24,6 @@ BAND = (0.1, 0.9)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class PredictedExits:
     """Of m passes under one table: `mean_m_s` and `band_m_s` (m, 2) of the exit speed, `square_m2_s2` mean square of
     exit − target, `overspeed` chance of an exit more than 0.3 m/s too fast; NaN where there is no prediction."""

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.likelihood import likelihood_of
 from synth.logs.replay.known_cuts import known_cuts
@@ -25,8 +24,6 @@ from synth.logs.replay.rule_agreement import RuleAgreement, rule_agreement
 from synth.logs.unknowns import slope_of, unknowns_of, values_at
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from tuning_tables import ControllerTable
-
-Floats = NDArray[np.float64]
 
 STOPPED = "a person took part in it"
 NO_EXIT = "the log ends before the exit"
@@ -59,7 +56,6 @@ class Uniformity:
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Replay:
     """What another book would have done in `passes`.
 
@@ -77,7 +73,7 @@ class Replay:
     measured: MeasuredExits
     fresh_m_s: Floats
     rank: Floats
-    compared: NDArray[np.bool_]
+    compared: Bools
     left_out: tuple[tuple[str, str], ...]
     difference: Difference
     uniformity: Uniformity
@@ -148,7 +144,7 @@ def left_out(
     return tuple(found)
 
 
-def difference(own: PredictedExits, other: PredictedExits, compared: NDArray[np.bool_], seed: int) -> Difference:
+def difference(own: PredictedExits, other: PredictedExits, compared: Bools, seed: int) -> Difference:
     """Over the passes `compared`; all NaN where there is none."""
     a, b = own.square_m2_s2[compared], other.square_m2_s2[compared]
     over_a, over_b = own.overspeed[compared], other.overspeed[compared]

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.replay.drive_states import DriveStates, drive_states
 from synth.logs.replay.logged_tables import NO_TABLE, LoggedTables
@@ -16,14 +13,10 @@ from tuning_tables.estimator import begin
 from tuning_tables.pass_log.pass_log import PassLog
 from tuning_tables.rule import decide_many, speed_for
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 NOT_ASKED = -1
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class RuleAgreement:
     """`wanted` (n,): the stage that the table of the pass commands at each row, `NOT_ASKED` where it is not asked or
     there is no table; `commanded` (n,) as logged; `stage_before` (n,); `first_differing` (m,): the row where each pass
@@ -35,7 +28,7 @@ class RuleAgreement:
     first_differing: Ints
 
     @property
-    def asked(self) -> NDArray[np.bool_]:
+    def asked(self) -> Bools:
         """Rows at which the table is asked, (n,)."""
         return np.asarray(self.wanted != NOT_ASKED)
 

@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from synth.frame.page.markup import Markup, element
-from synth.frame.page.scripted_document import POLICY, scripted_document
+from synth.frame.page.scripted_document import SCRIPT_POLICY, scripted_document
 from synth.retarder.bench.bench_pass import BenchPass
 from synth.retarder.bench.cases import BenchCase
 from synth.retarder.bench.exchange import Exchange
@@ -101,7 +101,7 @@ PAGE: Final = "/now"
 def live_page(title: str) -> bytes:
     """The whole document."""
     content = (element("h1", f"{title}: on the bench"), Markup(part("live.html")))
-    policy = f"{POLICY}; connect-src 'self'"
+    policy = f"{SCRIPT_POLICY}; connect-src 'self'"
     text = scripted_document(f"{title}: on the bench", part("live.css"), content, PAGE, [part("live.js")], policy)
     return text.encode()
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from plant_models import Plant, pads, pressure_regulator
+from plant_models import Plant, pressure_regulator
+from plant_models.pads import overpressure_kpa
 from plant_models.stage_regulator import Actuator, RegulatorClock, reaches_valves_s
 from plant_models.valve_drive import wait_after_command
 from synth.kernels.loop.motion import Path
@@ -102,7 +103,7 @@ def pad_parts(plant: Plant, path: Path) -> tuple[Part, ...]:
     return (
         Part(
             "dead zone of the pads", "", Block.PADS, "brakes only with the pressure above the touch of the pads",
-            pads.overpressure_kpa, takes=(("pressure_kpa", "P"),), gives=("p",), given=(("touch_kpa", touch),),
+            overpressure_kpa, takes=(("pressure_kpa", "P"),), gives=("p",), given=(("touch_kpa", touch),),
             numbers=(Number("P0", touch, "kPa"),),
         ),
         Part(

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from plant_models.frozen_arrays import Floats
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
-from scripts.studies.rolling.by_scipy import Floats, acceleration, solved
+from scripts.studies.rolling.by_scipy import acceleration, solved
 from tests.effort import every, sized
 from tests.oracles.rolling.made_cuts import random_cuts, random_track, rolling
 

@@ -7,7 +7,8 @@ import pytest
 from scipy import stats
 
 from plant_models import PlantError, RollingResistance
-from plant_models.rolling.resistance_law import Floats, HumpNormLaw, ResistanceLaw, Tb10062Law
+from plant_models.frozen_arrays import Floats
+from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.roll_track import Bend
 from tests.plant_models.rolling.populations import CATEGORIES
 

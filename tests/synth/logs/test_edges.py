@@ -8,17 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
+from plant_models.frozen_arrays import Floats
 from synth.logs import unknowns as asked
-from synth.logs.estimate import (
-    CENTRAL,
-    NEAR,
-    Floats,
-    Linearised,
-    Posterior,
-    Side,
-    beside_edges,
-    highest,
-)
+from synth.logs.estimate import CENTRAL, NEAR, Linearised, Posterior, Side, beside_edges, highest
 from synth.logs.unknowns import positive
 
 EDGE, FLAT_STD, STEEP = 0.15, 0.06, 4000.0

@@ -15,7 +15,6 @@ from scripts.studies.tuned_table import tuned_table
 from scripts.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, LIGHT, Change, simulated
 from synth.cli import main
 from synth.logs import unknowns as asked
-from synth.logs.drift import baseline
 from synth.logs.drift.baseline import configured
 from synth.logs.drift.causes import causes_of
 from synth.logs.drift.drift_size import drift_size
@@ -175,7 +174,7 @@ def test_drifts_are_counted_from_the_reference(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The sensor always showed 0.1 m/s too much: that is no drift. From pass 31 on it shows the truth: that is one."""
-    monkeypatch.setattr(baseline, "LEAST_REFERENCE", 60)  # these tell a bias well enough, and sooner
+    monkeypatch.setattr("synth.logs.drift.baseline.LEAST_REFERENCE", 60)  # these tell a bias well enough, and sooner
     tables = [(config.plants()[0][1], table)]
     reference, biased = (simulated(tables, BIASED, n, seed, None) for n, seed in ((60, 5), (30, 6)))
     log = one_after_the_other(join_logs([biased, simulated(tables, IN_ORDER, 30, 7, None)]), 30.0)

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from tests.tuning_tables.pass_log.sample_logs import sample_log
+from tuning_tables.pass_log.log_columns import Floats
 from tuning_tables.pass_log.log_files import read_logs, write_log
-from tuning_tables.pass_log.pass_log import Floats, PassLog
+from tuning_tables.pass_log.pass_log import PassLog
 from tuning_tables.pass_log.path_resets import path_resets_m, path_set_right_m
 
 ROW = 95

@@ -18,11 +18,10 @@ from tests.tuning_tables.st.conftest import oddly_named_book, shaped_book
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.exported_forms import FORMS
 from tests.tuning_tables.st.syntax import faults, parse, walk
-from tuning_tables import InvalidTable, st_source
+from tuning_tables import InvalidTable
 from tuning_tables.aim import AimTables
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import ExportPrefix
-from tuning_tables.passages import st_source as passage_st_source
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.st_source import passage_export
 from tuning_tables.self_test_size import SMALL
@@ -122,9 +121,10 @@ def test_as_many_tables_as_are_allowed_are_exported_and_no_more(
 ) -> None:
     passages = PassageBook((passage_table(stages=2),))
     of_lines, of_passages = (partial(line_export, small_book), partial(passage_export, passages))
-    for module, tables, export in ((st_source, 2, of_lines), (passage_st_source, 1, of_passages)):
-        monkeypatch.setattr(module, "MOST_TABLES", tables)
+    lines, of_sensors = "tuning_tables.st_source.MOST_TABLES", "tuning_tables.passages.st_source.MOST_TABLES"
+    for most, tables, export in ((lines, 2, of_lines), (of_sensors, 1, of_passages)):
+        monkeypatch.setattr(most, tables)
         assert export(self_test=SMALL)
-        monkeypatch.setattr(module, "MOST_TABLES", tables - 1)
+        monkeypatch.setattr(most, tables - 1)
         with pytest.raises(InvalidTable, match=f"{tables} tables, .*at most {tables - 1}"):
             export(self_test=SMALL)

@@ -5,16 +5,12 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import PlantError, require
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.computer.economics.uncertainty.ranges import Constant, Range
-
-Floats = NDArray[np.float64]
 
 Model = Callable[[Mapping[str, float]], Mapping[str, float]]
 """Named inputs to named outputs, always the same names. Infinite: never. `PlantError`: these inputs are impossible."""
@@ -23,7 +19,6 @@ Ranges = Mapping[str, Range]
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Evaluations:
     """Outputs at n points: `values` (outputs, n), NaN where the inputs were impossible; `faults`: how many of these
     gave which sentence, the most frequent first (of sentences that differ in numbers alone, the first one stands for

@@ -7,9 +7,8 @@ import zlib
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
 from synth.computer.economics.uncertainty.model import (
     Evaluations,
     Model,
@@ -20,13 +19,10 @@ from synth.computer.economics.uncertainty.model import (
 )
 from synth.frame.interval import Interval
 
-Floats = NDArray[np.float64]
-
 QUANTILES = (0.05, 0.5, 0.95)
 
 
 @frozen_arrays
-@dataclass(frozen=True, eq=False)
 class Draws:
     """Inputs `points` (inputs, n) and what came of them."""
 
@@ -86,7 +82,7 @@ def output_figures(draws: Draws, name: str) -> OutputFigures:
     )
 
 
-def share_of(hits: NDArray[np.bool_]) -> Interval:
+def share_of(hits: Bools) -> Interval:
     """Share of independent hits, with the interval of Clopper and Pearson."""
     from scipy.special import betaincinv  # start-up: scipy only where it is needed
 

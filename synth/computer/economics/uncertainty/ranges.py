@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require
+from plant_models.frozen_arrays import Floats
 from synth.frame.interval import Interval
-
-Floats = NDArray[np.float64]
 
 NORMAL_90, NORMAL_95 = 1.6448536269514722, 1.959963984540054
 """95 and 97.5 % quantiles of the normal law."""

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.errors import require
+from plant_models.frozen_arrays import Floats
 from synth.computer.economics.uncertainty.model import Model, Ranges, evaluate, uncertain
 from synth.computer.economics.uncertainty.ranges import Constant, Range
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
