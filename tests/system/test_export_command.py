@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.frame.results import results_in
+from tests.frame.small_command import results_in
 from tests.system.conftest import EPOCH, Command
 from tests.system.small_book import C_FILES, HEAVIER, ID
 from tuning_tables import from_json, read_book, write_book

@@ -1,4 +1,4 @@
-"""A tune that is killed or interrupted leaves nothing that looks complete and is not, and can be run again."""
+"""A tune that is killed leaves nothing that looks complete and is not; the same problem gives the same bytes."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from synth.cli import main
 from synth.frame.held_directory import LOCK
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import LEFTOVER
+from tests.system.conftest import EPOCH, Command
 from tuning_tables import read_book, read_json
 
 TUNE = [sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))", "tune"]
@@ -190,3 +191,18 @@ def test_ctrl_c_before_the_work_begins_is_told(
     monkeypatch.setattr("synth.cli.hump.check_command", interrupted)
     assert main(["hump", "check", "medium"]) == 130
     assert capsys.readouterr().err == "retarder-synth: interrupted\n"
+
+
+@pytest.mark.requirement("PRED-09")
+def test_one_worker_gives_the_bytes_of_two(
+    command: Command,
+    tuned_once: tuple[Path, int],
+    two_classes: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+    assert command("tune", two_classes, "-o", tmp_path, "--workers", "1").code == 0
+    names = {path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()}
+    assert names == {path.relative_to(tuned_once[0]) for path in tuned_once[0].rglob("*") if path.is_file()}
+    assert [name for name in names if (tmp_path / name).read_bytes() != (tuned_once[0] / name).read_bytes()] == []

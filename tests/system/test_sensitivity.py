@@ -11,7 +11,7 @@ import pytest
 import synth.retarder.sensitivity.command as command
 from synth.cli import main
 from synth.frame.results_directory import results_directory
-from tests.frame.results import results_in
+from tests.frame.small_command import results_in
 
 SMALL = """\
 [position]

@@ -9,7 +9,6 @@ from typing import Final, Protocol, TypeAlias
 
 import numpy as np
 
-from tests.tuning_tables.st.compiler import Loops
 from tests.tuning_tables.st.expressions import (
     Arithmetic,
     Evaluate,
@@ -19,7 +18,7 @@ from tests.tuning_tables.st.expressions import (
     resolve,
 )
 from tests.tuning_tables.st.storage import INT_LIMITS, Fault, Frame, Kind, Mask, Record, Scalar, Value
-from tests.tuning_tables.st.syntax import Node, part, parts, word
+from tests.tuning_tables.st.syntax import Loops, Node, part, parts, word
 
 Execute: TypeAlias = Callable[[Frame, Mask], None]
 
