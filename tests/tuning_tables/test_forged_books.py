@@ -8,6 +8,7 @@ import random
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import cycle, islice
 from typing import Any
 
@@ -161,15 +162,10 @@ def test_no_text_gets_through_that_is_none(book: Forgery) -> None:
     assert through == []
 
 
-def widened(book: Forgery, name: str) -> Edit:
-    return lambda file: put(file, name, book.arrays[name].astype("S90"))
-
-
 def test_text_that_is_padded_otherwise_is_refused(book: Forgery) -> None:
-    for column in book.layout.columns:
-        if column.dtype == "S":
-            found = book.refusal(widened(book, column.name), column.name)
-            assert f"{column.name} holds values beside" in found
+    for name in (column.name for column in book.layout.columns if column.dtype == "S"):
+        wider = partial(put, name=name, values=book.arrays[name].astype("S90"))
+        assert f"{name} holds values beside" in book.refusal(wider, name)
 
 
 def test_every_axis_is_numbered_from_0(book: Forgery) -> None:
@@ -261,11 +257,8 @@ BESIDE = {
         ("retarder_zones_m", (0, 0, 0), NAN, "retarder.zones_m[0]"),
         ("stages", 1, 1, "stages has 1 entries"),
         ("stages", 1, 2**31 - 1, "but the book has room for 4"),
-        ("stages", 0, -4, "there are -4 stages"),
         ("degree", 0, 4, "stages[0].upper has 4 coefficients"),
-        ("degree", 0, -1, "degree is -1"),
         ("validated", 0, 0, "validated_passes holds values beside"),
-        ("validated", 0, 2, "validated holds values beside"),
         ("validated_passes", 0, 2**60, "validated.passes"),
         ("approach", 0, 1, "position_clear"),
         ("approach", 1, 0, "but no table has anything there"),
@@ -279,7 +272,6 @@ BESIDE = {
     ],
     "points": [
         ("passages", 0, 0, "passages has 0 entries"),
-        ("passages", 0, 5, "passages"),
         ("passages", 0, 2**31 - 1, "but the book has room for"),
         ("passage_axle", (0, 1), 1, "passages[1] is axle 1"),
         ("passage_sensor", (0, 1), 2, "passages[1] is axle 0 over sensor 2"),

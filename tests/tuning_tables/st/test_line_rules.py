@@ -37,7 +37,7 @@ BOOKS: Mapping[str, Callable[[], TableBook]] = {
     "default": default_book,
     "smallest": lambda: shaped_book(2, 0),
 }
-READINGS, SAMPLES, COMMANDS = sized((100_000, 6_000, 3_000), (MANY // 2, 12_000, 3_000))
+READINGS, SAMPLES, COMMANDS = sized((100_000, 2_000, 3_000), (MANY // 2, 12_000, 3_000))
 
 
 @pytest.fixture(scope="module", params=[*BOOKS.values()], ids=[*BOOKS])
