@@ -7,14 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tuning_tables import (
-    ControllerTable,
-    Decisions,
-    InvalidTable,
-    Stage,
-    decide_for,
-    decide_many,
-)
+from tuning_tables import ControllerTable, Decisions, InvalidTable, Stage, decide_for, decide_many
 from tuning_tables.active_table import active
 from tuning_tables.golden_vectors import golden_vectors
 from tuning_tables.rule import rises_at
