@@ -150,15 +150,6 @@ def test_a_wrong_golden_track_is_found(estimated: Path, name: str, pattern: str,
     assert found(look(estimated), kind, words)
 
 
-@pytest.mark.long
-def test_a_tune_with_an_approach_passes(approached_once: Path) -> None:
-    verdict = verify(approached_once, 300, 1)
-    assert verdict.findings == ()
-    assert [each.skipped for each in verdict.tables] == [None, None]
-    assert [(each.table.approach_m, each.table.entrance_stage) for each in verdict.tables] == [(4.0, 1)] * 2
-    assert verify(approached_once / "book.h5", 100, 1).code == CONFIRMED
-
-
 def shorter(document: Document) -> None:
     document["approach"]["length_m"] = 3.5
     document["valid"]["s_m"][0] = -3.5

@@ -67,20 +67,6 @@ def test_tables_are_those_of_a_tune(command: Callable[..., Ran], serial: Path, t
 
 
 @pytest.mark.long
-def test_the_other_commands_take_what_a_sweep_leaves(command: Callable[..., Ran], serial: Path, tmp_path: Path) -> None:
-    code, said, _ = command("inspect", serial)
-    assert code == 0
-    assert "files that it lists are there unchanged" in said
-    given = ("validate", serial / "book.h5", "--config", serial / "config.toml", "--passes", "1000")
-    code, said, warned = command(*given, "-o", tmp_path)
-    assert code in (0, 1)
-    assert said
-    assert "another configuration" not in warned
-    code, said, _ = command("verify", serial, "--passes", "100")
-    assert code in (0, 1), said
-
-
-@pytest.mark.long
 def test_a_grown_grid_keeps_what_is_there(config: Path, serial: Path, tmp_path: Path) -> None:
     larger, smaller = tmp_path / "larger.toml", tmp_path / "smaller.toml"
     larger.write_text(config.read_text(), encoding="utf-8")

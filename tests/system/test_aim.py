@@ -93,20 +93,6 @@ def test_the_summary_tells_what_the_tables_hold(aimed_once: tuple[Path, int]) ->
             np.testing.assert_allclose(gaps, table.reported.mean_gap_m, rtol=1e-12)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("threads", [1, 2])
-def test_no_table_depends_on_the_number_of_threads(
-    aimed_once: tuple[Path, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, threads: int
-) -> None:
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", EPOCH)
-    config = tmp_path / "aim.toml"
-    config.write_text(f"{SMALL}threads = {threads}\n", encoding="utf-8")
-    assert main(["aim", str(config), "-o", str(tmp_path / "out")]) == 0
-    first, again = files_in(aimed_once[0]), files_in(tmp_path / "out")
-    of_threads = {"configuration.toml", "report.html", "summary.json"}  # these tell the configuration
-    assert {name for name in first if first[name] != again[name]} <= of_threads
-
-
 def test_passes_and_seed_of_the_command_line_count(
     command: Command, aimed_once: tuple[Path, int], small: Path, tmp_path: Path
 ) -> None:

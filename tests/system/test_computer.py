@@ -22,13 +22,13 @@ from synth.frame.results_directory import SUMMARY
 from synth.frame.terminal.printed_page import Verdict
 from synth.frame.terminal.printed_table import PrintedTable
 from synth.retarder.bench.wires import c_header
-from tests.corpus import ROOT
 from tests.printed_page import Page, page_about
 from tests.synth.bench.played import HOST, free_port
 from tests.system.conftest import Command
 from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import to_json
 
+ROOT = Path(__file__).parents[2]
 COMMAND = (sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))")
 
 FEW = """[service]
