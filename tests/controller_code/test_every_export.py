@@ -185,6 +185,7 @@ WITHOUT = """
 """Without a table, a tracker or a record nothing is commanded, and nothing falls."""
 
 
+@pytest.mark.requirement("CODE-09")
 def test_all_kinds_of_two_positions_fit_into_one_program(tmp_path: Path, tool: Tool) -> None:
     names = ("lines", "points", "aims", "correction")
     included, called, sources = "", "", []

@@ -1,22 +1,14 @@
-"""Two positions in one C program; classes added, removed, reordered: the others keep numbers and choices."""
+"""Names of two positions under their prefixes; classes added, removed, reordered: the others keep numbers and choices."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import cache
-from importlib.resources import files
-from pathlib import Path
 
-import numpy as np
 import pytest
 
-from scripts.studies.in_the_loop.agreement import Questions, Tracks, ask, differences, follow
-from scripts.studies.in_the_loop.controller_process import COMMAND, CONTRACT, Controller, compile_with
-from scripts.studies.in_the_loop.held_words import table_words
 from synth.retarder.configuration.config_file import parse_config
-from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import FOUR_AXLES, estimating_book, park_book, sample_book, table_of
 from tests.st_files import st_files
 from tuning_tables import ControllerTable
@@ -25,85 +17,10 @@ from tuning_tables.category_names import category_names
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.golden_choices import golden_choices
 from tuning_tables.plc_forms.iec import unit_files
-from tuning_tables.self_test_size import FULL, SMALL
 from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
 
 POSITIONS = {"bunch": estimating_book(), "park": park_book()}
-MAIN = """
-#include <string.h>
-#include "bunch_self_test.h"
-#include "park_self_test.h"
-int bunch_main(int count, char **arguments);
-int park_main(int count, char **arguments);
-int main(int count, char **arguments)
-{
-    /* Categories are the same for both; tables are of two types. */
-    if (BUNCH_CATEGORY_ST != PARK_CATEGORY_ST || sizeof(bunch_table) == sizeof(park_table) || count < 3) {
-        return 6;
-    }
-    return strcmp(arguments[1], "bunch") == 0 ? bunch_main(count - 1, arguments + 1)
-                                              : park_main(count - 1, arguments + 1);
-}
-"""
-
-
-def both_in_one(folder: Path, small: bool) -> Path:
-    """A program that holds both controllers, each with a process around it (`scripts.studies.in_the_loop`)."""
-    around = (files("scripts.studies.in_the_loop") / "controller_process.c").read_text("ascii")
-    objects = []
-    for name, book in POSITIONS.items():
-        prefix = ExportPrefix(name.upper())
-        sources = dict(c_files(book, prefix, SMALL if small else FULL))
-        for file, content in sources.items():
-            (folder / file).write_bytes(content)
-        (folder / f"{name}_process.c").write_text(prefix.renamed(around), "ascii")
-        for file in (f"{name}_table.c", f"{name}_self_test.c"):
-            objects.append(str(folder / f"{file}.o"))
-            compile_with(["gcc", *CONTRACT, "-O2", "-c", str(folder / file), "-o", objects[-1]])
-        objects.append(str(folder / f"{name}_process.o"))
-        process = str(folder / f"{name}_process.c")
-        compile_with(["gcc", "-O2", f"-Dmain={name}_main", "-c", process, "-o", objects[-1]])
-    (folder / "main.c").write_text(MAIN, "ascii")
-    compile_with(["gcc", *CONTRACT[:-1], str(folder / "main.c"), *objects, "-o", str(folder / "both")])
-    return folder / "both"
-
-
-@pytest.fixture(scope="module")
-def compiled(tmp_path_factory: pytest.TempPathFactory, tool: Tool) -> Callable[[bool], Path]:
-    """`both_in_one` with the full or the small self-test, each compiled once."""
-
-    @cache
-    def program(small: bool) -> Path:
-        tool("gcc")
-        return both_in_one(tmp_path_factory.mktemp("both"), small)
-
-    return program
-
-
-@cache
-def asked(name: str) -> tuple[Questions, Tracks]:
-    """What the controller of a position is asked, and what Python answers."""
-    return ask(POSITIONS[name], 100_000, 5_000, 7), follow(POSITIONS[name], 20_000, 8)
-
-
-@pytest.mark.requirement("CODE-09")
-@pytest.mark.parametrize("small", [False, True], ids=["full", "small"])
-def test_both_answer_as_alone(small: bool, compiled: Callable[[bool], Path]) -> None:
-    program = compiled(small)
-    for name, book in POSITIONS.items():
-        controller = Controller((str(program), name), table_words(book))
-        assert controller.self_test() == "fault 0 at 0"
-        assert differences(controller, *asked(name)).none
-
-
-def test_every_name_that_the_linker_sees_has_the_prefix(compiled: Callable[[bool], Path]) -> None:
-    folder = compiled(True).parent
-    for name in POSITIONS:
-        listed = compile_with(["nm", "-g", "--defined-only", str(folder / f"{name}_table.c.o")])
-        names = [line.split()[-1] for line in listed.splitlines() if len(line.split()) == 3]
-        assert len(names) > 8
-        assert all(each.startswith(f"{name}_") for each in names)
 
 
 def split_files(book: TableBook, prefix: ExportPrefix = RETARDER) -> Mapping[str, bytes]:
@@ -192,14 +109,6 @@ def test_numbers_and_golden_choices_stay(after: tuple[str, ...]) -> None:
     for category in {*BEFORE} & {*after}:
         assert before[FIXED[category]] == now[FIXED[category]]
         assert len(now[FIXED[category]]) > 5
-
-
-def commands() -> np.ndarray:
-    """Every number from 0 to 17 at speeds around all targets."""
-    speeds = np.linspace(1.9, 3.3, 141, dtype=np.float32).tolist()
-    exact = [table.target_speed_m_s for category in FIXED for table in tables(category)]
-    rows = [(number, 4, speed) for number in range(18) for speed in (*speeds, *exact)]
-    return np.array(rows, COMMAND)
 
 
 CUT = """
