@@ -1,4 +1,4 @@
-"""Names of two positions under their prefixes; classes added, removed, reordered: the others keep numbers and choices."""
+"""Two positions have names of their own; classes added, removed, reordered: the others keep numbers and choices."""
 
 from __future__ import annotations
 

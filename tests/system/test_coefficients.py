@@ -127,7 +127,7 @@ if __name__ == "__main__":
 ROOT = Path(__file__).parents[2]
 
 
-NAMES = sized(("example of the README", "approach, estimator", "p_overspeed", "rnz-2m-park", "sweep"), tuple(kept()))
+NAMES = sized(("approach, estimator", "p_overspeed", "rnz-2m-park", "sweep"), tuple(kept()))
 
 
 @pytest.mark.requirement("PRED-10")

@@ -119,8 +119,3 @@ def test_from_python(file: Path) -> None:
     assert synth.load_hump("large").graph.tracks == tuple(range(1, 33))
     with pytest.raises(InputError, match="there is no such file, and no such hump in the library"):
         synth.load_hump("lage")
-
-
-def test_names_of_the_library(command: Command) -> None:
-    assert "tracks: 32;" in command("hump", "check", "large").out
-    assert "did you mean large?" in command("hump", "check", "lage").sentence
