@@ -108,7 +108,7 @@ def test_status_while_it_runs(command: Callable[..., Ran], config: Path, tmp_pat
     assert status["in_flight"] == []
 
 
-pytestmark = pytest.mark.skipif(find_spec("distributed") is None, reason="the extra [sweep] is not installed")
+WITH_DISTRIBUTED = pytest.mark.skipif(find_spec("distributed") is None, reason="the extra [sweep] is not installed")
 
 # In a process of its own: the library's threads and warnings are no concern of the tests.
 CLUSTER = """
@@ -146,6 +146,7 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[int]]]:
         process.communicate("", timeout=60)
 
 
+@WITH_DISTRIBUTED
 @pytest.mark.long
 def test_killed_worker_and_killed_driver(
     config: Path, serial: Path, tmp_path: Path, cluster: tuple[str, list[int]]
@@ -166,6 +167,7 @@ def test_killed_worker_and_killed_driver(
     assert contents(out) == contents(serial)
 
 
+@WITH_DISTRIBUTED
 @pytest.mark.long
 def test_trains_on_a_cluster_whose_worker_and_driver_are_killed(
     trial: Path, humped: Path, tmp_path: Path, cluster: tuple[str, list[int]]

@@ -127,7 +127,7 @@ def test_a_file_that_has_grown_since_its_length_was_asked_comes_whole() -> None:
         read_regular_file(STATUS, 10)
 
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="the limit of a file's size is that of POSIX")
+ON_POSIX = pytest.mark.skipif(os.name != "posix", reason="the limit of a file's size is that of POSIX")
 
 LOST_FOR_A_MOMENT = """
 import resource, sys
@@ -173,6 +173,7 @@ def book(table: ControllerTable, linear_table: ControllerTable, tmp_path: Path) 
     return path
 
 
+@ON_POSIX
 def test_a_write_that_fails_for_a_moment_leaves_no_damaged_book(book: Path, tmp_path: Path) -> None:
     path = tmp_path / "book.h5"
     ran = run(LOST_FOR_A_MOMENT, book, path)
@@ -183,6 +184,7 @@ def test_a_write_that_fails_for_a_moment_leaves_no_damaged_book(book: Path, tmp_
         assert not path.exists()
 
 
+@ON_POSIX
 def test_a_full_disk_is_an_os_error_that_names_the_book(book: Path, tmp_path: Path) -> None:
     path = tmp_path / "book.h5"
     path.write_bytes(b"old")
