@@ -10,7 +10,6 @@ import pickle
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from functools import cache
 from pathlib import Path
 from shutil import rmtree
 from typing import TypeVar
@@ -19,8 +18,6 @@ import pytest
 
 from synth.cli import main
 
-ROOT = Path(__file__).parents[1]
-PRODUCT = ("plant_models", "synth", "tuning_tables")
 PLACE, CODES = "made", "codes.json"
 
 Value = TypeVar("Value")
@@ -40,9 +37,8 @@ class Recipe:
 
     @property
     def key(self) -> str:
-        """Of all that the outcome depends on: the recipe and the product."""
-        told = json.dumps(asdict(self) | {"product": product_sha256()}, sort_keys=True)
-        return hashlib.sha256(told.encode()).hexdigest()
+        """Of the recipe; the product does not change in a run of the tests."""
+        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
 
     def followed(self, folder: Path) -> list[int]:
         """The exit codes of the commands, given in this process in `folder`, which exists."""
@@ -123,12 +119,6 @@ def contents_sha256(folder: Path) -> str:
             digest.update(f"{path.relative_to(folder).as_posix()} {len(content)}\n".encode())
             digest.update(content)
     return digest.hexdigest()
-
-
-@cache
-def product_sha256() -> str:
-    """Of the sources that this process imports."""
-    return "".join(contents_sha256(ROOT / package) for package in PRODUCT)
 
 
 def shared_base(factory: pytest.TempPathFactory) -> Path:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from shutil import copytree
 
 import pytest
 
-from tests import corpus
-from tests.corpus import Corpus, Recipe, locked
+from tests.corpus import Corpus, Recipe
 
 FOLLOWED: list[str] = []
 """The configurations of the recipes that were followed, in their order."""
@@ -46,29 +44,6 @@ def test_what_is_made_is_found_by_all_who_ask_at_once(tmp_path: Path) -> None:
     assert (folder / "left").read_text(encoding="utf-8") == "one"
 
 
-def test_another_recipe_or_another_product_is_made_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    first = Noted("one", (("tune", "config.toml"),))
-    others = (
-        replace(first, config="two"), replace(first, commands=(("tune", "config.toml", "-v"),)),
-        replace(first, config_name="c.toml"), replace(first, environment=(("A", "1"),)),
-    )  # fmt: skip
-    folders = {Corpus(tmp_path).made(each).folder for each in (first, *others)}
-    monkeypatch.setattr(corpus, "product_sha256", lambda: "of another product")
-    folders.add(Corpus(tmp_path).made(first).folder)
-    assert len(folders) == len(FOLLOWED) == 6
-
-
-def test_every_file_of_the_product_counts(tmp_path: Path) -> None:
-    packages = [corpus.ROOT / package for package in corpus.PRODUCT]
-    assert all((package / "__init__.py").is_file() for package in packages)
-    copy = Path(copytree(packages[-1], tmp_path / "copy"))
-    before = corpus.contents_sha256(copy)
-    assert before == corpus.contents_sha256(packages[-1])
-    source = copy / "c99" / "crc32.c.in"
-    source.write_bytes(source.read_bytes() + b"\n")
-    assert corpus.contents_sha256(copy) != before
-
-
 def test_what_is_half_made_is_not_taken(tmp_path: Path) -> None:
     for _ in range(2):
         with pytest.raises(ValueError, match="fails"):
@@ -89,20 +64,6 @@ def test_commands_are_given_in_the_folder_of_their_configuration(tmp_path: Path)
     assert made.codes == (2, 0)
     assert [path.name for path in made.folder.iterdir()] == ["own.toml"]
     assert Path.cwd() != made.folder
-
-
-def test_a_lock_is_held_by_one_alone(tmp_path: Path) -> None:
-    inside: list[int] = []
-
-    def work(number: int) -> int:
-        with locked(tmp_path / "lock"):
-            inside.append(number)
-            most = len(inside)
-            inside.remove(number)
-        return most
-
-    with ThreadPoolExecutor(8) as threads:
-        assert set(threads.map(work, range(64))) == {1}
 
 
 def test_a_value_is_worked_out_once_and_not_kept_where_that_fails(tmp_path: Path) -> None:

@@ -1,4 +1,6 @@
-"""The house: who may import whom, what starts at once, and what must be documented."""
+"""The house: who may import whom, what starts at once, what must be documented, and the rooms that the page shows."""
+
+from __future__ import annotations
 
 import ast
 import shutil
@@ -7,7 +9,12 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import networkx as nx
 import pytest
+
+from scripts.studies.documents import result_of
+from scripts.studies.rooms import METHOD, Options, floors_of, purpose_of
+from scripts.studies.study import silent
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("plant_models", "scripts", "synth", "tuning_tables")
@@ -145,3 +152,18 @@ def test_scripts_can_be_started(script: Path) -> None:
     else:
         assert text.startswith("#!/usr/bin/env bash")
         assert subprocess.run(["bash", "-n", script], capture_output=True, timeout=60, check=False).returncode == 0
+
+
+def test_the_kept_rooms_are_those_of_the_code() -> None:
+    assert result_of(ROOT, "rooms").findings == METHOD.run(Options(), silent), (
+        "run 'retarder-synth study rooms --document'"
+    )
+
+
+def test_a_room_stands_as_low_as_it_can_and_the_lowest_below_those_who_know_them() -> None:
+    graph = nx.DiGraph([("top", "middle"), ("middle", "low"), ("top", "checker"), ("low", "ground")])
+    assert floors_of(graph) == {"top": 3, "middle": 2, "checker": 2, "low": 1, "ground": 0}
+
+
+def test_a_purpose_is_the_first_sentence_of_the_docstring() -> None:
+    assert purpose_of("kernels") == "The inner loops, compiled."

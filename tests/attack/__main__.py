@@ -8,9 +8,8 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from tests.attack.attempt import Attempt, Kind, Outcome
 from tests.attack.kinds import KINDS
-from tests.attack.processes import attempts
+from tests.attack.processes import Attempt, Kind, Outcome, attempts
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -34,13 +34,12 @@ from synth.retarder.configuration.config_template import default_sensors_toml
 from synth.retarder.sensors.tune_command import COMMAND as SENSORS_TUNE
 from synth.retarder.sweep.command import COMMAND as SWEEP_RUN
 from synth.retarder.tune_options import TuneOptions
-from tests.attack.attempt import Changed, Kind, Reading
 from tests.attack.forged import forged
 from tests.attack.mutants import mutant
+from tests.attack.processes import Changed, Kind, Reading
 from tests.attack.railml_attributes import attribute_kind
-from tests.attack.stored import STORED
-from tests.attack.trains import trains_kind
-from tests.plant_models.hump.small_hump import SMALL
+from tests.attack.stored import STORED, trains_kind
+from tests.plant_models.hump.random_humps import SMALL
 from tests.synth.hump.making.test_hump_make import SHORT
 from tests.tuning_tables.pass_log.sample_logs import sample_log
 from tuning_tables.pass_log.log_files import write_log

@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Final
 
 from synth.cli.file_kinds import FILE_KINDS
-from tests.attack.attempt import LONGEST
 from tests.attack.forks import Ended, Limits, contents, forked, warmed
+from tests.attack.processes import LONGEST
 from tests.golden.orders import INPUTS
 from tests.golden.record import SURROUNDINGS
 from tests.system.conftest import CLASS

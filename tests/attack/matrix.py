@@ -15,8 +15,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from tests.attack.attempt import LONGEST
 from tests.attack.forks import Ended, Limits, forked, prepared
+from tests.attack.processes import LONGEST
 from tests.golden.record import SURROUNDINGS
 
 FILE: Final = "{}"

@@ -8,7 +8,7 @@ from typing import Final
 from xml.etree import ElementTree as Xml
 
 from synth.hump.hump_file import read_hump
-from tests.attack.attempt import Changed, Kind, Reading
+from tests.attack.processes import Changed, Kind, Reading
 
 MEANINGLESS: Final = ("id", "language", "descriptionLevel")
 """Attributes that say nothing of a hump, as long as no reference leads to them."""

@@ -1,23 +1,34 @@
-"""Kinds of files that commands store and read again: tables, the results of a sweep, the log of a hump.
+"""Kinds of files that commands store and read again: tables, sweeps, logs, trains of a hump.
 
 What is changed in them is changed under sums that are right, as by one who knows how.
 """
 
 from __future__ import annotations
 
+import hashlib
+import io
 import json
 import random
 import tempfile
-from collections.abc import Callable, Mapping
+import zipfile
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
+import numpy as np
+
 from synth.cli.inspect import inspect_command
 from synth.frame.input_error import InputError
 from synth.frame.terminal.manner import Manner
+from synth.hump.configuration.trial_file import parse_trial_file
+from synth.hump.trains.made_trial import made_trial
+from synth.hump.trains.outcome_file import to_npz, trains_of
+from synth.hump.trains.outcomes import TrainOutcomes
+from synth.hump.trains.resolved_trial import resolve_trial
+from synth.hump.trains.stored_trains import stored_trains
 from synth.retarder.failed_case import FailedCase
 from synth.retarder.forms.code_options import code_options
 from synth.retarder.forms.table_forms import FORMS
@@ -26,8 +37,9 @@ from synth.retarder.judgement import Judgement
 from synth.retarder.sweep.refinement import Gap
 from synth.retarder.sweep.unit_result import Row, UnitResult, from_bytes, to_bytes
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics
-from tests.attack.attempt import Kind
 from tests.attack.forged import forged
+from tests.attack.mutants import mutant
+from tests.attack.processes import Changed, Kind, Reading
 from tests.tuning_tables.every_kind import SAMPLES, altered, document_of, places, sealed, value_at, whole_lines
 from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import InvalidTable, write_book
@@ -129,3 +141,87 @@ STORED: Final[Mapping[str, Callable[[], Kind]]] = {
     **{f"forged {name}": partial(table_kind, name) for name in SAMPLES},
     "forged-unit": unit_kind,
 }
+
+
+NUMBER: Final = 4
+DAMAGED: Final = 500
+"""Archives that are damaged at random and then sealed: nothing else comes to what is behind a seal."""
+CONFIG: Final = f"""\
+hump = "medium"
+[trains]
+number = {NUMBER}
+cuts = 3
+[hump_speed]
+constant_m_s = 1.5
+[aim]
+design_cuts = 200
+"""
+
+
+def read_trains(folder: Path) -> str:
+    """As `computer`: the hash of all outcomes."""
+    found = stored_trains(folder, str(folder)).found
+    arrays = [np.asarray(getattr(found, field.name)) for field in fields(TrainOutcomes)]
+    return hashlib.sha256(b"".join(f"{a.dtype} {a.shape}".encode() + a.tobytes() for a in arrays)).hexdigest()
+
+
+def trains_kind() -> Kind:
+    """Trains of a small trial; a changed file is refused with 3, or has the same trains."""
+    config = resolve_trial(parse_trial_file(CONFIG, "trial.toml"))
+    content = to_npz(
+        made_trial(config).batch(0, NUMBER),
+        trains_of(config),
+    )
+    return Kind(
+        name="trains",
+        files={"inputs/config.toml": CONFIG.encode(), "trains.npz": content},
+        attacked="trains.npz",
+        read=read_trains,
+        change=partial(mutant, text=False),
+        code=3,
+        allowed=Reading.SAME,
+        first=tuple(forged_archives(content)),
+    )
+
+
+def forged_archives(content: bytes) -> Iterator[Changed]:
+    """Archives that are sound but for one of their arrays; each without and with a seal that fits."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    cuts = np.load(io.BytesIO(members["cuts.npy"]))
+    arrays = {
+        "zip bomb": npy(np.zeros(8_000_000, dtype=np.int64)),
+        "terabytes promised": npy(cuts).replace(b"(4,), }            ", b"(4000000000000,), }"),
+        "longer": npy(np.append(cuts, cuts)),
+        "empty": npy(cuts[:0]),
+        "another shape": npy(cuts.reshape(2, 2)),
+        "another type": npy(cuts.astype(np.float32)),
+        "texts": npy(cuts.astype(np.str_)),
+        "objects": npy(cuts.astype(object)),
+        "no array": b"PK",
+    }
+    for how, array in arrays.items():
+        body = packed({**members, "cuts.npy": array})
+        yield Changed(body, how, Reading.SAME)
+        yield Changed(body + seal_of(body), f"{how}, sealed", Reading.SAME)
+    yield Changed(packed({**members, "cuts.npy": npy(cuts + 1)}), "other numbers", Reading.SAME)
+    sound = packed(members)
+    for number in range(DAMAGED):
+        body = mutant(sound, random.Random(number), text=False)
+        yield Changed(body + seal_of(body), "damaged, sealed", Reading.SAME)
+
+
+def npy(array: np.ndarray[Any, Any]) -> bytes:
+    """An array as numpy stores it."""
+    file = io.BytesIO()
+    np.save(file, array)
+    return file.getvalue()
+
+
+def packed(members: dict[str, bytes]) -> bytes:
+    """An archive."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return file.getvalue()

@@ -1,4 +1,4 @@
-"""`retarder-synth verify`: exit codes, output, start-up, and whatever bytes it is fed."""
+"""`retarder-synth verify`: exit codes, output, start-up; known defects are in order and warned of."""
 
 from __future__ import annotations
 
@@ -8,13 +8,20 @@ import random
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from synth.checker.verdict import verify
+from scripts.documentation.known_defects_page import defects_text
+from synth.checker.code_file import code_at
 from synth.cli import main
+from synth.frame.known_defects import PLACE, Defect, known_defects, release
 from tests.effort import sized
+from tests.tuning_tables.every_kind import smallest_aim, smallest_lines, smallest_points
+from tuning_tables import document, write_json
+from tuning_tables.document import to_document
 
 
 def test_words_and_exit_code(tuned_once: Path, capfd: pytest.CaptureFixture[str]) -> None:
@@ -100,34 +107,102 @@ def broken(content: bytes, chance: random.Random) -> bytes:
     return bytes(found[: chance.randrange(1, len(found))]) if chance.random() < 0.1 else bytes(found)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("name", "comments"),
-    [("tables/*1.5*.json", False), ("tables/*1.5*.csv", False), ("book.h5", False), ("c/retarder_table.c", False),
-     ("c/retarder_table.h", False), ("c/golden_vectors.csv", False), ("st/retarder_table.st", True),
-     ("summary.json", True)],
+MADE_UP = Defect(
+    id="RS-0", introduced="0.0.9", fixed=None, kinds=("lines",), steps=("made", "exported"), unsafe=True,
+    wrong="lines lie 1 m/s too high", effect="cuts leave too fast", detect="validate them", remedy="tune again",
 )  # fmt: skip
-def test_broken_bytes_never_raise(tuned: Path, name: str, comments: bool) -> None:
-    """A file broken in many ways: a verdict each time. With `comments`, much of it is of no concern to the checker."""
-    (file,) = tuned.glob(name)
-    whole, chance, codes = file.read_bytes(), random.Random(name), []
-    for _ in range(WAYS):
-        file.write_bytes(broken(whole, chance))
-        if file.read_bytes() != whole:
-            codes.append(verify(tuned, 2, 1).code)
-    if comments:
-        assert codes.count(3) >= WAYS // 5
-    else:
-        assert set(codes) == {3}
+KEYS = [*MADE_UP.__dataclass_fields__]
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("name", ["tables/*1.5*.json", "book.h5", "c/retarder_table.c", "c/golden_tracks.csv"])
-def test_broken_bytes_of_an_estimator_never_raise(estimated: Path, name: str) -> None:
-    (file,) = estimated.glob(name)
-    whole, chance, codes = file.read_bytes(), random.Random(name), []
-    for _ in range(WAYS):
-        file.write_bytes(broken(whole, chance))
-        if file.read_bytes() != whole:
-            codes.append(verify(estimated, 2, 1).code)
-    assert set(codes) == {3}
+@pytest.fixture(params=[True, False], ids=["unsafe", "safe"])
+def unsafe(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> bool:
+    """Whether the made-up defect, which the program then knows, makes tables unsafe."""
+    listed = {**vars(MADE_UP), "unsafe": request.param}
+    (tmp_path / "defects.json").write_text(json.dumps({"defects": [listed]}), encoding="utf-8")
+    monkeypatch.setattr("synth.frame.known_defects.PLACE", tmp_path / "defects.json")
+    return bool(request.param)
+
+
+@pytest.mark.requirement("VERIFY-07")
+@pytest.mark.parametrize("name", ["", "book.h5"])
+def test_tables_of_a_version_with_a_defect_are_named(
+    tuned_once: Path, name: str, unsafe: bool, capfd: pytest.CaptureFixture[str]
+) -> None:
+    count = 2 + len(code_at(tuned_once / name))
+    for words, code in ((("verify", "--passes", "100"), int(unsafe)), (("inspect",), 0)):
+        capfd.readouterr()
+        assert main([*words, str(tuned_once / name)]) == code
+        printed = " ".join(capfd.readouterr().out.split())
+        warning = f"known defect RS-0{', unsafe' * unsafe}: a version that has it made or exported {count} of these: "
+        assert warning in printed
+        assert printed.endswith(": nothing found, but made by a version with an unsafe defect") == bool(code)
+        assert main([*words, str(tuned_once / name), "--json"]) == code
+        told = json.loads(capfd.readouterr().out)
+        assert [(each["id"], each["unsafe"], len(each["tables"])) for each in told["known_defects"]] == [
+            ("RS-0", unsafe, count)
+        ]
+        assert told.get("exit_code", 0) == code
+
+
+@pytest.mark.parametrize(
+    ("made_by", "introduced", "fixed", "is_concerned"),
+    [
+        ("0.1.0", "0.1.0", None, True),
+        ("0.1", "0.1.0", "0.1.1", True),
+        ("0.1.1", "0.1.0", "0.1.1", False),
+        ("0.1.10", "0.1.9", "0.1.11", True),
+        ("0.0.9", "0.1.0", None, False),
+        ("1.0rc1", "1.0", None, True),
+        ("a build of ours", "0.1.0", "0.1.1", True),  # it cannot be told, so it is taken for one that has it
+    ],
+)
+def test_a_defect_concerns_the_versions_that_have_it(
+    made_by: str, introduced: str, fixed: str | None, is_concerned: bool
+) -> None:
+    for kind in ("lines", "passages"):
+        each = Defect(**{**vars(MADE_UP), "introduced": introduced, "fixed": fixed, "kinds": (kind,)})
+        for made in (smallest_lines, smallest_points, smallest_aim):
+            table: dict[str, Any] = to_document(made())
+            table["generator"], exported = {"name": "by hand", "version": "9"}, f"retarder-synth {made_by}"
+            assert each.concerns({**table, "exported_by": exported}) == (is_concerned and table["kind"] == kind)
+            table |= {"generator": {"name": "retarder-synth", "version": made_by}, "exported_by": "another one"}
+            assert each.concerns(table) == (is_concerned and table["kind"] == kind)
+            assert not replace(each, steps=("exported",)).concerns(table)
+            assert not each.concerns({**table, "generator": {"name": "another program", "version": made_by}})
+
+
+def test_inspect_warns_of_a_table_by_the_version_that_exported_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with monkeypatch.context() as later:
+        later.setattr(document, "exporter", lambda: "retarder-synth 98.7")
+        write_json(smallest_lines(), tmp_path / "later.json")
+    write_json(smallest_lines(), tmp_path / "now.json")
+    monkeypatch.setattr(
+        "synth.frame.known_defects.known_defects", lambda: (replace(MADE_UP, introduced="98", steps=("exported",)),)
+    )
+    for name in ("later", "now"):
+        assert main(["inspect", str(tmp_path / f"{name}.json")]) == 0
+        assert ("known defect RS-0" in capfd.readouterr().out) == (name == "later")
+
+
+def test_a_program_that_tells_no_version_may_have_any_defect() -> None:
+    assert MADE_UP.concerns({"kind": "lines", "exported_by": "retarder-synth"})
+
+
+@pytest.mark.usefixtures("unsafe")
+def test_the_page_has_a_row_for_each() -> None:
+    assert "| RS-0 | from 0.0.9 | lines (made, exported) | " in defects_text()
+
+
+def test_the_list_that_ships_is_in_order() -> None:
+    listed = json.loads(PLACE.read_text(encoding="utf-8"))["defects"]
+    assert [each for each in listed if list(each) != KEYS] == []
+    found = known_defects()
+    assert len({each.id for each in found}) == len(found)
+    for each in found:
+        assert release(each.introduced)
+        assert each.fixed is None or release(each.introduced) < release(each.fixed)
+        assert set(each.kinds) <= {"lines", "passages", "aim"}
+        assert set(each.steps) <= {"made", "exported"}
+        assert all(vars(each)[key] for key in KEYS if key not in ("fixed", "unsafe"))

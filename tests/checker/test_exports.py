@@ -1,4 +1,4 @@
-"""One changed digit, one table more or less, in any export of a tune is found."""
+"""One changed digit, one table more or less, in any export is found; sound exports of many shapes agree."""
 
 from __future__ import annotations
 
@@ -6,24 +6,37 @@ import hashlib
 import json
 import re
 import shutil
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import h5py
 import pytest
 
+from synth.checker.code_export import c_differences, st_differences
+from synth.checker.code_file import LINES
 from synth.checker.finding import DamagedError, Kind
 from synth.checker.golden_export import vector_differences
+from synth.checker.line_numbers import due_of_lines
 from synth.checker.table_reading import Table, read_table
 from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
-from tests.controller_code.sample_book import FOUR_AXLES, surface_book, table_of
-from tests.controller_code.unlike_pairs import at_rest
+from tests.controller_code.sample_book import (
+    FOUR_AXLES,
+    approaching_book,
+    estimating_book,
+    sample_book,
+    surface_book,
+    table_of,
+)
+from tests.controller_code.test_families import at_rest
 from tests.st_files import st_files
 from tuning_tables import ControllerTable, Decisions, to_json
 from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.plc_forms.iec import unit_files
-from tuning_tables.st_source import line_export
+from tuning_tables.self_test_size import SMALL
+from tuning_tables.st_source import TABLE_FILE, line_export
 from tuning_tables.table_book import TableBook
 
 
@@ -60,24 +73,6 @@ def change_text(file: Path, pattern: str, replacement: str) -> None:
     text, count = re.subn(pattern, replacement, file.read_bytes().decode("utf-8"), count=1)
     assert count == 1
     file.write_bytes(text.encode("utf-8"))
-
-
-@pytest.mark.parametrize(
-    ("name", "pattern", "replacement", "words"),
-    [
-        ("c/retarder_table.c", r"\S+, /\* mass_t", "0x1.8p+1f, /* mass_t", "the crc32 of table 0"),
-        ("c/retarder_table.c", r"retarder_table_count = 2", "retarder_table_count = 1", "retarder_table_count is 1"),
-        ("c/golden_vectors.csv", r"(?m)^(0(?:,[^,]*){4}),0,", r"\1,1,", r"golden_vectors.csv: row \d+ says 1"),
-        ("st/retarder_table.st", r"(-?\d\.\d{8})\d(E-\d\d)", r"\g<1>X\2", "something else than REAL"),
-        ("st/retarder_table.st", r"MassOf : ARRAY(.*?)\[(\s*)2", r"MassOf : ARRAY\1[\g<2>3", r"masst of table 0 is"),
-    ],
-)
-def test_one_changed_digit_in_controller_code_is_found(
-    tuned: Path, name: str, pattern: str, replacement: str, words: str
-) -> None:
-    change_text(tuned / name, pattern, replacement)
-    kind = Kind.DAMAGED if "else than" in words or "count is" in words else Kind.DISAGREES
-    assert found(look(tuned), kind, words)
 
 
 def test_ids_that_look_like_names_of_the_code_are_compared_as_they_are(tmp_path: Path) -> None:
@@ -206,3 +201,85 @@ def test_other_figures_in_the_summary_are_found(tuned: Path) -> None:
     summary["tables"]["cases"][0]["predicted_rms_m_s"] *= 0.5
     (tuned / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     assert found(look(tuned), Kind.DISAGREES, "but summary.json says")
+
+
+NUMBER = r"-?(?:0x[01][0-9a-f.]*p[+-]\d+f|\d[\d.]*(?:E[+-]\d+)?)"
+
+
+@cache
+def exported(tables: int = 3) -> tuple[dict[str, str], tuple[Table, ...]]:
+    """The texts of a book with approaches, slopes and estimators, and its tables as the checker reads them."""
+    book = TableBook(surface_book(approaching_book()).tables[:tables])
+    content = {**c_files(book, self_test=SMALL), TABLE_FILE: st_files(book, self_test=SMALL)[TABLE_FILE]}
+    texts = {name: text.decode("utf-8") for name, text in content.items()}
+    return texts, tuple(read_table(to_json(table)) for table in book.tables)
+
+
+def sentences(texts: dict[str, str], tables: tuple[Table, ...]) -> list[str]:
+    """All that is found in both languages."""
+    found = [
+        *c_differences(texts["retarder_table.c"], texts["retarder_table.h"], "RETARDER", LINES, due_of_lines(tables)),
+        *st_differences(texts[TABLE_FILE], "RETARDER", LINES, due_of_lines(tables)),
+    ]
+    return [sentence for _, sentence in found]
+
+
+def changed(text: str, pattern: str) -> str:
+    """The text with the number in the group of the pattern another one."""
+    found = re.search(pattern, text)
+    assert found is not None, pattern
+    old = found[1]
+    new = "0x1.8p+7f" if "p" in old else "7.5" if "." in old else "7"
+    return text[: found.start(1)] + new + text[found.end(1) :]
+
+
+@pytest.mark.parametrize("made", [sample_book, estimating_book, approaching_book, surface_book])
+def test_exports_of_many_shapes_agree_with_their_tables(made: Callable[[], TableBook]) -> None:
+    book = made()
+    tables = tuple(read_table(to_json(table)) for table in book.tables)
+    files = {**c_files(book, self_test=SMALL), **st_files(book, self_test=SMALL)}
+    assert sentences({name: text.decode("utf-8") for name, text in files.items()}, tables) == []
+
+
+@pytest.mark.parametrize("name", ["MassOf", "TargetOf", "CategoryOf"])
+def test_a_column_that_differs_in_another_block_is_found(name: str) -> None:
+    texts, tables = exported()
+    head, block, tail = texts[TABLE_FILE].partition("FUNCTION_BLOCK RETARDER_CHOOSE")
+    text = head + block + changed(tail, rf"\b{name} : ARRAY\S+ OF \w+ := \[\s*({NUMBER})")
+    assert any(name in sentence for sentence in sentences({**texts, TABLE_FILE: text}, tables))
+
+
+@pytest.mark.parametrize(
+    ("name", "pattern", "replacement", "words"),
+    [
+        ("retarder_table.c", r"retarder_table_count = 3", "retarder_table_count = 2", "retarder_table_count is 2"),
+        ("retarder_table.c", r"\S+, /\* mass_t", "0x1.zp, /* mass_t", "is no number of a table"),
+        ("retarder_table.c", r"\d+, /\* axles", "091, /* axles", "091 is no whole number"),
+        ("retarder_table.c", r"(0x1\.\w+p\+\d+f), (0x)", r"\1, 0x1p+0f, \2", "words, but its struct has"),
+        ("retarder_table.h", r"    int32_t axles;.*\n", "", "words, but its struct has"),
+        ("retarder_table.h", r"    uint32_t crc32;.*\n", "", "does not end with its checksum"),
+        ("retarder_table.h", r"\} retarder_table;", "} other;", "has no struct retarder_table"),
+        ("retarder_table.h", r"(CATEGORY_\w+) 1 ", r"\1 2 ", "defines the categories"),
+        (TABLE_FILE, r"(-?\d\.\d{8})\d(E-\d\d)", r"\g<1>X\2", "something else than REAL"),
+        (TABLE_FILE, r"ApproachOf : .*\n", "\n", "approachm of table 0 is missing"),
+        (TABLE_FILE, r"Brake_0 : ", "Brake_9 : ", "brake of table 0 is missing"),
+        (TABLE_FILE, r"ARRAY\[0\.\.2\] OF INT := \[", "ARRAY[0..3] OF INT := [", "but is declared with 4"),
+        (TABLE_FILE, r"RETARDER_TABLE : STRUCT", "OTHER : STRUCT", "has no type RETARDER_TABLE"),
+        (TABLE_FILE, r"FUNCTION_BLOCK RETARDER_LOAD", "FUNCTION_BLOCK OTHER", "has no block RETARDER_LOAD"),
+    ],
+)
+def test_a_damaged_export_is_found(name: str, pattern: str, replacement: str, words: str) -> None:
+    texts, tables = exported()
+    text, count = re.subn(pattern, replacement, texts[name], count=1)
+    assert count == 1
+    try:
+        found = sentences({**texts, name: text}, tables)
+    except DamagedError as damage:
+        found = [str(damage)]
+    assert any(re.search(words, sentence) for sentence in found), found
+
+
+def test_another_number_of_tables_is_found() -> None:
+    texts, tables = exported()
+    found = sentences(texts, tables[:2])
+    assert found.count("it holds 3 tables, but there are 2") == 2

@@ -1,26 +1,29 @@
-"""The checker's own arithmetic against numpy, zlib and the tables' canonical form."""
+"""The checker's own arithmetic and rule against numpy, zlib, the canonical form, and Python's answers to hard
+readings.
+"""
 
 from __future__ import annotations
 
 import json
 import math
 import zlib
-from types import SimpleNamespace
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from scripts.studies.in_the_loop.agreement import ask
 from synth.checker.canonical import canonical_form, crc32, parse_json, require_right_crc32
 from synth.checker.finding import DamagedError
-from synth.checker.float32 import above, below, bits, decide, from_bits, horner, is_float32, rounded
-from tuning_tables import Decisions
+from synth.checker.float32 import above, below, bits, decide, from_bits, horner, is_float32, rises, rounded
+from synth.checker.table_reading import read_table
+from tests.controller_code.sample_book import approaching_book, sample_book, surface_book
+from tuning_tables import to_json
 from tuning_tables.canonical import canonical_json
-from tuning_tables.held_table import held_table
 from tuning_tables.json_text import read_json_text
-from tuning_tables.programs.decide import decide as rule_of_tables
-from tuning_tables.rule import readings
+from tuning_tables.table_book import TableBook
 
 REAL = st.floats(allow_nan=False)
 SINGLE = st.floats(allow_nan=False, allow_infinity=False, width=32)
@@ -60,37 +63,7 @@ def test_horner_is_that_of_numpy(line: list[float], s: float) -> None:
 
 LINE = st.none() | st.lists(st.floats(-8, 8, width=32), min_size=3, max_size=3)
 BEGIN = st.sampled_from([0.0, -3.0])
-STAGE = st.integers(-1, 5)
 READING = st.floats(-4, 12, width=32) | st.sampled_from([0.0, -0.0, -1e-45, -1e-60]) | st.floats()
-
-
-@given(
-    st.lists(st.tuples(LINE, LINE), min_size=2, max_size=6), BEGIN, STAGE, st.integers(1, 5), STAGE, READING, READING
-)
-def test_rule_is_that_of_the_controller(
-    lines: list[tuple[list[float] | None, list[float] | None]],
-    begin: float,
-    entrance: int,
-    farthest: int,
-    stage: int,
-    s: float,
-    v: float,
-) -> None:
-    lines = [(None, lines[0][1]), *lines[1:-1], (lines[-1][0], None)]  # as in every table
-    missing = [math.nan] * 3
-    coefficients = np.array([[line or missing for line in both] for both in lines], dtype=np.float32)
-    has_line = np.array([[line is not None for line in both] for both in lines])
-    valid = np.array([begin, 10.0, 0.0, 9.0], dtype=np.float32)
-    parts = SimpleNamespace(
-        coefficients=coefficients, has_line=has_line, valid_range=valid, slopes=np.zeros((len(lines), 2), np.float32),
-        pressures=np.zeros(len(lines), np.float32), target_speed_m_s=3.0, has_gauge=False, approach=None,
-        estimator=None, decisions=Decisions.AT_REST if farthest > 1 else Decisions.AT_ANY_TIME,
-    )  # fmt: skip
-    s, v = (float(each) for each in readings(s, v))
-    held = held_table(parts)._replace(entrance_stage=entrance)
-    farthest = len(lines) - 1 if farthest > 1 else 1
-    expected = rule_of_tables(held, stage, s, v, math.nan)
-    assert decide(lines, (begin, 10.0), entrance, farthest, stage, s, v) == expected
 
 
 @given(st.binary(max_size=300))
@@ -126,16 +99,6 @@ def test_a_whole_number_is_beyond_2_53_a_double_as_the_reader_has_it(number: flo
 
 
 @pytest.mark.parametrize(
-    ("x", "text"),
-    [(1e21, "1e+21"), (1e20, "100000000000000000000"), (1e-6, "0.000001"), (1e-7, "1e-7"), (5e-324, "5e-324"),
-     (333333333.3333333, "333333333.3333333"), (-0.0, "0"), (1.5e300, "1.5e+300")],
-)  # fmt: skip
-def test_numbers_are_printed_as_by_ecmascript(x: float, text: str) -> None:
-    """Samples of RFC 8785, appendix B, and the limits of the layouts."""
-    assert canonical_form(x) == text
-
-
-@pytest.mark.parametrize(
     ("text", "reason"),
     [('{"a":1,"a":2}', "stands twice"), ("[NaN]", "no JSON number"), ("[1e999]", "double precision"),
      ("[1", "not JSON"), ("[" * 100_000, "nested"), ("[" + "9" * 5000 + "]", "double precision")],
@@ -150,3 +113,24 @@ def test_what_is_no_utf8_is_refused() -> None:
         parse_json(b'"\xff"')
     with pytest.raises(DamagedError, match="surrogate"):
         canonical_form("\ud800")
+
+
+READINGS = 60_000
+
+
+@pytest.mark.requirement("VERIFY-06")
+@pytest.mark.parametrize("made", [sample_book, approaching_book, surface_book])
+def test_hard_readings_are_decided_alike(made: Callable[[], TableBook]) -> None:
+    book = made()
+    tables = [read_table(to_json(table)) for table in book.tables]
+    asked = ask(book, READINGS, 10, 20261124)
+    found = []
+    for number, stage, s, v, kpa in asked.readings.tolist():
+        table = tables[number]
+        added = rises(table.slopes, table.pressures_kpa, table.top_stage, stage, kpa)
+        limits = table.entrance_stage, table.farthest
+        found.append(decide(table.lines, table.path_m, *limits, stage, s, v, added))
+    assert found == asked.decisions.tolist()
+    far = asked.decisions - asked.readings["stage"]
+    assert np.count_nonzero(abs(far) > 1) > 500
+    assert min(np.count_nonzero(far < 0), np.count_nonzero(far == 0), np.count_nonzero(far > 0)) > 1_000

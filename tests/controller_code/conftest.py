@@ -10,7 +10,7 @@ from functools import cache
 import pytest
 
 from scripts.studies.in_the_loop.controller_process import Controller, build_controller
-from tests.controller_code.changed_export import ChangedExport, changed_export
+from tests.controller_code.building import ChangedExport, changed_export
 from tests.controller_code.sample_book import estimating_book, sample_book, surface_book
 from tuning_tables.table_book import TableBook
 

@@ -1,7 +1,11 @@
-"""Compiled C decides as the Python rule does, for every compiler, level and processor there is."""
+"""Compiled C decides as the Python rule does, for every compiler, level and processor, and in the loop of the
+simulator.
+"""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +14,15 @@ import pytest
 from scripts.studies.in_the_loop.agreement import Questions, Tracks, ask, decisions_of, differences, follow
 from scripts.studies.in_the_loop.builds import Build
 from scripts.studies.in_the_loop.controller_process import BuildError, build_controller
+from scripts.studies.in_the_loop.software_in_the_loop import PipeLine, closed_loop_with_process
+from synth.retarder.estimation.estimator_design import estimator_of
+from synth.simulation.random_passes import random_passes
+from tests.controller_code.building import FEW_WAYS, WAYS
 from tests.controller_code.conftest import BOOKS, Tool
-from tests.controller_code.ways import FEW_WAYS, WAYS
+from tests.controller_code.sample_book import with_slopes
 from tests.effort import MANY, sized
-from tuning_tables import decide_for, speed_for
+from tests.synth.case_factory import make_case, make_plant
+from tuning_tables import Decisions, decide_for, speed_for
 from tuning_tables.estimator import begin
 from tuning_tables.table_book import Status, TableBook
 
@@ -118,3 +127,50 @@ def test_one_sample_at_a_time_is_observed_as_compiled(tracks: Tracks, book: Tabl
             with np.errstate(all="ignore"):
                 speed = speed_for(table, state, *(float(sample[name]) for name in ("s_m", "v_m_s", "overpressure_kpa")))
             assert np.array_equal(np.float32(speed), words[:1].view(np.float32)[0], equal_nan=True)
+
+
+@pytest.mark.requirement("CODE-11")
+def test_a_process_controls_as_the_rule_in_the_simulator(tmp_path: Path, tool: Tool) -> None:
+    tool("gcc")
+    first = make_case().table
+    plant = make_plant(36.0, len(first.stages))
+    other = replace(make_case(target=4.0).table, id="other")
+    observing = replace(first, id="observing", target_speed_m_s=2.0, estimator=estimator_of(plant))
+    book = TableBook((first, other, observing))
+    controller = build_controller(book, tmp_path)
+    passes, line = random_passes(3, 0, 50), PipeLine()
+    exits = []
+    for number, table in enumerate(book.tables):
+        found = closed_loop_with_process(plant, table, number, controller, passes, line)
+        assert found.differing == 0
+        assert found.process.switchings.sum() > 50  # it did decide something
+        exits.append(found.process.exit_speed_m_s)
+    # The same lines, asked with the estimated speed, are another controller.
+    assert np.count_nonzero(exits[0] != exits[2]) > 10
+    # The wrong table in the process is seen at once, and so is one that does not estimate.
+    assert closed_loop_with_process(plant, first, 1, controller, passes, line).differing > 40
+    assert closed_loop_with_process(plant, observing, 0, controller, passes, line).differing > 10
+
+
+@pytest.mark.requirement("CODE-11")
+@pytest.mark.long
+def test_a_process_decides_at_any_time_as_the_rule_in_the_simulator(tmp_path: Path, tool: Tool) -> None:
+    tool("gcc")
+    first = make_case().table
+    plant = make_plant(36.0, len(first.stages))
+    timed = replace(first, id="timed", decisions=Decisions.AT_ANY_TIME)
+    sloped = replace(with_slopes(first, -0.003, -0.003), id="sloped", target_speed_m_s=2.0)
+    observing = replace(sloped, id="observing", target_speed_m_s=4.0, estimator=estimator_of(plant))
+    book = TableBook((first, timed, sloped, observing))
+    controller = build_controller(book, tmp_path)
+    passes, line = random_passes(3, 0, 50), PipeLine()
+    exits = []
+    for number, table in enumerate(book.tables):
+        found = closed_loop_with_process(plant, table, number, controller, passes, line)
+        assert found.differing == 0
+        assert found.process.switchings.sum() > 50
+        exits.append(found.process.exit_speed_m_s)
+    for one, other in pairwise(exits):
+        assert np.count_nonzero(one != other) > 10
+    # Without the slopes, and so without the pressure, the process answers otherwise.
+    assert closed_loop_with_process(plant, sloped, 1, controller, passes, line).differing > 10

@@ -12,12 +12,17 @@ import numpy.typing as npt
 import pytest
 
 from scripts.studies.in_the_loop.builds import Build
-from tests.controller_code.built_program import built, told
+from tests.controller_code.building import WAYS, built, told
 from tests.controller_code.conftest import ToChange, Tool
-from tests.controller_code.ways import WAYS
 from tests.effort import QUESTIONS
-from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
-from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
+from tests.tuning_tables.aim.made_tables import (
+    answers,
+    category_table,
+    hard_questions,
+    measured_table,
+    reported_of,
+    sample_set,
+)
 from tuning_tables.aim import AimTables
 from tuning_tables.aim.c_source import aim_c_files
 from tuning_tables.aim.golden_aims import few_golden_aims, golden_aims

@@ -13,9 +13,8 @@ from numba import njit
 
 from scripts.studies.in_the_loop.builds import Build
 from synth.kernels.compiled_rules import compiled_rule
-from tests.controller_code.built_program import built, told
+from tests.controller_code.building import WAYS, built, told
 from tests.controller_code.conftest import ToChange, Tool
-from tests.controller_code.ways import WAYS
 from tests.effort import QUESTIONS
 from tuning_tables.c_correction import correction_c_files
 from tuning_tables.correction import Correction
@@ -56,7 +55,7 @@ int main(int count, char **arguments)
 
 
 @cache
-def asked() -> npt.NDArray[np.void]:
+def asked_exits() -> npt.NDArray[np.void]:
     """Likely states and exits, those at every bound, and one in ten of any bits."""
     rng, n = np.random.default_rng(20261122), QUESTIONS
     limit, reach, clip = map(float, CORRECTION.setting[2:5])
@@ -84,7 +83,7 @@ def asked() -> npt.NDArray[np.void]:
 
 
 @cache
-def right() -> npt.NDArray[np.float32]:
+def right_exits() -> npt.NDArray[np.float32]:
     """What the Python text makes of each question, compiled."""
     learn, speed, usable = map(compiled_rule, (learn_exit, corrected_speed, usable_exit))
     setting = CORRECTION.setting
@@ -98,7 +97,7 @@ def right() -> npt.NDArray[np.float32]:
             p = passes[i]
             answers[i, 4] = usable(p[0], p[1], p[2], p[3] != 0, p[4] != 0, p[5] != 0, errors[i])
 
-    found, answers = asked(), np.empty((QUESTIONS, 5), np.float32)
+    found, answers = asked_exits(), np.empty((QUESTIONS, 5), np.float32)
     states = np.ascontiguousarray(found["state"]).view(np.float32).copy()
     with np.errstate(invalid="ignore"):  # a signalling NaN is widened
         errors, speeds = (np.ascontiguousarray(found[name]).view(np.float32).astype(np.float64)
@@ -108,7 +107,7 @@ def right() -> npt.NDArray[np.float32]:
 
 
 def test_python_and_its_compiled_text_agree() -> None:
-    found, answers = asked(), right()
+    found, answers = asked_exits(), right_exits()
     for i in range(2000):
         state = found["state"][i].view(np.float32).copy()
         with np.errstate(invalid="ignore"):  # a signalling NaN is widened
@@ -126,16 +125,16 @@ def test_c_learns_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: 
     for name in build.missing():
         tool(name)
     command = built(correction_c_files(CORRECTION), PROGRAM, tmp_path, build)
-    given = asked().view("i4").astype(f"{build.order}i4").tobytes()
+    given = asked_exits().view("i4").astype(f"{build.order}i4").tobytes()
     found = np.frombuffer(told(command, given=given), f"{build.order}f4").astype(np.float32).reshape(-1, 5)
     # Which of its many bit patterns a NaN that is handed on has is the processor's business.
-    both_nan = np.isnan(found) & np.isnan(right())
-    assert np.count_nonzero((found.view(np.uint32) != right().view(np.uint32)) & ~both_nan) == 0
+    both_nan = np.isnan(found) & np.isnan(right_exits())
+    assert np.count_nonzero((found.view(np.uint32) != right_exits().view(np.uint32)) & ~both_nan) == 0
     assert told(command, "self-test") == b"fault 0 at 0\n"
 
 
 def test_the_questions_reach_much() -> None:
-    answers = right()
+    answers = right_exits()
     assert np.isfinite(answers[:, :3]).all()
     assert np.abs(answers[:, 1]).max() == CORRECTION.setting.limit_m_s
     for share in ((answers[:, 1] == 0.0).mean(), answers[:, 4].mean(), (answers[:, 3] == 0.0).mean()):

@@ -13,7 +13,7 @@ from typing import Final
 import pytest
 
 from scripts.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
-from tests.controller_code.built_program import written
+from tests.controller_code.building import written
 from tests.controller_code.conftest import Tool
 from tests.controller_code.passage_tables import odd_table, passage_table
 from tests.controller_code.sample_book import sample_book, surface_book
@@ -185,6 +185,7 @@ WITHOUT = """
 """Without a table, a tracker or a record nothing is commanded, and nothing falls."""
 
 
+@pytest.mark.requirement("CODE-09")
 def test_all_kinds_of_two_positions_fit_into_one_program(tmp_path: Path, tool: Tool) -> None:
     names = ("lines", "points", "aims", "correction")
     included, called, sources = "", "", []

@@ -1,28 +1,46 @@
-"""The exported C as text: clean for every checker, complete, equal to the table to the last bit, not to be mixed."""
+"""The exported C as text: complete, equal to the table to the last bit; it names who exports it, and what 0 m/s
+means.
+"""
 
 from __future__ import annotations
 
 import csv
 import io
+import re
+import zipfile
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.controller_code.built_program import built as built_of
 
 from scripts.studies.in_the_loop.builds import Build
 from scripts.studies.in_the_loop.controller_process import COMMAND, Controller, sources_of
 from scripts.studies.in_the_loop.held_words import held_record, held_words, places, table_words
+from synth.checker.code_file import code_files
 from synth.cli.qualification.second_program import with_other_number
-from tests.controller_code.built_program import built as built_of
+from synth.retarder.forms.code_options import CONTROLLER_NAMES, FMU_NAMES, CodeOptions
+from synth.retarder.forms.correction_form import correction_files
+from synth.retarder.forms.exporters import exporters_at
+from synth.retarder.forms.table_forms import FORMS
 from tests.controller_code.conftest import Built, Tool
+from tests.controller_code.passage_tables import passage_table
 from tests.controller_code.sample_book import sample_book
-from tuning_tables import decide_for, from_json, read_book, to_json, write_book
+from tests.st_files import st_files
+from tests.tuning_tables.aim.made_tables import category_table
+from tuning_tables import decide_for, from_json, read_book, read_table, to_json, write_book
 from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.line_code import line_code
+from tuning_tables.estimator import begin, unseen_samples
+from tuning_tables.exporter import exporting_version
 from tuning_tables.language.c99_data import hex_float
+from tuning_tables.rule import speed_for
 from tuning_tables.self_test_size import FULL, SMALL
+from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
+from tuning_tables.table_kinds import AnyTable
 
 CHANGES = np.array([*(1 << bit for bit in range(8)), 0xFF, 0x5A], dtype=np.uint8)
 """Bits of a byte that are turned round: each alone, all, and half of them."""
@@ -112,3 +130,73 @@ def test_hexadecimal_floats() -> None:
     assert [hex_float(x) for x in (2.5, -0.1, 0.0, -0.0, 1e-45, 3.4028235e38)] == [
         "0x1.4p+1f", "-0x1.99999ap-4f", "0x0p+0f", "-0x0p+0f", "0x1p-149f", "0x1.fffffep+127f",
     ]  # fmt: skip
+
+
+TABLES: Sequence[AnyTable] = (sample_book().tables[0], passage_table("light"), category_table())
+
+
+@pytest.fixture
+def later(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """The program as a later version of it."""
+    exporting_version.cache_clear()
+    monkeypatch.setattr("tuning_tables.exporter.version", lambda _: "98.7")
+    yield "retarder-synth 98.7"
+    exporting_version.cache_clear()
+
+
+def content(file: bytes) -> bytes:
+    """Of a unit its description and sources, of any other file itself, without the marks that break comments."""
+    if not file.startswith(b"PK"):
+        return re.sub(rb"[\s/*]+", b" ", file)
+    with zipfile.ZipFile(io.BytesIO(file)) as archive:
+        return b"".join(map(archive.read, archive.namelist()))
+
+
+@pytest.mark.requirement("FILE-06")
+@pytest.mark.parametrize("table", TABLES, ids=lambda table: type(table).__name__)
+def test_each_form_names_it(table: AnyTable, later: str, tmp_path: Path) -> None:
+    is_lines = table is TABLES[0]
+    for form in FORMS if is_lines else [each for each in FORMS if each not in FMU_NAMES]:
+        options = CodeOptions(self_test=SMALL, correction_m_s=0.1 if is_lines else None)
+        files = FORMS[form]([table], options)
+        if form in CONTROLLER_NAMES and form not in FMU_NAMES:
+            files = {**files, **correction_files(form, [table], options)}
+        named = {name for name, each in files.items() if later.encode() in content(each)}
+        assert named, form
+        if form == "c":
+            assert named == {name for name in files if not name.endswith(".csv")}
+        for name, each in files.items():
+            path = tmp_path / form / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(each)
+        assert {code.exported_by for code in code_files(tmp_path / form)} <= {later}, form
+    assert exporters_at(tmp_path / "json") == (later,)
+    (file,) = (tmp_path / "json").iterdir()
+    assert read_table(file).generator == table.generator  # what made it is another matter
+
+
+def test_a_book_names_it(later: str, tmp_path: Path) -> None:
+    write_book([sample_book().tables[0]], tmp_path / "book.h5")
+    assert exporters_at(tmp_path) == (later,)
+
+
+PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "controllers.md"
+
+
+@pytest.mark.requirement("RULE-10")
+def test_zero_is_believed_and_lowers() -> None:
+    table, state = sample_book().tables[0], begin()
+    assert speed_for(table, state, 5.0, 0.0, 0.0) == 0.0
+    assert unseen_samples(state) == 0
+    assert decide_for(table, 2, 5.0, 0.0) == 0
+    assert speed_for(table, state, 5.0, -1.0, 0.0) == -1.0
+    assert unseen_samples(state) == 1
+    assert decide_for(table, 2, 5.0, -1.0) == 2
+
+
+def test_header_text_and_page_say_so() -> None:
+    said = "is believed: the cut stands, so the brake is released"
+    book = sample_book()
+    for text in (c_files(book)["retarder_table.h"], st_files(book)[TABLE_FILE]):
+        assert said in " ".join(text.decode().replace(" * ", " ").split())
+    assert "**Without an estimator a reading of 0.0 m/s is believed" in PAGE.read_text(encoding="utf-8")

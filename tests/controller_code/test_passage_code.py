@@ -14,11 +14,10 @@ import pytest
 
 from scripts.studies.in_the_loop.builds import Build
 from scripts.studies.in_the_loop.controller_process import compile_with
-from tests.controller_code.built_program import built, told, written
+from tests.controller_code.building import WAYS, built, told, written
 from tests.controller_code.conftest import Tool
 from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, right
-from tests.controller_code.ways import WAYS
 from tests.effort import QUESTIONS, every
 from tuning_tables.controller_code.code import crc32_of, words_of
 from tuning_tables.controller_code.passage_code import passage_code

@@ -1,11 +1,14 @@
-"""A small command of the frame: it throws coins."""
+"""A small command of the frame, which throws coins, and what lies in a directory of results."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
+import pytest
 from matplotlib.figure import Figure
 from pydantic import Field
 from scipy.stats import binomtest
@@ -13,8 +16,11 @@ from scipy.stats import binomtest
 from plant_models.errors import PlantError
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter, Chart, Column, File, Sentence, Table
+from synth.frame.input_error import InputError
 from synth.frame.interval import Interval
+from synth.frame.own_files import MARKER
 from synth.frame.printed_numbers import decimals
+from synth.frame.results_directory import results_directory
 from synth.frame.settings.numbers import numbers_of
 from synth.frame.settings.options import Options, configured
 from synth.frame.settings.output import OutputSettings
@@ -134,3 +140,37 @@ COMMAND = Command(
     limits=limits,
     limits_of_use=("Coins are not dice.",),
 )
+
+
+SUMMARY = b"{}"
+
+
+def results_in(directory: Path) -> dict[str, bytes]:
+    """The content of every file below `directory` by name, without the marker that lists them."""
+    files = {path.relative_to(directory).as_posix(): path for path in directory.rglob("*") if path.is_file()}
+    return {name: path.read_bytes() for name, path in files.items() if path.name != MARKER}
+
+
+def run(
+    path: Path, contents: dict[str, bytes], command: str = "tune", reads: tuple[Path, ...] = (), inputs: str = ""
+) -> None:
+    """A whole run that writes `contents`."""
+    with results_directory(path, command, reads, inputs) as results:
+        results.write_all(contents)
+        results.finish(SUMMARY)
+
+
+def files(path: Path) -> dict[str, bytes]:
+    """All files but the marker."""
+    found = {file.relative_to(path).as_posix(): file for file in path.rglob("*") if file.is_file()}
+    return {name: file.read_bytes() for name, file in found.items() if name != MARKER}
+
+
+@contextmanager
+def refused(*words: str) -> Iterator[None]:
+    """Within, a refusal in one sentence that holds all of `words`."""
+    with pytest.raises(InputError) as caught:
+        yield
+    assert len(caught.value.sentences) == 1
+    for word in words:
+        assert word in str(caught.value)

@@ -29,8 +29,7 @@ from synth.frame.sheet import to_csv
 from synth.frame.summary import plain, rows_of
 from synth.frame.terminal.progress import pace
 from synth.frame.told import Told
-from tests.frame.results import results_in
-from tests.frame.small_command import COMMAND, CoinOptions
+from tests.frame.small_command import COMMAND, CoinOptions, results_in
 from tuning_tables.canonical import canonical_json
 
 LISTED = Listed(

@@ -12,7 +12,7 @@ from synth.frame.input_error import InputError
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import ResultsDirectory, results_directory
 from tests.effort import sized
-from tests.frame.results import SUMMARY, files, refused, run
+from tests.frame.small_command import SUMMARY, files, refused, run
 
 
 class Killed(BaseException):

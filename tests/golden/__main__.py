@@ -14,9 +14,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from tests.golden.compare import differences
 from tests.golden.orders import ORDERS
-from tests.golden.record import document_of, recorded, records_of, write_inputs
+from tests.golden.record import differences, document_of, recorded, records_of, write_inputs
 
 
 def record(target: Path, beginnings: list[str]) -> int:

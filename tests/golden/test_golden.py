@@ -9,9 +9,8 @@ from typing import Any
 import typer.main
 
 from synth.cli.commands import app
-from tests.golden.compare import differences
 from tests.golden.orders import INPUTS, ORDERS, Order
-from tests.golden.record import Record, document_of, leaves_of, recorded, records_of, write_inputs
+from tests.golden.record import Record, differences, document_of, leaves_of, recorded, records_of, write_inputs
 
 NOT_ASKED = {"study", "bench"}
 """Studies have runs of their own, and go; a bench waits for a controller."""

@@ -1,13 +1,36 @@
-"""Motion: braked wheel pairs, exact cell means, work and energy head."""
+"""Motion: braked wheel pairs, exact cell means, work, credible limits, and what is said once of the plant."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plant_models import Car, Cut, Pneumatics, PressingForce, RetarderPosition, TrackProfile, couple, path_coefficients
+from plant_models import (
+    Car,
+    Cut,
+    DopplerSensor,
+    Friction,
+    Pneumatics,
+    PointSensors,
+    PressingForce,
+    RetarderPosition,
+    RollingResistance,
+    TrackProfile,
+    couple,
+    path_coefficients,
+)
+from plant_models.credible_motion import SPARE_ACCELERATION_M_S2, credible_motion
 from plant_models.motion import braked_axles, mean_braked_axles, path_breaks_m
-from tests.effort import sized
+from synth.simulation.passage_loop import close_passage_loop
+from synth.simulation.random_passes import random_passes
+from tests.effort import every, sized
+from tests.synth.conftest import pilot_plant
+from tests.synth.simulation.passage_cases import SENSORS, braking_rule, with_approach
 
 DRIVE = Pneumatics(700.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 15.0)
 LENGTH_M = 12.475
@@ -95,3 +118,72 @@ def test_coefficients_are_read_only() -> None:
     c = path_coefficients(ONE, GONDOLA, FLAT, np.array([0.0, 5.0]))
     with pytest.raises(ValueError, match="read-only"):
         c.brake_m_s2_per_kpa[0] = 1.0
+
+
+def test_limits_are_those_of_energy_and_of_the_highest_pressure() -> None:
+    plant = replace(
+        with_approach(pilot_plant(52.0), 5.0),
+        profile=TrackProfile.uniform(12.0),
+        friction=Friction(0.0, 0.0, 0.0, 2.0),
+        resistance=RollingResistance(1.5, 0.0),
+    )
+    sensors = PointSensors((-5.0, 10.0), base_m=0.25, base_tolerance=0.01, timer_noise_s=0.0, timer_resolution_s=0.0)
+    limits, cut, position = credible_motion(plant, sensors), plant.cut, plant.position
+    down = cut.reduced_gravity_m_s2 * 12e-3
+    fastest = math.sqrt(position.max_entry_speed_m_s**2 + 2.0 * down * (plant.exit_m + 5.0))
+    assert limits.speed_m_s[1] == pytest.approx(1.04 * fastest, rel=1e-3)
+    assert limits.speed_tolerance == pytest.approx(0.04, rel=1e-3)
+    assert limits.acceleration_m_s2 == pytest.approx(down + SPARE_ACCELERATION_M_S2, rel=1e-12)
+    over_kpa = position.stage_pressures_kpa[plant.top_stage] + 15.0 - position.force.touch_pressure_kpa
+    held_kn = max(n * position.force.slope_kn_per_kpa(cut, n) for n in range(1, cut.axles + 1)) * over_kpa
+    slowed = held_kn / cut.inertia_t + cut.reduced_gravity_m_s2 * 1.5e-3 - down
+    assert limits.deceleration_m_s2 == pytest.approx(slowed + SPARE_ACCELERATION_M_S2, rel=1e-12)
+    assert limits.path_tolerance_m == pytest.approx(0.35)
+
+
+@pytest.mark.parametrize("mass_t", every(2, [22.0, 85.0]))
+def test_no_simulated_cut_leaves_the_limits(mass_t: float) -> None:
+    plant = with_approach(pilot_plant(mass_t), 5.0)
+    limits, loop = credible_motion(plant, SENSORS), close_passage_loop(plant, SENSORS, plant.top_stage + 1)
+    passes, rule = random_passes(3, 0, 30), braking_rule(plant, SENSORS, 1.0)
+    rates = []
+    for i in range(30):
+        trace = loop.follow(rule, loop.draws(passes.part(i, i + 1)))
+        assert trace.speed_m_s.max() < limits.speed_m_s[1]
+        lasts = np.diff(trace.time_s)
+        rates.append((np.diff(trace.speed_m_s)[lasts > 1e-3]) / lasts[lasts > 1e-3])
+    found = np.concatenate(rates)
+    assert -limits.deceleration_m_s2 < found.min() < -0.3 * limits.deceleration_m_s2
+    assert found.max() < limits.acceleration_m_s2
+
+
+def test_std_of_a_reading_adds_noise_and_the_uniform_law_of_rounding() -> None:
+    seen = DopplerSensor(0.03, 0.12, 0.1, 0.0)
+    assert seen.reading_std_m_s == pytest.approx(math.sqrt(0.03**2 + 0.12**2 / 12.0))
+    exact = DopplerSensor(0.0, 0.0, 0.1, 0.0)
+    assert exact.exact
+    assert exact.reading_std_m_s == 1e-4
+    assert not seen.exact
+
+
+def test_std_of_a_reading_is_that_of_simulated_readings() -> None:
+    rng = np.random.default_rng(3)
+    v = rng.uniform(2.0, 6.0, 400_000)
+    sensor = DopplerSensor(0.03, 0.12, 0.1, 0.0)
+    readings = np.round((v + sensor.noise_m_s * rng.standard_normal(v.size)) / 0.12) * 0.12
+    assert float(np.std(readings - v)) == pytest.approx(sensor.reading_std_m_s, rel=0.005)
+
+
+def test_a_cut_rolls_freely_where_grade_and_resistance_are_equal() -> None:
+    valves = Pneumatics(700.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 15.0)
+    position = RetarderPosition("x", ((0.0, 10.0),), (0.0, 300.0), PressingForce(0.03, 50.0), valves, 7.0)
+    cut = Cut("x", 80.0, (0.0, 1.85, 8.65, 10.5), 1)
+    cells = path_coefficients(position, cut, TrackProfile.uniform(2.5), np.linspace(0.0, 20.5, 5))
+    np.testing.assert_allclose(cells.free_m_s2(2.5), 0.0, atol=1e-15)
+    np.testing.assert_allclose(cells.free_m_s2(1.5), 9.81 * 80.0 / (80.0 + 0.42 * 4) * 1e-3)
+
+
+def test_a_valve_opens_after_its_own_delay() -> None:
+    valves = Pneumatics(700.0, 0.0, 0.11, 0.2, 0.07, 0.31, 0.4, 15.0)
+    for start, end, delay in ((0.0, 300.0, 0.31), (50.0, 300.0, 0.31), (135.0, 300.0, 0.11), (285.0, 0.0, 0.07)):
+        assert valves.respond(start, end, 50.0).starts_s[1] == pytest.approx(delay)

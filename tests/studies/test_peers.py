@@ -17,7 +17,7 @@ from scripts.studies.peers.kernels.prediction import Prediction, held, line_squa
 from scripts.studies.peers.kernels.pulses import STATE, Pulses, begin_pulses, stage_by_pulses
 from scripts.studies.peers.peer_loop import PeerLoop, peer_loop
 from scripts.studies.peers.peer_tuning import PREDICTIVE as PREDICTIVE_FAMILY
-from scripts.studies.peers.peer_tuning import PULSES_MEASURED, Aimed, Search, cost_of, tuned_peer
+from scripts.studies.peers.peer_tuning import Aimed, cost_of
 from scripts.studies.peers.regulators import NO_PREDICTION, NO_PULSES, PredictiveController, PulseController, no_table
 from synth.kernels.any_time.any_time_law import AnyTimeLaw
 from synth.kernels.loop.passes import Draws
@@ -25,7 +25,6 @@ from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.closed_loop import ClosedLoop, Controller, LineController, TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.controllers import fixed
-from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.switching_lines import SwitchingLines
@@ -199,16 +198,6 @@ def test_the_stage_of_least_cost_is_taken(loop: PeerLoop) -> None:
     assert changed > 20
 
 
-@pytest.mark.long
-def test_where_all_is_known_the_predictive_controller_meets_the_target(plant_52t: Plant) -> None:
-    """At any time, as the plant is the known one and the sensor exact: what is left is for the sampling period."""
-    quiet = replace(plant_52t, sensor=replace(plant_52t.sensor, resolution_m_s=0.0))
-    passes = common_passes(quiet, random_passes(5, 0, 200))
-    regulator = PredictiveController(AIM_M_S, Decisions.AT_ANY_TIME, estimator_of(quiet), 0.8, 0.2, 0.0, 0.0)
-    sample = peer_loop(passes.loop(quiet.top_stage + 1)).run(regulator, as_known(passes))
-    assert np.abs(sample.exit_speed_m_s - AIM_M_S).max() < 0.02
-
-
 @njit
 def pulsed(law, path, sample_s, stage, cell, s, v, count):  # type: ignore[no-untyped-def]
     state, found = np.empty(STATE), np.empty(count, np.int64)
@@ -241,23 +230,6 @@ def test_the_integral_finds_a_lasting_error(loop: PeerLoop) -> None:
     v = math.sqrt(line(loop.path, AIM_M_S, law.held_kpa, 5, s))
     stages = pulsed(law, loop.path, 0.1, 8, 5, s, v + 0.2, 41)
     assert kpa[stages[-1]] == pytest.approx(80.0 + 100.0 * (0.2 + 0.2 * 4.0 / 2.0), abs=10.0)
-
-
-@pytest.mark.long
-def test_tuning_is_never_worse_than_its_grid_and_always_the_same(passes: CommonPasses, loop: PeerLoop) -> None:
-    tuning, estimator = passes.first(100), estimator_of(passes.plant)
-    aimed, search = Aimed(AIM_M_S, 3e-5, Decisions.AT_ANY_TIME, estimator), Search(100, 1, 12)
-    small = replace(PULSES_MEASURED, grids=((0.2, 0.4), (1.0, 2.0), (3.0,), (0.3,)))
-    found = tuned_peer(small, loop, tuning, aimed, search)
-    assert found == tuned_peer(small, loop, tuning, aimed, search)
-    at_grid = [
-        cost_of(loop.run(PulseController(AIM_M_S, aimed.decisions, None, held_share, gain, 3.0, 0.3), tuning.draws),
-                aimed)
-        for held_share in (0.2, 0.4) for gain in (1.0, 2.0)
-    ]  # fmt: skip
-    assert found.cost_m2_s2 <= min(at_grid)
-    assert found.evaluations <= 4 + 12
-    assert tuple(found.parameters) == PULSES_MEASURED.names
 
 
 def test_the_cost_of_a_peer_is_that_of_the_tables(passes: CommonPasses, loop: PeerLoop) -> None:

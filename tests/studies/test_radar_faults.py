@@ -20,7 +20,7 @@ from scripts.studies.radar_faults.faults import (
     missing,
     standing,
 )
-from scripts.studies.radar_faults.study import chance, joined, moments_s
+from scripts.studies.radar_faults.study import chance, moments_s
 from scripts.studies.radar_faults.watched_passes import passes_by_weight, watched_passes
 from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop, simulate
@@ -144,19 +144,6 @@ def test_alarms_are_those_of_the_fault(plant: Plant, loop: ClosedLoop, passes: R
 
 
 @pytest.mark.long
-def test_an_equal_table_takes_over_without_a_trace(plant: Plant, loop: ClosedLoop, passes: RandomPasses) -> None:
-    """Which of two equal tables is in force changes no bit; weak cuts go to the heavier one, strong ones nowhere."""
-    _, controller = controllers_of(plant)
-    for factor, told, after in ((0.4, 0, 1), (0.4, 1, 1), (1.8, 1, 0), (1.8, 0, 0), (1.0, 0, 0)):
-        draws = loop.draws(passes, cut_factor=factor)
-        alone = watched_passes(loop, controller, draws)
-        both = passes_by_weight(loop, (controller, controller), told, draws)
-        assert (both.table == after).all()
-        assert np.array_equal(both.sample.exit_speed_m_s, alone.sample.exit_speed_m_s)
-        assert np.array_equal(both.at_end, alone.at_end)
-
-
-@pytest.mark.long
 def test_the_lines_in_force_are_those_of_the_table_that_took_over(
     plant: Plant, loop: ClosedLoop, passes: RandomPasses
 ) -> None:
@@ -222,12 +209,3 @@ def test_moments_lie_evenly_in_the_pass() -> None:
     assert moments.max() < 10.0
     assert moments.mean() == pytest.approx(5.0, abs=5.0 * 10.0 / np.sqrt(12.0 * 4000))
     assert np.array_equal(moments[:50], moments_s(transit[:50], 3))
-
-
-def test_parts_are_joined_in_order(plant: Plant, loop: ClosedLoop, passes: RandomPasses) -> None:
-    _, controller = controllers_of(plant)
-    parts = [watched_passes(loop, controller, loop.draws(passes.part(start, start + 75))) for start in (0, 75)]
-    whole, found = watched_passes(loop, controller, loop.draws(passes)), joined(parts)
-    assert np.array_equal(found.sample.exit_speed_m_s, whole.sample.exit_speed_m_s)
-    assert np.array_equal(found.seen, whole.seen)
-    assert np.array_equal(found.at_end, whole.at_end)

@@ -13,7 +13,6 @@ from plant_models import Friction, Plant, PlantError, WeightForce
 from scripts.studies.plant_changes import aged_valves, friction
 from scripts.studies.robustness.condition import conditions, out_of_service, shifted_stages
 from scripts.studies.robustness.perturbation import at_value, sensible_ends
-from synth.kernels.loop.motion import brake_rows
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.cut_class import CutClass
 from synth.retarder.configuration.plant_parameter import Parameter, assumed_keys, parameters
@@ -155,21 +154,6 @@ def test_an_unknown_value_and_an_impossible_plant_are_refused(plant_52t: Plant) 
 
 
 # --------------------------------------------------------------------------------------- equivalent plants
-
-
-@pytest.mark.long
-def test_half_the_friction_is_half_the_slope(plant_52t: Plant, passes: RandomPasses) -> None:
-    controller = constant_lines(plant_52t, [3.0, 3.2, 3.4, 3.6])
-    loop = close_loop(plant_52t, 5)
-    draws = loop.draws(passes)
-    factor = 0.5 * draws.cut_factor  # a power of two: every product is halved exactly
-    rows = np.empty_like(draws.brake_m_s2_per_kpa)
-    brake_rows(loop.path, factor, draws.path_z, rows)
-    rows.setflags(write=False)
-    slippery = loop.run(controller, draws._replace(cut_factor=factor, brake_m_s2_per_kpa=rows))
-    weak = simulate(friction(0.5, 1.0)(plant_52t), controller, passes)
-    assert np.array_equal(weak.exit_speed_m_s, slippery.exit_speed_m_s)
-    assert not np.array_equal(weak.exit_speed_m_s, simulate(plant_52t, controller, passes).exit_speed_m_s)
 
 
 def test_friction_scales_the_slope_of_a_weight_proportional_retarder(plant_52t: Plant) -> None:

@@ -12,14 +12,7 @@ import pytest
 from plant_models import Approach, Plant
 from scripts.studies.document_pictures import pictures_of
 from scripts.studies.documents import DATA, KEPT, result_of, stale, written
-from scripts.studies.structure.study import (
-    SENSORS,
-    WIRED_TOLERANCE_M_S,
-    Structure,
-    energy_rule,
-    part_rows,
-    passage_run,
-)
+from scripts.studies.structure.study import SENSORS, WIRED_TOLERANCE_M_S, Structure, energy_rule, part_rows, passage_run
 from scripts.studies.structure.wired_pressure import first_time
 from scripts.studies.structure.wired_radar import wired_radar_pass
 from synth.frame.input_error import InputError

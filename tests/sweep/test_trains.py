@@ -44,14 +44,6 @@ def run_in(out: Path, trial: Path) -> Iterator[TrialRun]:
         yield run_of(config, made_trial(config), config.settings.trains.number, directory)
 
 
-@pytest.mark.long
-def test_workers_change_no_byte(command: Callable[..., Ran], trial: Path, humped: Path, tmp_path: Path) -> None:
-    for workers in (1, 3):
-        out = tmp_path / f"out-{workers}"
-        assert command("hump", "simulate", trial, "-o", out, "--workers", workers)[0] == 0
-        assert contents(out) == contents(humped)
-
-
 def test_batches_of_any_size_are_the_same_trains(trial: Path, humped: Path) -> None:
     """As one batch, one by one, and in uneven parts: the arrays of the file that the command wrote."""
     config = load_trial(trial)

@@ -13,7 +13,7 @@ import pytest
 from synth.cli.inspect_table import told_document
 from synth.retarder.forms.code_options import CODE_NAMES
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
-from tests.frame.results import results_in
+from tests.frame.small_command import results_in
 from tests.st_files import aim_st_files
 from tests.system.conftest import Command
 from tests.system.test_start_up import HEAVY, modules_after

@@ -11,7 +11,7 @@ import pytest
 
 from synth.cli import main
 from synth.frame.terminal.printed_table import PrintedTable
-from synth.retarder.configuration.config_file import load_config, parse_config
+from synth.retarder.configuration.config_file import load_config
 from synth.retarder.sweep.tune_unit import between_rms_m_s
 from synth.solver.chain.chain import check_chain
 from tests.printed_page import Page, cells_of
@@ -189,10 +189,3 @@ def test_a_loop_of_python_control_is_refused(folder: Path, capsys: pytest.Captur
     asked = ["loop", str(table), "--config", str(folder / "one.toml"), "-o", str(folder / "loop")]
     assert main(asked) == 2
     assert "the table decides at any time" in capsys.readouterr().err
-
-
-def test_configurations_at_rest_keep_their_hash() -> None:
-    plain = parse_config("", "c")
-    assert parse_config('[regulator]\ncommands = "at_rest"\npressure = "none"\n', "c").sha256 == plain.sha256
-    asked = [parse_config(f'[regulator]\ncommands = "any_time"\npressure = "{p}"\n', "c") for p in ("gauge", "none")]
-    assert len({plain.sha256, *(each.sha256 for each in asked)}) == 3

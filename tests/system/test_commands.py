@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from synth.retarder.configuration.config_file import parse_config
-from tests.frame.results import results_in
+from tests.frame.small_command import results_in
 from tests.system.conftest import CLASS, Command, changed
 from tests.system.small_book import C_FILES, HEAVIER, ID
 from tuning_tables import read_book, read_json, to_csv

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.frame.results import results_in
+from tests.frame.small_command import results_in
 from tests.system.conftest import EPOCH, Command
 from tests.system.small_book import C_FILES, HEAVIER, ID
 from tuning_tables import from_json, read_book, write_book
@@ -90,46 +90,6 @@ def test_a_correction_that_cannot_be_is_refused(
     ran = command("export", tuned / "book.h5", *options)
     assert ran.code == 2
     assert sentence in ran.sentence
-
-
-@pytest.mark.long
-def test_export_takes_a_prefix_a_small_self_test_and_splits(
-    command: Command, tuned: Path, measured_once: Path, tmp_path: Path
-) -> None:
-    book = tuned / "book.h5"
-    ran = command("export", book, "--format", "c", "--prefix", "Bunch", "--self-test", "small", "-o", tuned / "st")
-    assert ran.code == 0
-    names = {name.replace("retarder", "bunch").replace("golden", "bunch_golden") for name in C_FILES}
-    assert {Path(line).name for line in ran.out.splitlines()} == {*names, "bunch_configuration.toml"}
-    # Tracks of an estimator are the same in every size.
-    plain = ("export", measured_once / "book.h5", "--format", "c", "--self-test", "small", "-o", tmp_path / "small")
-    assert command(*plain).code == 0
-    small, full = ((at / "retarder_self_test.c").stat().st_size for at in (tmp_path / "small", measured_once / "c"))
-    assert small < 0.5 * full
-    for folder, prefix in (("st", "PARK"), ("st", "BUNCH")):
-        ran = command("export", book, "--format", "st", "--prefix", prefix, "--split", "-o", tuned / folder)
-        assert ran.code == 0
-        assert Path(ran.out.splitlines()[0]).name == f"0001_{prefix}_TABLE.st"
-    # The checker reads them all, whatever their names.
-    ran = command("verify", tuned, "--json")
-    assert {"st/bunch_table.c", "st/bunch_golden_vectors.csv", "c/retarder_table.c"} <= set(
-        json.loads(ran.out)["files"]
-    )
-    assert {"st/0004_PARK_LOAD.st", "st/0004_BUNCH_LOAD.st"} <= set(json.loads(ran.out)["files"])
-    assert json.loads(ran.out)["findings"] == []
-    for name, old, new in (
-        ("st/0004_PARK_LOAD.st", "MassOf : ARRAY[0..1] OF REAL := [2", "MassOf : ARRAY[0..1] OF REAL := [3"),
-        ("st/0005_PARK_CHOOSE.st", "CategoryOf : ARRAY[0..1] OF INT := [1", "CategoryOf : ARRAY[0..1] OF INT := [2"),
-        ("st/bunch_table.h", "CATEGORY_LS 2 ", "CATEGORY_LS 1 "),
-    ):
-        content = (tuned / name).read_text("ascii")
-        (tuned / name).write_text(content.replace(old, new, 1), "ascii")
-        assert content != (tuned / name).read_text("ascii")
-    ran = command("verify", tuned)
-    assert ran.code == 3
-    assert "disagrees: st/0004_PARK_LOAD.st: masst of table 0 is " in ran.out
-    assert "st/0004_PARK_LOAD.st: disagrees: CategoryOf stands there more than once, and differs" in ran.out
-    assert "st/bunch_table.c: disagrees: its header defines the categories" in ran.out
 
 
 @pytest.mark.parametrize(

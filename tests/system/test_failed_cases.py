@@ -19,7 +19,7 @@ from synth.retarder.attempted_case import attempted
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.failed_case import FailedCase, told_together
 from synth.solver.coarse_grid import CoarseGridError
-from tests.frame.results import results_in
+from tests.frame.small_command import results_in
 from tests.system.conftest import CLASS, MEASURED, SECOND_CLASS, Command, changed
 from tests.system.test_permissions import COARSE
 from tests.system.test_sensors_tune import CONFIG as POINTS

@@ -10,8 +10,8 @@ import pytest
 import synth
 from plant_models.library.hump_schema import hump_schema
 from synth.frame.input_error import InputError
-from tests.frame.results import results_in
-from tests.plant_models.hump.small_hump import SMALL
+from tests.frame.small_command import results_in
+from tests.plant_models.hump.random_humps import SMALL
 from tests.system.conftest import Command
 
 
@@ -119,8 +119,3 @@ def test_from_python(file: Path) -> None:
     assert synth.load_hump("large").graph.tracks == tuple(range(1, 33))
     with pytest.raises(InputError, match="there is no such file, and no such hump in the library"):
         synth.load_hump("lage")
-
-
-def test_names_of_the_library(command: Command) -> None:
-    assert "tracks: 32;" in command("hump", "check", "large").out
-    assert "did you mean large?" in command("hump", "check", "lage").sentence

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from synth.cli import main
-from tests.frame.results import results_in
+from tests.frame.small_command import results_in
 from tests.system.conftest import EPOCH, Command, changed
 
 SMALL = """\

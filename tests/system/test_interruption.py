@@ -1,4 +1,4 @@
-"""A tune that is killed or interrupted leaves nothing that looks complete and is not, and can be run again."""
+"""A tune that is killed leaves nothing that looks complete and is not; the same problem gives the same bytes."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ import pytest
 from synth.frame.held_directory import LOCK
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import LEFTOVER
+from tests.system.conftest import EPOCH, Command
 from tuning_tables import read_book, read_json
 
 TUNE = [sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))", "tune"]
@@ -210,3 +211,18 @@ def test_ctrl_c_ends_a_command_without_results_and_its_unfinished_file(tmp_path:
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stderr) == (130, "retarder-synth: interrupted\n")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.requirement("PRED-09")
+def test_one_worker_gives_the_bytes_of_two(
+    command: Command,
+    tuned_once: tuple[Path, int],
+    two_classes: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+    assert command("tune", two_classes, "-o", tmp_path, "--workers", "1").code == 0
+    names = {path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()}
+    assert names == {path.relative_to(tuned_once[0]) for path in tuned_once[0].rglob("*") if path.is_file()}
+    assert [name for name in names if (tmp_path / name).read_bytes() != (tuned_once[0] / name).read_bytes()] == []

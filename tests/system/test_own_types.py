@@ -97,13 +97,6 @@ def test_every_artefact_bears_the_users_names_and_none_of_the_library(example: P
     assert "(types/retarders/us-group.toml)" in report
 
 
-@pytest.mark.long
-def test_the_independent_checker_confirms_the_tables(example: Path, command: Command) -> None:
-    ran = command("verify", example / "out", "--passes", "400")
-    assert ran.code == 0, ran.out
-    assert "6 tables" in ran.out
-
-
 def test_the_tables_validate_against_the_configuration_with_own_types(
     example: Path, command: Command, tmp_path: Path
 ) -> None:

@@ -124,15 +124,6 @@ def test_the_page_says_which_permission_to_ask_for(ran: Path) -> None:
 
 
 @pytest.mark.long
-def test_the_same_figures_with_two_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    for workers in ("1", "2"):
-        assert asked(tmp_path, workers, "--workers", workers, text=COARSE) == 0
-    assert (tmp_path / "1" / "summary.json").read_bytes() == (tmp_path / "2" / "summary.json").read_bytes()
-    assert set(told_figures(tmp_path / "1")) == {*ASKED, "approach of 4 m", AS_CONFIGURED} - {"without the approach"}
-
-
-@pytest.mark.long
 def test_the_table_as_configured_is_that_of_a_tune_which_tells_how_to_ask(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -17,7 +17,7 @@ import pytest
 import synth
 from plant_models import Plant
 from synth.frame.input_error import InputError
-from tests.system.coefficients import coefficients_sha256, kept
+from tests.system.test_coefficients import coefficients_sha256, kept
 from tuning_tables import ControllerTable, read_json
 
 ROOT = Path(__file__).parents[2]

@@ -8,10 +8,8 @@ from typing import Any
 
 import pytest
 
-import synth.retarder.sensitivity.command as command
 from synth.cli import main
 from synth.frame.results_directory import results_directory
-from tests.frame.results import results_in
 
 SMALL = """\
 [position]
@@ -96,14 +94,6 @@ def test_what_the_configuration_sets_is_held(ran: Path) -> None:
     assert {"cut.mass_t", "friction.common_cv", "sensor.noise_m_s"} <= keys
     assert {row["key"] for row in told["ranges"]} == keys
     assert all(row["low"] <= row["nominal"] <= row["high"] for row in told["ranges"])
-
-
-@pytest.mark.long
-def test_same_bytes_whatever_the_threads(ran: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    monkeypatch.setattr(command, "available", lambda: 3)
-    assert asked(ran, "three") == 0
-    assert results_in(ran / "one") == results_in(ran / "three")
 
 
 @pytest.mark.long

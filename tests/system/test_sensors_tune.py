@@ -14,7 +14,7 @@ from synth.checker.finding import Kind
 from synth.checker.verdict import verify
 from synth.cli import main
 from tests.checker.planted_fault import rewrite
-from tests.frame.results import results_in
+from tests.frame.small_command import results_in
 from tests.printed_page import Page, table_of
 from tests.system.conftest import EPOCH, MEASURED, Command, changed
 from tuning_tables.json_file import read_json

@@ -16,7 +16,7 @@ import pytest
 from synth.cli import TRACEBACK
 from synth.cli import init as init_module
 from tests.effort import every
-from tests.frame.results import results_in
+from tests.frame.small_command import results_in
 from tests.system.conftest import CLASS, Command
 
 PROGRAM = "from synth.cli import script; script()"

@@ -1,17 +1,20 @@
-"""The command validate on a real, small book: it confirms what is true, finds what is not, and logs passes."""
+"""validate, tables that act before the entrance, and another criterion, as a user runs them."""
 
 from __future__ import annotations
 
 import json
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from tests.system.conftest import Command
+from tests.controller_code.sample_book import FOUR_AXLES, table_of, with_approach
+from tests.system.conftest import CLASS, EPOCH, MEASURED, Command
 from tests.system.small_book import ID
-from tuning_tables import read_book, read_json, to_json
+from tuning_tables import read_book, read_json, to_json, write_json
 from tuning_tables.canonical import canonical_json, document_checksum
 from tuning_tables.pass_log.log_files import read_logs
 
@@ -105,3 +108,122 @@ def test_validate_refuses_a_plant_that_does_not_fit(command: Command, tuned: Pat
     assert ran.code == 2
     assert "no cut class fits the table gondola-4-22t-to-1.5-m-s" in ran.sentence
     assert "retarder.zones_m" in ran.sentence
+
+
+def test_inspect_tells_the_approach_and_its_interlock(command: Command, tmp_path: Path) -> None:
+    plain = table_of("one", "Л", 23.0, FOUR_AXLES, 2.0)
+    write_json(plain, tmp_path / "plain.json")
+    write_json(with_approach(plain, 4.0, 1), tmp_path / "approached.json")
+    told = command("inspect", tmp_path / "approached.json").out
+    assert "acts from 4 m before the entrance on, where it commands no stage above 1;" in told
+    assert "only when the cut ahead has left the position" in told
+    assert "path -4 to 37.45 m" in told
+    assert "approach" not in command("inspect", tmp_path / "plain.json").out.replace("approached.json", "")
+    as_json = json.loads(command("inspect", tmp_path / "approached.json", "--json").out)
+    (table,) = as_json["files"][0]["tables"]
+    assert table["approach"] == {"length_m": 4.0, "entrance_stage": 1, "interlock": "position_clear"}
+    assert table["lines_at"][0]["v_m_s"]
+
+
+def test_every_form_of_export_holds_it(command: Command, tmp_path: Path) -> None:
+    write_json(with_approach(table_of("one", "Л", 23.0, FOUR_AXLES, 2.0), 4.0, 1), tmp_path / "one.json")
+    for form, name, words in (
+        ("csv", "one.csv", "number,approach.entrance_stage,1"),
+        ("csv", "one.csv", "text,approach.interlock,position_clear"),
+        ("c", "retarder_table.c", "1, /* entrance_stage */"),
+        ("st", "retarder_table.st", "EntranceStageOf"),
+        ("json", "one.json", '"interlock": "position_clear"'),
+    ):
+        run = command("export", tmp_path / "one.json", "--format", form, "-o", tmp_path / form)
+        assert run.code == 0, run.err
+        (written,) = (tmp_path / form).rglob(name)
+        assert words in written.read_text(encoding="utf-8")
+
+
+def test_a_table_of_before_is_told_which_key_it_needs(
+    command: Command, tuned: Path, two_classes: Path, tmp_path: Path
+) -> None:
+    assert "approach_m" not in two_classes.read_text(encoding="utf-8")
+    table = read_json(tuned / "tables" / "gondola-4-22t-to-1.5-m-s.json")
+    path, config = tmp_path / "before.json", tmp_path / "with_the_key.toml"
+    write_json(replace(table, approach=None, valid=replace(table.valid, s_m=(0.0, table.valid.s_m[1]))), path)
+    ran = command("validate", path, "--config", two_classes, "--passes", "1000", "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert "differs in regulator.approach_m (4, in the table 0)" in ran.sentence
+    assert ran.sentence.endswith("by --config, with regulator.approach_m = 0 in it if it names none")
+    config.write_text(two_classes.read_text(encoding="utf-8") + "[regulator]\napproach_m = 0.0\n", encoding="utf-8")
+    assert "rms" in command("validate", path, "--config", config, "--passes", "1000", "-o", tmp_path / "out").out
+
+
+def test_an_approach_that_makes_every_cut_faster_is_one_sentence(
+    command: Command, two_classes: Path, tmp_path: Path
+) -> None:
+    config, steep = tmp_path / "steep.toml", "[regulator]\napproach_m = 100.0\n[track]\ngrade_permille = 30.0\n"
+    config.write_text(two_classes.read_text(encoding="utf-8") + steep, encoding="utf-8")
+    ran = command("tune", config, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert "steep.toml: regulator.approach_m is 100; there the grade alone brings each cut to 7." in ran.sentence
+    assert ran.sentence.endswith("raise that speed (cut class gondola-4-22t)")
+
+
+def test_a_wrong_initial_stage_names_the_class_that_forbids_it(
+    command: Command, two_classes: Path, tmp_path: Path
+) -> None:
+    config, classes = tmp_path / "closed.toml", two_classes.read_text(encoding="utf-8") + "entrance_stage = 1\n"
+    for stage, told in (
+        (2, "from 0 to the stage allowed at the entrance, 1 (cut class gondola-4-30t)"),
+        (-1, "from 0 to 31"),
+    ):
+        config.write_text(f"{classes}[regulator]\ninitial_stage = {stage}\n", encoding="utf-8")
+        ran = command("tune", config, "-o", tmp_path / "out")
+        assert ran.code == 2
+        assert ran.sentence.endswith(f"regulator.initial_stage is {stage}; it must be a whole number {told}")
+
+
+@pytest.fixture
+def default_case(measured_once: Path) -> Any:
+    """The case of the default criterion in its summary."""
+    summary = json.loads((measured_once / "summary.json").read_text())
+    assert summary["figures"]["criterion"] == "mean squared exit-speed error"
+    assert "requirement" not in summary["tables"]
+    return summary["tables"]["cases"][0]
+
+
+def tuned_by(command: Command, criterion: str, out: Path) -> tuple[Any, str]:
+    """(summary, report) of a tune for the measured speed with that [criterion]."""
+    config = out.with_suffix(".toml")
+    config.write_text(CLASS.replace("csv = true", "plots = false") + MEASURED + f"[criterion]\n{criterion}\n")
+    assert command("tune", config, "-o", out, "--workers", "1").code in (0, 1)
+    return json.loads((out / "summary.json").read_text()), (out / "report.html").read_text()
+
+
+def test_dearer_overspeed_makes_slower_exits(command: Command, default_case: Any, tmp_path: Path) -> None:
+    summary, report = tuned_by(command, "overspeed_factor = 4.0", tmp_path / "out")
+    assert "over-speed weighing 4 times" in summary["figures"]["criterion"]
+    assert summary["figures"]["criterion"] in report
+    (slower,) = summary["tables"]["cases"]
+    assert slower["bias_m_s"]["value"] < default_case["bias_m_s"]["value"] - 0.003
+
+
+def test_a_limit_that_is_kept_anyway_changes_no_line(
+    command: Command,
+    default_case: Any,
+    measured_once: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+    summary, report = tuned_by(command, "p_overspeed = 0.5\noverspeed_margin_m_s = 0.3", tmp_path / "out")
+    (case,), (requirement,) = summary["tables"]["cases"], summary["tables"]["requirement"]
+    assert requirement["multiplier_m2_s2"] == 0.0
+    assert "without a price and keeps 0.5: the limit is not active" in report
+    predicted = [
+        {key: value for key, value in each.items() if key.startswith("predicted_")} for each in (case, default_case)
+    ]
+    assert predicted[0] == predicted[1]
+    assert predicted[0]["predicted_rms_m_s"] > 0.0
+    tables = [
+        json.loads((at / "tables" / f"{case['id']}.json").read_text()) for at in (tmp_path / "out", measured_once)
+    ]
+    assert tables[0]["stages"] == tables[1]["stages"]
+    assert tables[0]["generator"]["config_sha256"] != tables[1]["generator"]["config_sha256"]

@@ -1,6 +1,7 @@
 """Books that are wrong although every sum in them is right: what a careless or hostile writer might leave."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +9,12 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.book_layout import stored_layout
+from tuning_tables import TableError, read_any_book, write_book
+from tuning_tables.book_layout import Layout, stored_layout
 from tuning_tables.canonical import canonical_json
 from tuning_tables.payload import payload_sha256
 from tuning_tables.seal import seal_of
+from tuning_tables.table_kinds import StageTable
 
 Edit = Callable[[h5py.File], None]
 Arrays = Mapping[str, npt.NDArray[Any]]
@@ -69,3 +72,55 @@ def correct_payload(file: h5py.File, known: Arrays) -> None:
     except (KeyError, ValueError):
         return
     file.attrs["payload_sha256"] = payload_sha256(attributes, arrays, layout)
+
+
+@dataclass(frozen=True)
+class Forgery:
+    """A book to forge: its layout, its bytes, the arrays in it, and where forged ones are put."""
+
+    layout: Layout
+    content: bytes
+    arrays: Arrays
+    path: Path
+
+    def outcome(self, edit: Edit, name: str = "") -> TableError | tuple[StageTable, ...]:
+        """What a reader finds in the book after `edit`, of the dataset `name` if of one alone, under right sums."""
+        self.path.write_bytes(self.content)
+        known = {key: array for key, array in self.arrays.items() if key != name} if name in self.arrays else {}
+        forge(self.path, edit, known)
+        try:
+            return read_any_book(self.path)
+        except TableError as refusal:
+            message = str(refusal)
+            assert message.startswith(f"{self.path}: ")
+            assert "payload_sha256 is " not in message
+            assert len(message) < 800
+            assert message.isprintable()
+            return refusal
+
+    def refusal(self, edit: Edit, name: str = "") -> str:
+        """The message with which the book is refused; "" if it is read."""
+        found = self.outcome(edit, name)
+        return str(found) if isinstance(found, TableError) else ""
+
+    def is_another_sound_book(self, tables: tuple[StageTable, ...], name: str) -> bool:
+        """Whether what was written at `name` is what the tables read from it hold."""
+        with h5py.File(self.path) as file:
+            forged = file[name][()]
+        write_book(tables, self.path, tables[0].generator)
+        again = arrays_in(self.path)[name]
+        return bool(again.dtype == forged.dtype and again.tobytes() == forged.tobytes())
+
+
+def set_value(name: str, index: Any, value: object) -> Edit:
+    def edit(file: h5py.File) -> None:
+        file[name][index] = value
+
+    return edit
+
+
+def delete(name: str) -> Edit:
+    def edit(file: h5py.File) -> None:
+        del file[name]
+
+    return edit

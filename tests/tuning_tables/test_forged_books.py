@@ -7,9 +7,9 @@ point sensors, and tells every fault that gets through, or is refused in other w
 import random
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 from itertools import cycle, islice
-from pathlib import Path
 from typing import Any
 
 import h5py
@@ -19,7 +19,7 @@ import pytest
 
 from tests.effort import every
 from tests.tuning_tables.every_kind import whole_lines
-from tests.tuning_tables.forged_book import Arrays, Edit, arrays_in, forge, put, reseal
+from tests.tuning_tables.forged_book import Edit, Forgery, arrays_in, delete, put, reseal, set_value
 from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import (
     ControllerTable,
@@ -30,51 +30,12 @@ from tuning_tables import (
     read_any_book,
     write_book,
 )
-from tuning_tables.book_layout import Layout, book_layout
+from tuning_tables.book_layout import book_layout
 from tuning_tables.declared.columns import Column
 from tuning_tables.passages.sensor_layout import DecidesOn
-from tuning_tables.table_kinds import StageTable
 
 DTYPES = ("<f4", "<f8", ">f8", "<i4", "<i8", "|u1", "S70", "object", "reference")
 NAN, INF = float("nan"), float("inf")
-
-
-@dataclass(frozen=True)
-class Forgery:
-    """A book to forge: its layout, its bytes, the arrays in it, and where forged ones are put."""
-
-    layout: Layout
-    content: bytes
-    arrays: Arrays
-    path: Path
-
-    def outcome(self, edit: Edit, name: str = "") -> TableError | tuple[StageTable, ...]:
-        """What a reader finds in the book after `edit`, of the dataset `name` if of one alone, under right sums."""
-        self.path.write_bytes(self.content)
-        known = {key: array for key, array in self.arrays.items() if key != name} if name in self.arrays else {}
-        forge(self.path, edit, known)
-        try:
-            return read_any_book(self.path)
-        except TableError as refusal:
-            message = str(refusal)
-            assert message.startswith(f"{self.path}: ")
-            assert "payload_sha256 is " not in message
-            assert len(message) < 800
-            assert message.isprintable()
-            return refusal
-
-    def refusal(self, edit: Edit, name: str = "") -> str:
-        """The message with which the book is refused; "" if it is read."""
-        found = self.outcome(edit, name)
-        return str(found) if isinstance(found, TableError) else ""
-
-    def is_another_sound_book(self, tables: tuple[StageTable, ...], name: str) -> bool:
-        """Whether what was written at `name` is what the tables read from it hold."""
-        with h5py.File(self.path) as file:
-            forged = file[name][()]
-        write_book(tables, self.path, tables[0].generator)
-        again = arrays_in(self.path)[name]
-        return bool(again.dtype == forged.dtype and again.tobytes() == forged.tobytes())
 
 
 @pytest.fixture(scope="module", params=every(2, ["lines", "points"]))
@@ -85,20 +46,6 @@ def book(request: pytest.FixtureRequest, table: ControllerTable, tmp_path_factor
     path = tmp_path_factory.mktemp("forged") / "book.h5"
     write_book(tables, path, tables[0].generator)
     return Forgery(book_layout(tables), path.read_bytes(), arrays_in(path), path)
-
-
-def set_value(name: str, index: Any, value: object) -> Edit:
-    def edit(file: h5py.File) -> None:
-        file[name][index] = value
-
-    return edit
-
-
-def delete(name: str) -> Edit:
-    def edit(file: h5py.File) -> None:
-        del file[name]
-
-    return edit
 
 
 def test_a_book_that_is_forged_without_a_change_is_read(book: Forgery) -> None:
@@ -215,15 +162,10 @@ def test_no_text_gets_through_that_is_none(book: Forgery) -> None:
     assert through == []
 
 
-def widened(book: Forgery, name: str) -> Edit:
-    return lambda file: put(file, name, book.arrays[name].astype("S90"))
-
-
 def test_text_that_is_padded_otherwise_is_refused(book: Forgery) -> None:
-    for column in book.layout.columns:
-        if column.dtype == "S":
-            found = book.refusal(widened(book, column.name), column.name)
-            assert f"{column.name} holds values beside" in found
+    for name in (column.name for column in book.layout.columns if column.dtype == "S"):
+        wider = partial(put, name=name, values=book.arrays[name].astype("S90"))
+        assert f"{name} holds values beside" in book.refusal(wider, name)
 
 
 def test_every_axis_is_numbered_from_0(book: Forgery) -> None:
@@ -251,56 +193,33 @@ def test_every_axis_is_numbered_from_0(book: Forgery) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "error"),
+    ("name", "values", "error"),
     [
-        ("format", None, UnknownFormat),
-        ("format", "retarder-table", UnknownFormat),
-        ("format", np.bytes_(b"retarder-book"), UnknownFormat),
-        ("format", ["retarder-book"], UnknownFormat),
-        ("version", None, DamagedTable),
-        ("version", 2, NewerVersion),
-        ("version", 2**63 - 1, NewerVersion),
-        ("version", 0, DamagedTable),
-        ("version", -1, DamagedTable),
-        ("version", 1.0, DamagedTable),
-        ("version", True, DamagedTable),
-        ("version", "1", DamagedTable),
-        ("version", [1], DamagedTable),
-        ("version", np.zeros(10_000, np.int32), DamagedTable),
-        ("kind", None, DamagedTable),
-        ("kind", "aim", DamagedTable),
-        ("kind", "line", DamagedTable),
-        ("kind", 1, DamagedTable),
-        ("complete", None, DamagedTable),
-        ("complete", 0, DamagedTable),
-        ("complete", 2, DamagedTable),
-        ("complete", 1.0, DamagedTable),
-        ("complete", True, DamagedTable),
-        ("complete", "1", DamagedTable),
-        ("complete", [1], DamagedTable),
-        ("config_sha256", None, DamagedTable),
-        ("config_sha256", "", DamagedTable),
-        ("config_sha256", "0" * 63, DamagedTable),
-        ("config_sha256", 0, DamagedTable),
-        ("exported_by", None, DamagedTable),
-        ("exported_by", "", DamagedTable),
-        ("exported_by", "two\nlines", DamagedTable),
-        ("exported_by", 0.1, DamagedTable),
-        ("surplus", 1, DamagedTable),
-        ("surplus" * 1000, 1, DamagedTable),
+        ("format", [None, "retarder-table", np.bytes_(b"retarder-book"), ["retarder-book"]], UnknownFormat),
+        ("version", [None, 0, -1, 1.0, 2.0, True, "1", [1], np.zeros(10_000, np.int32)], DamagedTable),
+        ("version", [2, 2**63 - 1], NewerVersion),
+        ("kind", [None, "aim", "line", 1], DamagedTable),
+        ("complete", [None, 0, 2, 1.0, True, "1", [1]], DamagedTable),
+        ("config_sha256", [None, "", "0" * 63, 0], DamagedTable),
+        ("exported_by", [None, "", "two\nlines", 0.1], DamagedTable),
+        ("surplus", [1], DamagedTable),
+        ("surplus" * 1000, [1], DamagedTable),
     ],
     ids=lambda value: repr(value)[:20],
 )
 def test_every_root_attribute_is_required_as_it_is(
-    book: Forgery, name: str, value: object, error: type[TableError]
+    book: Forgery, name: str, values: list[object], error: type[TableError]
 ) -> None:
-    def edit(file: h5py.File) -> None:
-        if name in file.attrs:
-            del file.attrs[name]
-        if value is not None:
-            file.attrs[name] = value
+    def with_value(value: object) -> Edit:
+        def edit(file: h5py.File) -> None:
+            if name in file.attrs:
+                del file.attrs[name]
+            if value is not None:
+                file.attrs[name] = value
 
-    assert type(book.outcome(edit)) is error
+        return edit
+
+    assert [value for value in values if type(book.outcome(with_value(value))) is not error] == []
 
 
 def test_a_book_of_the_other_kind_is_refused(book: Forgery) -> None:
@@ -338,11 +257,8 @@ BESIDE = {
         ("retarder_zones_m", (0, 0, 0), NAN, "retarder.zones_m[0]"),
         ("stages", 1, 1, "stages has 1 entries"),
         ("stages", 1, 2**31 - 1, "but the book has room for 4"),
-        ("stages", 0, -4, "there are -4 stages"),
         ("degree", 0, 4, "stages[0].upper has 4 coefficients"),
-        ("degree", 0, -1, "degree is -1"),
         ("validated", 0, 0, "validated_passes holds values beside"),
-        ("validated", 0, 2, "validated holds values beside"),
         ("validated_passes", 0, 2**60, "validated.passes"),
         ("approach", 0, 1, "position_clear"),
         ("approach", 1, 0, "but no table has anything there"),
@@ -356,7 +272,6 @@ BESIDE = {
     ],
     "points": [
         ("passages", 0, 0, "passages has 0 entries"),
-        ("passages", 0, 5, "passages"),
         ("passages", 0, 2**31 - 1, "but the book has room for"),
         ("passage_axle", (0, 1), 1, "passages[1] is axle 1"),
         ("passage_sensor", (0, 1), 2, "passages[1] is axle 0 over sensor 2"),

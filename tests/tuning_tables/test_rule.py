@@ -164,14 +164,6 @@ def test_answers_agree_with_an_independent_float32_evaluation(name: str, request
     assert back > 100 or name != "turning_table"
 
 
-def test_both_float_widths_of_a_reading_agree_in_compiled_code(table: ControllerTable) -> None:
-    compiled = compiled_rule(decide)
-    for s in np.linspace(0.0, 37.0, 50):
-        for v in np.linspace(4.0, 7.0, 50):
-            narrow = compiled(table.held, 1, np.float32(s), np.float32(v), np.float32(NAN))
-            assert compiled(table.held, 1, float(s), float(v), NAN) == narrow
-
-
 @pytest.mark.requirement("RULE-01", "RULE-03")
 @pytest.mark.parametrize(
     ("stage", "s_m", "v_m_s", "answer"),

@@ -1,29 +1,16 @@
 """Tables that decide at any time, with slopes over the pressure: what they answer, and what they must be."""
 
-import math
 import pickle
-from collections.abc import Callable
 from dataclasses import replace
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 import pytest
 
-from tuning_tables import (
-    ControllerTable,
-    Decisions,
-    InvalidTable,
-    Stage,
-    decide_for,
-    decide_many,
-)
+from tuning_tables import ControllerTable, Decisions, InvalidTable, Stage, decide_for, decide_many
 from tuning_tables.active_table import active
-from tuning_tables.golden_vectors import GoldenVectors, few_golden_vectors, golden_vectors
-from tuning_tables.programs.line_table import LineTable
+from tuning_tables.golden_vectors import golden_vectors
 from tuning_tables.rule import rises_at
-
-rule_text = import_module("tuning_tables.programs.decide")
 
 NAN, INF = float("nan"), float("inf")
 SLOPE = "slope_m_s_per_kpa"
@@ -188,53 +175,3 @@ def test_the_times_of_decision_are_one_of_two(surface_table: ControllerTable, de
 def test_a_table_that_decides_at_rest_has_no_slopes(surface_table: ControllerTable) -> None:
     with pytest.raises(InvalidTable, match=rf"^stages\[0\]\.upper_{SLOPE} is given, but .* decisions are at rest"):
         replace(surface_table, decisions=Decisions.AT_REST)
-
-
-def another_pressure(change: str) -> Callable[..., Any]:
-    """What a controller takes for the pressure above that of the stage, when it gets one thing wrong."""
-
-    def wrong(table: LineTable, stage: int, kpa: Any) -> Any:
-        if not math.isfinite(kpa):
-            if change != "silence counts as no pressure":
-                return np.float32(0.0)
-            kpa = np.float32(0.0)
-        highest = table.pressure_kpa[-1] if change == "clamped to the top stage" else table.highest_kpa
-        if change != "not clamped below":
-            kpa = max(kpa, table.pressure_kpa[0])
-        if change != "not clamped above":
-            kpa = min(kpa, highest)
-        return kpa if change == "from no pressure" else kpa - table.pressure_kpa[stage]
-
-    return wrong
-
-
-@pytest.mark.parametrize("vectors", [golden_vectors, few_golden_vectors])
-@pytest.mark.parametrize(
-    "change",
-    [
-        "none",
-        "sides exchanged",
-        "from no pressure",
-        "not clamped below",
-        "not clamped above",
-        "clamped to the top stage",
-        "silence counts as no pressure",
-    ],
-)
-def test_the_golden_vectors_show_a_wrong_rise(
-    surface_table: ControllerTable,
-    monkeypatch: pytest.MonkeyPatch,
-    vectors: Callable[[ControllerTable], GoldenVectors],
-    change: str,
-) -> None:
-    table = with_stage(surface_table, 0, pressure_kpa=20.0)
-    golden, held = vectors(table), table.held
-    if change == "sides exchanged":
-        held = held._replace(slope=held.slope[:, ::-1])
-    monkeypatch.setattr(rule_text, "pressure_above", another_pressure(change))
-    with np.errstate(over="ignore"):
-        readings = zip(golden.stage.tolist(), golden.s_m, golden.v_m_s, golden.pressure_kpa, strict=True)
-        answers = [rule_text.decide(held, *reading) for reading in readings]
-    # The few ask no silent gauge.
-    due = change == "none" or (vectors is few_golden_vectors and change == "silence counts as no pressure")
-    assert (answers == golden.answer.tolist()) == due

@@ -1,25 +1,33 @@
-"""A controller table is complete and consistent, or it does not exist."""
+"""A controller table is complete and consistent, or does not exist; what those that act before the entrance may
+command.
+"""
 
 import pickle
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError, replace
+from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tests.effort import sized
 from tuning_tables import (
+    Approach,
     ControllerTable,
     CutId,
+    Estimator,
     Generator,
     InvalidTable,
     RetarderId,
     Stage,
     Validated,
     ValidRange,
+    decide_for,
+    decide_many,
 )
+from tuning_tables.active_table import active, between, interpolable
 from tuning_tables.stage import Line, round_coefficients
 
 Crossing = Callable[[Line, Line, tuple[float, float]], ControllerTable]
@@ -180,29 +188,6 @@ def test_lines_must_keep_their_order_on_the_whole_range(
 coefficients = st.floats(-8, 8, width=32).map(lambda c: c + 0.0)  # no -0.0
 
 
-@example(lower=[0.0] * 4, gap=[0.5, -2.0, 1.0, 1.401298464324817e-45], s_m=(0.0, 2.0))
-@given(
-    lower=st.lists(coefficients, min_size=4, max_size=4),
-    gap=st.lists(coefficients, min_size=4, max_size=4),
-    s_m=st.tuples(st.floats(-4, 0, width=32).map(lambda s: s + 0.0), st.floats(0.5, 4, width=32)),
-)
-@settings(derandomize=True, max_examples=sized(75, 300), deadline=None)
-def test_order_as_sampled_agrees_with_order_as_decided(
-    crossing: Crossing, lower: list[float], gap: list[float], s_m: tuple[float, float]
-) -> None:
-    upper = round_coefficients(a + b for a, b in zip(lower, gap, strict=True))
-    s = np.linspace(*s_m, 2001)
-    sampled = np.polynomial.polynomial.polyval(s, np.array(upper) - np.array(lower)).min()
-    # Nearly touching lines are decided by the rounding bound, which the cases above and below are about.
-    assume(abs(sampled) > 1e-2)
-    try:
-        crossing(tuple(lower), upper, s_m)
-        accepted = True
-    except InvalidTable:
-        accepted = False
-    assert accepted == (sampled > 0)
-
-
 @pytest.mark.requirement("RULE-06")
 @given(
     lower=st.lists(coefficients, min_size=3, max_size=6),
@@ -223,3 +208,88 @@ def test_accepted_lines_never_cross_in_float32(
     for power in range(table.degree - 1, -1, -1):
         speeds = speeds * s + table.coefficients[1, :, power][:, np.newaxis]
     assert np.all(speeds[0] < speeds[1])
+
+
+TINY = float(np.finfo(np.float32).smallest_subnormal)
+
+
+def with_estimator(table: ControllerTable, *breaks: float) -> ControllerTable:
+    return replace(
+        table,
+        estimator=Estimator(0.05, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 60.0, breaks, (0.0,) * 3, (0.0, 0.0, 0.01)),
+    )
+
+
+@pytest.mark.requirement("RULE-07")
+@pytest.mark.parametrize(
+    ("stage", "s_m", "v_m_s", "answer"),
+    [
+        (0, -4.0, 9.0, 1),  # up to the entrance stage, and no further
+        (1, -4.0, 9.0, 1),
+        (0, 4.0, 9.0, 2),
+        (1, -100.0, 9.0, 1),  # clamped to the beginning of the approach
+        (1, -TINY, 9.0, 1),  # the last float32 number before the entrance
+        (0, -TINY, 9.0, 1),
+        (1, -0.0, 9.0, 2),  # at the entrance
+        (1, 0.0, 9.0, 2),
+        (1, -1e-60, 9.0, 2),  # -0.0 in float32
+        (1, TINY, 9.0, 2),
+        (1, -2.0, 0.0, 0),  # lowering is always allowed
+        (3, -2.0, 0.0, 0),  # also where the interlock was broken
+        (3, -2.0, 9.0, 3),
+    ],
+)
+def test_before_the_entrance_no_stage_above_the_entrance_stage_is_commanded(
+    approached_table: ControllerTable, stage: int, s_m: float, v_m_s: float, answer: int
+) -> None:
+    assert decide_for(approached_table, stage, s_m, v_m_s) == answer
+    assert decide_many(approached_table, stage, s_m, v_m_s) == answer
+    assert decide_for(active(approached_table), stage, s_m, v_m_s) == answer
+
+
+def test_without_approach_the_entrance_stage_is_the_highest(table: ControllerTable) -> None:
+    assert table.entrance_stage == active(table).entrance_stage == 3
+    moved = replace(table, valid=ValidRange((-4.0, 37.45), (0.3, 9.0)))
+    assert decide_for(moved, 1, -2.0, 9.0) == 2  # as ever: its path range begins before the entrance
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"approach": 4.0}, "approach is 4.0"),
+        ({"approach": Approach(4.0, 4)}, r"entrance_stage is 4, but it must be a whole number in \[0, 3\]"),
+        ({"approach": Approach(4.5, 1)}, r"valid\.s_m is .* must begin at -approach\.length_m, -4\.5"),
+        ({"valid": ValidRange((0.0, 37.45), (0.3, 9.0))}, "must begin at"),
+        ({"valid": ValidRange((-4.0, -0.5), (0.3, 9.0))}, "end behind the entrance"),
+    ],
+    ids=repr,
+)
+def test_an_approach_that_does_not_fit_its_table_is_refused(
+    approached_table: ControllerTable, change: dict[str, object], reason: str
+) -> None:
+    with pytest.raises(InvalidTable, match=reason):
+        replace(approached_table, **change)  # type: ignore[arg-type]  # one of the values has a wrong type
+
+
+def test_the_estimator_of_an_approach_begins_with_it(approached_table: ControllerTable) -> None:
+    assert with_estimator(approached_table, -4.0, 0.0, 12.0).estimator is not None
+    with pytest.raises(InvalidTable, match=r"breaks must begin at -approach\.length_m"):
+        with_estimator(approached_table, -3.9, 0.0, 12.0)
+
+
+@pytest.mark.parametrize(
+    ("length_m", "stage"), [(0.0, 1), (-4.0, 1), (1e-4, 1), (100.5, 1), (float("nan"), 1), (4.0, -1), (4.0, 1.0)]
+)
+def test_a_wrong_approach_is_refused(length_m: float, stage: Any) -> None:
+    with pytest.raises(InvalidTable, match="approach"):
+        Approach(length_m, stage)
+
+
+def test_lines_are_taken_between_equal_approaches_only(approached_table: ControllerTable) -> None:
+    faster = replace(approached_table, id="faster", target_speed_m_s=5.0)
+    assert interpolable(approached_table, faster)
+    assert between(approached_table, faster, np.float32(4.5)).entrance_stage == 1
+    assert not interpolable(approached_table, replace(faster, approach=Approach(4.0, 2)))
+    assert not interpolable(approached_table, replace(faster, approach=None))
+    longer = replace(faster, approach=Approach(4.5, 1), valid=ValidRange((-4.5, 37.45), (0.3, 9.0)))
+    assert not interpolable(approached_table, longer)

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from plant_models import TrackProfile
 from plant_models.rolling.roll_track import Bend, RollTrack
-from scripts.studies.rolling.by_numpy import NumpyRoll
-from scripts.studies.rolling.cases import CASES, COUPLING_M_S, PARK_EXIT_M, RollCase
+from scripts.studies.rolling.cases import CASES, COUPLING_M_S, PARK_EXIT_M
 from synth.simulation.free_roll import rolling_cuts
 from tests.effort import sized
 from tests.oracles.rolling.made_cuts import START_M, cuts, random_cuts, random_track, rolling
@@ -195,23 +194,3 @@ def test_the_error_falls_at_least_with_the_square_of_the_step(cars: int) -> None
         )
     orders = np.log2(np.array(errors)[:-1] / np.array(errors)[1:])
     assert np.all(orders > 1.85), orders
-
-
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-@pytest.mark.parametrize("cars", [1, 5])
-def test_the_kernel_rolls_as_numpy_does_by_small_steps(case: RollCase, cars: int) -> None:
-    n = sized(100, 400)
-    drawn = case.drawn(cars, 11, n)
-    other, made = NumpyRoll(case.population, case.track, PARK_EXIT_M, drawn), case.rolling(cars, 11, n)
-    start, speed = case.starts_m(made), case.speeds_m_s(n)
-    end = start + case.length_m
-    expected, stop = other.on(start, speed, end, 0.25)
-    rolled = made.roll_on(start, speed, end[:, None])
-    fast = expected > 0.3
-    assert np.abs(rolled.speed_m_s[fast, 0] - expected[fast]).max() < 2e-3
-    stopped = np.isfinite(stop) & np.isfinite(rolled.stop_m)
-    assert np.all(stopped == np.isfinite(stop))
-    assert np.abs(rolled.stop_m[stopped] - stop[stopped]).max(initial=0.0) < 0.15
-    back = other.back(end, COUPLING_M_S, start, 0.25)
-    critical = made.roll_back(end, COUPLING_M_S, start)
-    assert np.abs(critical - back)[back > 0.3].max(initial=0.0) < 3e-3

@@ -17,7 +17,7 @@ from plant_models.library.library import BUILT_IN
 from plant_models.library.toml_lines import line_of, places_of
 from plant_models.library.type_file import HUMPS, TypeFileError
 from tests.effort import sized
-from tests.plant_models.hump.small_hump import SMALL, read
+from tests.plant_models.hump.random_humps import SMALL, read
 
 
 def test_a_row_counts_before_its_type() -> None:

@@ -13,7 +13,7 @@ from plant_models.library.library import BUILT_IN
 from plant_models.library.source import CITATION, sources
 from plant_models.library.sourced_value import CONFIDENCES, JUDGEMENT
 from plant_models.library.type_file import HUMPS, TypeFileError
-from tests.plant_models.hump.small_hump import SMALL, read
+from tests.plant_models.hump.random_humps import SMALL, read
 
 
 @pytest.mark.parametrize("name", hump_names())

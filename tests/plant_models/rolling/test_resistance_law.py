@@ -1,13 +1,19 @@
-"""Laws of rolling resistance against scipy.stats and against the figures that were worked out from TB 10062."""
+"""Laws of rolling resistance against scipy.stats and TB 10062; random numbers are uniform and the same for a cut
+anywhere.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy import stats
 
 from plant_models import PlantError, RollingResistance
 from plant_models.frozen_arrays import Floats
+from plant_models.rolling.keyed_numbers import GOLDEN, keyed_uniform, keyed_words, mixed
+from plant_models.rolling.random_numbers import BLOCK, Purpose, uniform_numbers
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.roll_track import Bend
 from tests.plant_models.rolling.populations import CATEGORIES
@@ -132,3 +138,91 @@ def test_a_norm_outside_its_range_is_refused(key: str, value: float, allowed: st
 def test_a_least_value_outside_its_range_is_refused() -> None:
     with pytest.raises(PlantError, match=r"^resistance: least_n_per_kn is -1"):
         Tb10062Law(least_n_per_kn=-1.0)
+
+
+def test_the_sequence_is_splitmix64() -> None:
+    """The first numbers for the seed 1234567, as the authors' reference code prints them."""
+    words = mixed(np.uint64(1234567) + GOLDEN * np.arange(1, 4, dtype=np.uint64))
+    assert words.tolist() == [6457827717110365317, 3203168211198807973, 9817491932198370423]
+
+
+def test_a_cut_has_its_numbers_whoever_is_beside_it() -> None:
+    train, cut = (np.ravel(a) for a in np.meshgrid(np.arange(30), np.arange(40)))
+    whole = keyed_words(7, Purpose.PASS_NOISE, (train, cut), 12)
+    order = np.random.default_rng(0).permutation(len(train))[:100]
+    assert (keyed_words(7, Purpose.PASS_NOISE, (train[order], cut[order]), 5) == whole[:5, order]).all()
+
+
+def test_no_two_keys_share_numbers() -> None:
+    train, cut = (np.ravel(a) for a in np.meshgrid(np.arange(300), np.arange(40)))
+    words = np.concatenate(
+        [
+            keyed_words(seed, purpose, keys, 3)
+            for seed in (7, 8)
+            for purpose in (Purpose.PASS_NOISE, Purpose.CUT_FRICTION)
+            for keys in ((train, cut), (train, cut, np.zeros_like(cut)), (train, cut, np.ones_like(cut)))
+        ]
+    )
+    assert len(np.unique(words)) == words.size
+
+
+def test_numbers_are_uniform_and_neighbours_do_not_correlate() -> None:
+    """n = 120 000; limits are crossed by chance once in ten thousand seeds."""
+    train, cut = (np.ravel(a) for a in np.meshgrid(np.arange(3000), np.arange(40), indexing="ij"))
+    u = keyed_uniform(1, Purpose.POSITION_ERROR, (train, cut), 2)
+    assert u.min() > 0.0
+    assert u.max() < 1.0
+    assert stats.kstest(u[0], "uniform").pvalue > 1e-4
+    for one, other in ((u[0, :-1], u[0, 1:]), (u[0, :-40], u[0, 40:]), (u[0], u[1])):
+        assert abs(np.corrcoef(one, other)[0, 1]) * np.sqrt(len(one)) < 3.9
+
+
+def test_negative_numbers_are_refused() -> None:
+    for seed, key in ((-1, 0), (1, -1)):
+        with pytest.raises(ValueError, match="must not be negative"):
+            keyed_words(seed, Purpose.PASS_NOISE, (np.array([key]),), 1)
+
+
+WHOLE = uniform_numbers(7, Purpose.CARS, 0, 3 * BLOCK, 6)
+
+
+@given(first=st.integers(0, 2 * BLOCK), count=st.integers(0, BLOCK), columns=st.integers(0, 6))
+def test_a_row_is_the_same_whatever_is_asked_for(first: int, count: int, columns: int) -> None:
+    part = uniform_numbers(7, Purpose.CARS, first, count, columns)
+    np.testing.assert_array_equal(part, WHOLE[first : first + count, :columns])
+
+
+def test_purposes_and_seeds_have_numbers_of_their_own() -> None:
+    drawn = [uniform_numbers(seed, purpose, 0, 2000, 1)[:, 0] for seed in (1, 2) for purpose in Purpose]
+    between = np.corrcoef(drawn) - np.eye(len(drawn))
+    assert np.abs(between).max() < 5.0 / np.sqrt(2000)
+
+
+def test_purposes_keep_their_numbers() -> None:
+    """A new number for an old purpose would move every study that names a seed."""
+    assert {p.name: int(p) for p in Purpose}.items() >= {
+        ("CARS", 1), ("WIND", 2), ("BENDS", 3), ("BUNCH_EXIT", 4), ("SPEED_NOISE", 5), ("EXIT_ERROR", 6)
+    }  # fmt: skip
+    assert len({int(p) for p in Purpose}) == len(Purpose)
+
+
+def test_numbers_are_uniform_in_every_column_and_across_blocks() -> None:
+    numbers = uniform_numbers(11, Purpose.WIND, 500, 20_000, 3)
+    for column in numbers.T:
+        assert stats.kstest(column, "uniform").pvalue > 0.001
+    assert 0.0 < numbers.min() < numbers.max() < 1.0
+    assert abs(np.corrcoef(numbers[:-BLOCK, 0], numbers[BLOCK:, 0])[0, 1]) < 5.0 / np.sqrt(20_000)
+
+
+def test_neither_0_nor_1_can_come_out() -> None:
+    """The generator gives multiples of 2⁻⁵³ below 1; both ends have finite quantiles after the shift."""
+    ends = np.array([0.0, 1.0 - 2.0**-53]) * (1.0 - 2.0**-52) + 2.0**-53
+    assert 0.0 < ends[0] < ends[1] < 1.0
+
+
+@pytest.mark.parametrize(
+    ("first", "count", "columns", "seed"), [(-1, 1, 1, 1), (0, -1, 1, 1), (0, 1, -1, 1), (0, 1, 1, -1)]
+)
+def test_negative_rows_and_purposes_are_refused(first: int, count: int, columns: int, seed: int) -> None:
+    with pytest.raises(ValueError, match="must not be negative"):
+        uniform_numbers(seed, Purpose.CARS, first, count, columns)

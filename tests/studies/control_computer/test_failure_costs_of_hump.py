@@ -1,22 +1,17 @@
-"""What a failure does on the hump: which positions change, what is added, and how exactly it is known."""
+"""The study of the control computer: failures on the hump, benefit of accuracy, and what it calls a fault."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from plant_models import PlantError
 from plant_models.library.catalogue import load_car, load_position, load_weight_categories
-from scripts.studies.control_computer.failed_hump import (
-    ByHand,
-    FailedPosition,
-    StuckReleased,
-    WeakSupply,
-    failed_trial,
-)
+from scripts.studies.control_computer.failed_hump import ByHand, FailedPosition, StuckReleased, WeakSupply, failed_trial
 from scripts.studies.control_computer.failure_costs_of_hump import (
     ExtraFigure,
     difference_of_counts,
@@ -24,10 +19,18 @@ from scripts.studies.control_computer.failure_costs_of_hump import (
     other_track_with_frozen_points,
     paired_difference,
 )
+from scripts.studies.control_computer.findings import ControlComputer
+from scripts.studies.control_computer.published_speeds import published_speeds
+from scripts.studies.control_computer.regulator_benefit import FIGURES, Benefit, Yard, regulator_benefit
 from scripts.studies.control_computer.stuck_position import StuckPosition
+from scripts.studies.documents import result_of
+from synth.computer.economics.hump_day_change import change_of_trains
+from synth.computer.economics.hump_rates import RATES, HumpRates, rates_after
+from synth.frame.settings.changed import changed
 from synth.hump.trains.normal_hump_position import LibraryBrake, NormalHumpPosition
 from synth.hump.trains.outcomes import TrainOutcomes
 from synth.hump.trains.trial import HumpTrial
+from tests.synth.computer.economics.made_cases import CHANGE, HANDLING, PRICES, TODAY, TRAFFIC, half95, made_outcomes
 from tests.synth.hump.trains.made_trials import Day
 
 TRAINS = 25
@@ -155,3 +158,112 @@ def test_other_trains_cannot_be_compared() -> None:
     other = sound_trial().batch(1, TRAINS)
     with pytest.raises(PlantError, match="both runs must have the same trains"):
         failure_figures(sound(), other)
+
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def kept() -> ControlComputer:
+    found = result_of(ROOT, "control-computer").findings
+    assert isinstance(found, ControlComputer)
+    return found
+
+
+def test_the_kept_study_has_no_fault_and_every_planted_one_is_told(kept: ControlComputer) -> None:
+    assert kept.faults() == ()
+    law = replace(kept.published.speeds.laws[0], long_share=0.01)
+    row = replace(kept.controllers.rows[0], in_time=False)
+    planted = replace(
+        kept,
+        published=replace(
+            kept.published,
+            speeds=replace(kept.published.speeds, laws=(law, *kept.published.speeds.laws[1:])),
+        ),
+        controllers=replace(kept.controllers, rows=(row, *kept.controllers.rows[1:])),
+    )
+    faults = planted.faults()
+    assert len(faults) == 2
+    assert faults[0].startswith("published claims")
+    assert faults[1].startswith("PLC")
+
+
+def test_the_rates_that_the_command_takes_are_there_and_changes_are_their_differences(kept: ControlComputer) -> None:
+    variants, beside = kept.benefit.variants, kept.benefit.beside_today
+    assert list(variants) == ["today", "asked", "new", "tables"]
+    names = list(RATES)
+    for name in ("today", "new"):
+        HumpRates(**{field: variants[name].rates[field].value for field in names})
+    for name in ("asked", "new"):
+        assert variants[name].trains == variants["today"].trains
+        for field in names:
+            found = beside[name].change[field]
+            difference = variants[name].rates[field].value - variants["today"].rates[field].value
+            assert found.value == pytest.approx(difference, abs=1e-9), field
+            assert found.low95 <= found.value <= found.high95
+
+
+def test_constant_service_keeps_both_claims_and_the_fewest_stages_do() -> None:
+    found = published_speeds()
+    assert {law.law: law.kept for law in found.laws}["constant"] == (True, True)
+    assert found.faults() == ()
+    # an Erlang law of so many stages lies between constant and exponential service
+    constant, exponential = found.laws[0].long_share, found.laws[2].long_share
+    assert constant < 0.001 < exponential
+    assert found.erlang_stages > 2
+
+
+YARD = Yard(changed(TRAFFIC, cars_per_day=4000.0), HANDLING, PRICES)
+BEFORE = changed(TODAY, catch_ups=0.03, misrouted=0.01)
+AFTER = rates_after(BEFORE, CHANGE)
+
+
+def pair(seed: int, trains: int) -> tuple[Benefit, ...]:
+    """The benefit of two humps on the same drawn trains."""
+    shared = np.random.default_rng(9000 + seed).gamma(100.0, 0.01, trains)
+    today, new = made_outcomes(shared, BEFORE, seed), made_outcomes(shared, AFTER, 5000 + seed)
+    return regulator_benefit(today, new, YARD, replicates=200, seed=seed)
+
+
+def test_minutes_damages_and_locomotive_hours_follow_from_the_figures() -> None:
+    shared = np.ones(200)
+    today, new = made_outcomes(shared, BEFORE, 1), made_outcomes(shared, AFTER, 2)
+    found = {each.name: each.less for each in regulator_benefit(today, new, YARD, replicates=100)}
+    rate = [3600.0 * each.span_cars.sum() / each.span_s.sum() for each in (today, new)]
+    assert found["humping of a train"].value == pytest.approx(60.0 * 60.0 * (1.0 / rate[0] - 1.0 / rate[1]))
+    cuts = 4000.0 / 1.8
+    above = [each.overspeed[:, 2].sum() / each.cuts.sum() for each in (today, new)]
+    assert found["couplings above 2 m/s"].value == pytest.approx(cuts * (above[0] - above[1]))
+    gaps = [each.gap_m.sum() / each.cuts.sum() for each in (today, new)]
+    assert found["locomotive, pushing up gaps"].value == pytest.approx(cuts * (gaps[0] - gaps[1]) * 1e-4)
+
+
+def test_intervals_are_those_of_paired_differences() -> None:
+    """Gaps on their tracks are nearly linear in the figures: bootstrap and linearised interval agree."""
+    shared = np.random.default_rng(4).gamma(100.0, 0.01, 400)
+    today, new = made_outcomes(shared, BEFORE, 1), made_outcomes(shared, AFTER, 2)
+    found = {each.name: each.less for each in regulator_benefit(today, new, YARD, replicates=1000)}
+    linear = change_of_trains(today, new)["over_speeds_above_2"]
+    on_track = 4000.0 / 1.8 * BEFORE.on_track
+    assert half95(found["couplings above 2 m/s"]) == pytest.approx(on_track * half95(linear), rel=0.12)
+
+
+def test_names_and_units() -> None:
+    found = pair(1, 50)
+    assert [each.name for each in found[-2:]] == ["running costs", "released capital"]
+    assert found[-2].unit == "EUR a year"
+    assert len(found) == len(FIGURES) + 2
+    assert found == pair(1, 50), "the same seed, the same intervals"
+
+
+def test_faults() -> None:
+    shared = np.ones(20)
+    today, new = made_outcomes(shared, BEFORE, 1), made_outcomes(shared, AFTER, 2)
+    with pytest.raises(PlantError, match="replicates is 10"):
+        regulator_benefit(today, new, YARD, replicates=10)
+    full = replace(YARD, traffic=changed(TRAFFIC, cars_per_day=6000.0))
+    with pytest.raises(PlantError, match="overloaded"):
+        regulator_benefit(today, new, full)
+    nearly = replace(YARD, traffic=changed(TRAFFIC, cars_per_day=24.0 / 0.2825 * 60.0 * 0.9995))
+    with pytest.raises(PlantError, match="in a bootstrap sample of the trains the hump is overloaded"):
+        regulator_benefit(made_outcomes(shared, TODAY, 3), new, nearly)

@@ -15,8 +15,7 @@ from synth.hump.forms.hump_csv import from_csv, to_csv, to_xlsx
 from synth.hump.forms.hump_tree import tree_toml
 from synth.hump.hump_file import parse_hump
 from tests.effort import sized
-from tests.plant_models.hump.random_humps import random_hump
-from tests.plant_models.hump.small_hump import SMALL
+from tests.plant_models.hump.random_humps import SMALL, random_hump
 
 
 def humps() -> list[HumpEntry]:

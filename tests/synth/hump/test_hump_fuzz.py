@@ -9,7 +9,7 @@ from typing import Any
 
 from plant_models.library.toml_lines import places_of
 from tests.effort import sized
-from tests.plant_models.hump.small_hump import SMALL
+from tests.plant_models.hump.random_humps import SMALL
 from tests.plant_models.hump.test_hump_file import LINES
 
 PIECES = (

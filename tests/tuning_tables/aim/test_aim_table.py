@@ -11,15 +11,7 @@ import numpy.typing as npt
 import pytest
 
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
-from tuning_tables.aim import (
-    AimAxes,
-    AimCategory,
-    AimTable,
-    AimTables,
-    MeasuredResistance,
-    ParkPosition,
-    Required,
-)
+from tuning_tables.aim import AimAxes, AimCategory, AimTable, AimTables, MeasuredResistance, ParkPosition, Required
 from tuning_tables.errors import InvalidTable
 
 NAN = float("nan")

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from synth.kernels.compiled_rules import compiled_rule
 from tests.effort import every, sized
-from tests.tuning_tables.passages.made_tables import table_of
-from tests.tuning_tables.passages.true_passes import Pulse, TruePass, rolled, tracking, true_passes
+from tests.tuning_tables.passages.made_tables import Pulse, TruePass, rolled, table_of, tracking, true_passes
 from tuning_tables.passages.held_passages import held_by
 from tuning_tables.programs.passage_table import NONE
 from tuning_tables.programs.tracker import begin_cut, believed_passage

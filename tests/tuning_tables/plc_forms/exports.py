@@ -9,10 +9,10 @@ from typing import Final
 from tests.controller_code.passage_tables import every_axle_book, passage_book
 from tests.controller_code.sample_book import approaching_book, estimating_book, park_book, surface_book
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
-from tests.tuning_tables.st.compiler import MATIEC
 from tests.tuning_tables.st.conftest import oddly_named_book
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.exported_forms import MOST_CALLS, default_book
+from tests.tuning_tables.st.syntax import MATIEC
 from tuning_tables.aim import AimTables
 from tuning_tables.aim.st_source import aim_export
 from tuning_tables.correction import Correction

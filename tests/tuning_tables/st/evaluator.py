@@ -12,11 +12,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from tests.tuning_tables.st.compiler import BINARY32, Compiler
 from tests.tuning_tables.st.expressions import Arithmetic, compile_expression
 from tests.tuning_tables.st.statements import Execute, StatementCompiler
 from tests.tuning_tables.st.storage import Array, Fault, Frame, Initial, Kind, Record, Scalar, Value, variable
-from tests.tuning_tables.st.syntax import Node, faults, parse, part, parts, word
+from tests.tuning_tables.st.syntax import BINARY32, Compiler, Node, faults, parse, part, parts, word
 
 Entry = TypeVar("Entry")
 SECTIONS = ("var_input", "var_in_out", "var_output", "var_block")

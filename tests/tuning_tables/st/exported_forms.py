@@ -15,9 +15,9 @@ from tests.controller_code.passage_tables import every_axle_book, passage_book, 
 from tests.controller_code.sample_book import approaching_book, estimating_book, park_book, sample_book, surface_book
 from tests.st_files import aim_st_files, correction_st_files, passage_st_files, st_files
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
-from tests.tuning_tables.st.compiler import Compiler
 from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.syntax import Compiler
 from tuning_tables import Decisions, read_json
 from tuning_tables.aim import AimAxes, AimTable, AimTables
 from tuning_tables.aim.st_source import aim_export

@@ -14,20 +14,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from tests.tuning_tables.st.compiler import BINARY32, Compiler
-from tests.tuning_tables.st.storage import (
-    INT_LIMITS,
-    Array,
-    Fault,
-    Frame,
-    Kind,
-    Mask,
-    Record,
-    Scalar,
-    Value,
-    somewhere,
-)
-from tests.tuning_tables.st.syntax import Node, part, parts, word
+from tests.tuning_tables.st.storage import INT_LIMITS, Array, Fault, Frame, Kind, Mask, Record, Scalar, Value, somewhere
+from tests.tuning_tables.st.syntax import BINARY32, Compiler, Node, part, parts, word
 
 COMPARISONS = {
     "<": np.less,

@@ -9,17 +9,9 @@ from typing import Final, Protocol, TypeAlias
 
 import numpy as np
 
-from tests.tuning_tables.st.compiler import Loops
-from tests.tuning_tables.st.expressions import (
-    Arithmetic,
-    Evaluate,
-    Scope,
-    compile_element,
-    compile_expression,
-    resolve,
-)
+from tests.tuning_tables.st.expressions import Arithmetic, Evaluate, Scope, compile_element, compile_expression, resolve
 from tests.tuning_tables.st.storage import INT_LIMITS, Fault, Frame, Kind, Mask, Record, Scalar, Value
-from tests.tuning_tables.st.syntax import Node, part, parts, word
+from tests.tuning_tables.st.syntax import Loops, Node, part, parts, word
 
 Execute: TypeAlias = Callable[[Frame, Mask], None]
 

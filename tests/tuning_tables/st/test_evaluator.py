@@ -6,7 +6,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from tests.tuning_tables.st.compiler import (
+from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.storage import Fault, Frame
+from tests.tuning_tables.st.syntax import (
     BINARY32,
     DOUBLE,
     FUSING,
@@ -16,8 +18,6 @@ from tests.tuning_tables.st.compiler import (
     ONE_TURN_TOO_MANY,
     Compiler,
 )
-from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Fault, Frame
 
 HEAD = "FUNCTION_BLOCK Probe VAR_INPUT I : INT; X : REAL; END_VAR VAR_OUTPUT J : INT; Y : REAL; B : BOOL; END_VAR VAR "
 

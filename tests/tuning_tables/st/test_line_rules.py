@@ -16,11 +16,11 @@ from scripts.studies.in_the_loop.held_words import held_words, places
 from scripts.studies.in_the_loop.observed import observed
 from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
 from tests.effort import MANY, sized
-from tests.tuning_tables.st.compiler import ASKED_UNDER, Compiler, name_of
 from tests.tuning_tables.st.conftest import shaped_book, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.exported_forms import default_book
 from tests.tuning_tables.st.storage import Frame
+from tests.tuning_tables.st.syntax import ASKED_UNDER, Compiler, name_of
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.language.records import Kind, st_name
 from tuning_tables.programs.estimate import ESTIMATE
@@ -37,7 +37,7 @@ BOOKS: Mapping[str, Callable[[], TableBook]] = {
     "default": default_book,
     "smallest": lambda: shaped_book(2, 0),
 }
-READINGS, SAMPLES, COMMANDS = sized((100_000, 6_000, 3_000), (MANY // 2, 12_000, 3_000))
+READINGS, SAMPLES, COMMANDS = sized((100_000, 2_000, 3_000), (MANY // 2, 12_000, 3_000))
 
 
 @pytest.fixture(scope="module", params=[*BOOKS.values()], ids=[*BOOKS])

@@ -1,4 +1,6 @@
-"""Tables for point sensors in Structured Text, run from the parse tree: bit for bit the Python text; the self-test."""
+"""Point sensors and the on-line correction in Structured Text, run from the parse tree: bit for bit the Python
+text.
+"""
 
 from __future__ import annotations
 
@@ -7,17 +9,20 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, BEGIN, ON, PAIR, Rows, asked, right
+from tests.controller_code.test_correction_code import CORRECTION, asked_exits, right_exits
 from tests.effort import FEW, MANY, QUESTIONS, every
-from tests.st_files import passage_st_files
-from tests.tuning_tables.st.compiler import ASKED_UNDER, Compiler, name_of
+from tests.st_files import correction_st_files, passage_st_files
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault
+from tests.tuning_tables.st.syntax import ASKED_UNDER, Compiler, name_of
 from tuning_tables import InvalidTable
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.language.records import st_name
@@ -195,3 +200,66 @@ def test_what_sixteen_bits_do_not_count_is_refused() -> None:
     )
     with pytest.raises(InvalidTable, match="counts to 32767"):
         passage_st_files(PassageBook(large))
+
+
+CORRECTION_FILES = correction_st_files(CORRECTION)
+STATE = ("MEAN_M_S", "CORRECTION_M_S", "LEARNT")
+
+
+def corrections_of(program: Program, questions: npt.NDArray[np.void]) -> npt.NDArray[np.float32]:
+    """What the blocks make of every question, a lane each: float32 (n, 5)."""
+    state, setting, load = (
+        program.new(f"RETARDER_{name}") for name in ("CORRECTION", "CORRECTION_SETTING", "LOAD_CORRECTION")
+    )
+    program.call("RETARDER_LOAD_CORRECTION", load, TableNo=0, Table=setting)
+    for name, words in zip(STATE, questions["state"].T, strict=True):
+        state[name].store(np.ascontiguousarray(words).view(np.float32), None)
+    error, speed = (np.ascontiguousarray(questions[name]).view(np.float32) for name in ("error", "speed"))
+    learner, corrector, judge = (
+        program.new(f"RETARDER_{name}") for name in ("LEARN_EXIT", "CORRECTED_SPEED", "USABLE_EXIT")
+    )
+    records = {"Setting": setting, "Correction": state}
+    program.call("RETARDER_LEARN_EXIT", learner, Error_m_s=error, Credible=questions["credible"] != 0, **records)
+    program.call("RETARDER_CORRECTED_SPEED", corrector, Speed_m_s=speed, **records)
+    samples, missing, at_top, *flags = questions["pass"].T.astype(np.int64)
+    told: dict[str, Any] = dict(zip(("EndsAtTop", "ByHand", "Stalled"), (flag != 0 for flag in flags), strict=True))
+    program.call("RETARDER_USABLE_EXIT", judge, Samples=samples, Missing=missing, AtTop=at_top, Error_m_s=error, **told)
+    found = [*(state[name].value for name in STATE), corrector["CORRECTED"].value, judge["USABLE"].value]
+    return np.stack([np.broadcast_to(each, error.shape).astype(np.float32) for each in found], axis=1)
+
+
+@pytest.mark.requirement("CORR-06")
+@pytest.mark.parametrize("compiler", ASKED_UNDER, ids=name_of)
+def test_every_exit_is_learnt_as_by_python(compiler: Compiler) -> None:
+    with np.errstate(invalid="ignore"):  # a signalling NaN is widened
+        found = corrections_of(Program(CORRECTION_FILES["retarder_correction.st"], compiler), asked_exits())
+    # 0 has no sign in Structured Text.
+    assert np.array_equal(found, right_exits(), equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [("Held_1 > Setting.ThresholdSquared", "Mean > 0.0"), ("Held_1 < Slowest", "Held_1 < -9.0"), ("NOT Sound", "FALSE"),
+     ("Innovation > Setting.Clip_m_s", "Innovation > 9.0"), ("Corrected < 0.0", "Corrected < -9.0"),
+     ("AtTop <= Others", "AtTop < Others"), ("(NOT EndsAtTop) OR ", ""),
+     ("LargestExcess_m_s : REAL := 1.0", "LargestExcess_m_s : REAL := 1.1"), ("[1.500000060E-01]", "[1.500000209E-01]"),
+     ("Innovation := Innovation - Correction.Mean_m_s;", "")],
+)  # fmt: skip
+def test_a_wrong_block_of_the_correction_is_found(before: str, after: str) -> None:
+    text = b"".join(CORRECTION_FILES.values()).decode("ascii")
+    assert before in text
+    assert failing_blocks(text.replace(before, after, 1)) > 0
+    assert failing_blocks(text) == 0
+
+
+@cache
+def failing_blocks(text: str) -> int:
+    """In how many blocks the self-test finds something wrong."""
+    program = Program(text.encode("ascii"))
+    block = program.new("RETARDER_CORRECTION_SELF_TEST")
+    for _ in range(4):
+        assert not block["DONE"].value
+        program.call("RETARDER_CORRECTION_SELF_TEST", block, Restart=False)
+    assert block["DONE"].value
+    assert (int(block["FIRSTFAILED"].value) >= 0) == (int(block["FAILED"].value) > 0)
+    return int(block["FAILED"].value)

@@ -1,4 +1,6 @@
-"""Every export is plain text in Structured Text, in the small subset that it promises, whatever its kind and shape."""
+"""Every export is plain text in the small subset of Structured Text that it promises; names fit into controller
+code.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +12,8 @@ from itertools import chain
 from typing import Final
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from tests.controller_code.passage_tables import passage_table
 from tests.st_files import aim_st_files, correction_st_files, passage_st_files, st_files
@@ -20,6 +24,8 @@ from tests.tuning_tables.st.exported_forms import FORMS
 from tests.tuning_tables.st.syntax import faults, parse, walk
 from tuning_tables import InvalidTable
 from tuning_tables.aim import AimTables
+from tuning_tables.category_names import category_macros, comment_text
+from tuning_tables.category_number import KNOWN_NUMBERS
 from tuning_tables.correction import Correction
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.passages.passage_book import PassageBook
@@ -27,18 +33,6 @@ from tuning_tables.passages.st_source import passage_export
 from tuning_tables.self_test_size import SMALL
 from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
-
-# Keywords, operators of instruction lists, standard functions and blocks, and words that single systems reserve.
-KEYWORDS = """
-    ABS ACOS ACTION ADD AND ANDN ANY ARRAY ASIN AT ATAN BEGIN BOOL BY BYTE CAL CALC CALCN CASE CD CDT CLK CONCAT
-    CONFIGURATION CONSTANT CONTINUE COS CTD CTU CTUD CU D DATE DELETE DINT DIV DO DS DT DWORD ELSE ELSIF EN END_IF ENO
-    EQ ET EXIT EXP EXPT FALSE FIND FOR FROM FUNCTION FUNCTION_BLOCK F_TRIG GE GOTO GT IF IN INSERT INT INTERFACE JMP
-    JMPC L LABEL LD LDN LE LEFT LEN LIMIT LINT LN LOG LREAL LT LWORD MAX METHOD MID MIN MOD MOVE MUL MUX N NE NOT OF ON
-    OR ORGANIZATION_BLOCK ORN P PROGRAM PROPERTY PT PV Q Q1 QD QU R R1 READ REAL REF RELEASE REPEAT REPLACE REGION
-    RESOURCE RET RETAIN RETURN RIGHT ROL ROR RS R_TRIG S S1 SD SEL SEMA SHL SHR SIN SINGLE SINT SL SQRT SR ST STEP STN
-    STRING STRUCT SUB SUPER TAN TASK THEN THIS TIME TO TOD TOF TON TP TRANSITION TRUE TRUNC TYPE UDINT UINT ULINT UNTIL
-    USINT VAR VOID WHILE WITH WORD WRITE XOR XORN
-"""
 
 SHAPES: Final = {
     f"{stages} stages of degree {degree}": lambda stages=stages, degree=degree: joined(
@@ -89,13 +83,6 @@ def test_the_text_is_plain(name: str) -> None:
     assert max(int(end) for end in re.findall(rb"ARRAY\[0\.\.(\d+)\]", text)) < 999
 
 
-@EACH
-def test_names_are_no_keywords_anywhere(name: str) -> None:
-    names = {each.upper() for each in names_in(text_of(name))}
-    assert names & set(KEYWORDS.split()) == set()
-    assert all(len(each) <= 32 and "__" not in each and not each.endswith("_") for each in names)
-
-
 def test_all_kinds_fit_into_one_project_and_keep_short_names_under_a_long_prefix() -> None:
     points, aims = PassageBook((passage_table(stages=2),)), AimTables((category_table(), measured_table()))
     for prefix in (ExportPrefix(), ExportPrefix("TENLETTERS")):
@@ -128,3 +115,46 @@ def test_as_many_tables_as_are_allowed_are_exported_and_no_more(
         monkeypatch.setattr(most, tables - 1)
         with pytest.raises(InvalidTable, match=f"{tables} tables, .*at most {tables - 1}"):
             export(self_test=SMALL)
+
+
+def test_the_categories_of_the_field() -> None:
+    assert category_macros(KNOWN_NUMBERS) == ("L", "LS", "S", "ST", "T")
+
+
+@pytest.mark.parametrize(
+    ("categories", "names"),
+    [
+        ({"light": 16, "Heavy 2": 17}, ("LIGHT", "HEAVY_2")),
+        ({"Т": 5, "T": 16}, ("T", "T_16")),
+        ({"T": 16, "Т": 5}, ("T_16", "T")),
+        ({"??": 16, "x": 17, "!": 18}, ("16", "X", "18")),
+        ({"a": 16, "A": 17, "a_16": 18}, ("A_16", "A_17", "A_16_18")),
+        ({"": 16, "16": 17}, ("16", "16_17")),
+        ({"__a -- b__": 16}, ("A_B",)),
+        ({"Щит": 16}, ("SHHIT",)),
+        ({"x" * 40: 16}, ("X" * 8,)),
+    ],
+)
+def test_names_differ_and_are_plain(categories: dict[str, int], names: tuple[str, ...]) -> None:
+    assert category_macros(categories) == names
+
+
+@given(st.lists(st.text(st.sampled_from("aAАтТ126_ -?"), max_size=5), unique=True, max_size=12))
+def test_names_always_differ(categories: list[str]) -> None:
+    names = category_macros({**KNOWN_NUMBERS, **{name: 16 + place for place, name in enumerate(categories)}})
+    assert len(set(names)) == len({*KNOWN_NUMBERS, *categories})
+    assert names[:5] == ("L", "LS", "S", "ST", "T")
+    assert all(re.fullmatch(r"[A-Z0-9]+(_[A-Z0-9]+)*", name) for name in names)
+
+
+def test_comments_show_what_they_cannot_hold() -> None:
+    assert comment_text("gondola-4 22 t, (a+b).c_d") == "gondola-4 22 t, (a+b).c_d"
+    assert comment_text("Л*/\n😀") == "<U+041B><U+002A><U+002F><U+000A><U+1F600>"
+    assert comment_text("RETARDER_LOAD retarder_ _") == "RETARDER<U+005F>LOAD retarder<U+005F> _"
+
+
+@given(st.text())
+def test_no_comment_ends_early(text: str) -> None:
+    shown = comment_text(text)
+    assert shown.isascii()
+    assert not set("*/\\?\n\r{}'\"$") & set(shown)

@@ -28,7 +28,7 @@ from synth.hump.trains.train_trace import body_of
 from synth.hump.trains.trial import Control, HumpTrial, Sensing
 from synth.simulation.free_roll import rolling_cuts
 from tests.effort import every
-from tests.plant_models.hump.small_hump import SMALL
+from tests.plant_models.hump.random_humps import SMALL
 from tests.synth.hump.trains.made_trials import Day, GivenHead
 from tests.synth.hump.trains.mixed_cuts import without_padding
 from tests.synth.hump.trains.test_forecast import COUNT, AsTold, single_cuts
