@@ -14,7 +14,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.controller_code.built_program import built as built_of
 
 from scripts.studies.in_the_loop.builds import Build
 from scripts.studies.in_the_loop.controller_process import COMMAND, Controller, sources_of
@@ -25,6 +24,7 @@ from synth.retarder.forms.code_options import CONTROLLER_NAMES, FMU_NAMES, CodeO
 from synth.retarder.forms.correction_form import correction_files
 from synth.retarder.forms.exporters import exporters_at
 from synth.retarder.forms.table_forms import FORMS
+from tests.controller_code.building import built as built_of
 from tests.controller_code.conftest import Built, Tool
 from tests.controller_code.passage_tables import passage_table
 from tests.controller_code.sample_book import sample_book

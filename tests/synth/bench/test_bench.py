@@ -25,7 +25,6 @@ from synth.retarder.bench.clock import Cycles, RealTime
 from synth.retarder.bench.exchange import Exchange
 from synth.retarder.bench.options import Address
 from synth.retarder.bench.wires import COMMANDS_AT, OPC_UA_FOLDER, OPC_UA_NAMESPACE, TOLD_WIRES
-from tests.corpus import ROOT
 from tests.synth.bench.played import HOST, TableClient, beside, free_port, played, the_case
 
 TOLERANCE = 1e-10
@@ -105,7 +104,7 @@ next(rolling)
 rolling.send(2)
 rolling.send(1)
 """
-    subprocess.run([sys.executable, "-c", text], cwd=ROOT, check=True)
+    subprocess.run([sys.executable, "-c", text], cwd=Path(__file__).parents[3], check=True)
 
 
 def test_a_controller_that_vanishes_is_told_and_the_stage_before_stands() -> None:
