@@ -11,6 +11,7 @@ import sys
 import threading
 import urllib.request
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import pytest
