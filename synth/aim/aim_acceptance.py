@@ -11,6 +11,7 @@ from scipy.special import betainc
 from synth.aim.aim_book import MadeAim
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import counted, percent
+from synth.simulation.exit_statistics import clopper_pearson
 
 CHANCE = 0.025
 """Of calling a table that keeps its limit one that misses it, all its cells together."""
@@ -19,8 +20,8 @@ CHANCE = 0.025
 @dataclass(frozen=True)
 class AimVerdict:
     """One table: `missed` names the cells whose over-speeds cannot be chance; `told` of `cells` have figures, and
-    `without` have no speed at all. `worst`: the highest share of over-speed of a cell, of its cuts; None where no cell
-    has figures."""
+    `without` have no speed at all. `worst`: the share of over-speed of the cell that is most surely above the limit, of
+    its cuts, with an interval that holds for all cells of the table at once; None where no cell has figures."""
 
     table: str
     cells: int
@@ -74,13 +75,14 @@ def judge_aim(made: MadeAim, p_excess: float) -> AimVerdict:
     n = np.maximum(speeds.cuts, 1).astype(np.float64)
     # P(at least `hits` of `n`), a binomial tail, is the incomplete beta function; without a hit it is 1.
     chance = np.where(hits > 0.0, betainc(np.maximum(hits, 1.0), n - hits + 1.0, min(limit, 1.0)), 1.0)
-    over = told & (chance < CHANCE / max(int(told.sum()), 1))
+    each_chance = CHANCE / max(int(told.sum()), 1)
+    over = told & (chance < each_chance)
     cells = [cell_name(made, tuple(int(i) for i in place)) for place in np.argwhere(over)]
     worst = None
     if told.any():
-        place = np.unravel_index(np.argmax(np.where(told, speeds.overspeed_low95, -1.0)), told.shape)
-        low, high = speeds.overspeed_low95[place], speeds.overspeed_high95[place]
-        worst = Interval(float(speeds.overspeed[place]), float(low), float(high), int(speeds.cuts[place]))
+        place = np.unravel_index(np.argmin(np.where(told, chance, np.inf)), told.shape)
+        of_it, cuts = int(hits[place]), int(speeds.cuts[place])
+        worst = Interval(of_it / cuts, *clopper_pearson(of_it, cuts, 1.0 - 2.0 * each_chance), cuts)
     without = int(np.isnan(speeds.speed_m_s).sum())
     return AimVerdict(made.table.id, told.size, int(told.sum()), without, tuple(cells), worst)
 

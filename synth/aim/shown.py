@@ -94,7 +94,8 @@ def tiles(verdict: AimBookVerdict) -> Tiles:
     made = [Tile(f"{kept} of {len(judged)}", "tables keep the chance that is asked for", verdict.accepted)]
     if worst is not None:
         low, high = in_per_cent(worst.low95), in_per_cent(worst.high95)
-        made.append(Tile(in_per_cent(worst.value), f"of the cuts couple too fast in the worst cell [{low}, {high}]"))
+        where = f"in the worst of {sum(each.told for each in judged)} cells [{low}, {high}]"
+        made.append(Tile(in_per_cent(worst.value), f"of the cuts couple too fast {where}"))
     if without:
         made.append(Tile(f"{without} of {cells}", "cells have no exit speed: a controller gets no answer there"))
     return Tiles(made)

@@ -9,7 +9,7 @@ from synth.computer.computer_results import ComputerResults, UncertainMoney
 from synth.frame.command import Limit
 from synth.frame.exhibits import shown_value
 from synth.frame.interval import Interval
-from synth.frame.printed_numbers import amount, per_cent, three_figures
+from synth.frame.printed_numbers import amount, as_known, per_cent, three_figures
 
 MOST_NEVER, HALF = 0.05, 0.5
 """Money is judged good where at most so large a share of the draws never pays back, bad where more than half never do;
@@ -61,13 +61,14 @@ def money_limit(results: ComputerResults) -> Limit:
         told = "never pays back" if years is None else f"pays back in {three_figures(years)} years"
         kept = years is not None and (most is None or years <= most)
         return Limit(f"money: it brings {amount(effect)} {currency} a year and {told}{asked_years(most)}", kept)
-    low, middle, high = (each.value for each in quantiles_of(results.money, "effect_per_year"))
+    low, middle, high = amounts_of(results.money, "effect_per_year")
     _, half, slow = quantiles_of(results.money, "pay_back_years")
-    never = next(each.never for each in results.money.figures if each.name == "pay_back_years")
+    never = never_of(results.money)
+    slowest = "" if math.isinf(slow.value) else f"; 95 of 100 pay back {when(slow)}"
     return Limit(
-        f"money: it brings {amount(middle)} {currency} a year in the median, {amount(low)} to {amount(high)} in 90 of "
-        f"100 draws; it pays back {when(half)} in the median and never in {shown_value(never, per_cent)} of {never.n} "
-        f"draws; 95 of 100 pay back {when(slow)}{asked_years(most)}",
+        f"money: it brings {middle} {currency} a year in the median, {low} to {high} in 90 of 100 draws; it pays back "
+        f"{when(half)} in the median and never in {shown_value(never, per_cent)} of {never.n} draws{slowest}"
+        f"{asked_years(most)}",
         pays_back(never) if most is None else in_time(slow, most),
     )
 
@@ -75,6 +76,17 @@ def money_limit(results: ComputerResults) -> Limit:
 def quantiles_of(money: UncertainMoney, name: str) -> tuple[Interval, ...]:
     """5, 50 and 95 % of an output."""
     return next(each.quantiles for each in money.figures if each.name == name)
+
+
+def amounts_of(money: UncertainMoney, name: str) -> tuple[str, ...]:
+    """The same of an amount, with no more figures than their spread leaves."""
+    low, middle, high = (each.value for each in quantiles_of(money, name))
+    return tuple(amount(as_known(each, low, high)) for each in (low, middle, high))
+
+
+def never_of(money: UncertainMoney) -> Interval:
+    """The share of the draws that never pay back."""
+    return next(each.never for each in money.figures if each.name == "pay_back_years")
 
 
 def when(years: Interval) -> str:

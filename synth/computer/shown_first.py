@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterator
 
 from synth.computer.computer_limits import (
+    amounts_of,
     money_limit,
+    never_of,
     per_cent_of_time,
     quantiles_of,
     reliability_limit,
@@ -15,7 +17,7 @@ from synth.computer.computer_limits import (
 )
 from synth.computer.computer_results import ComputerResults
 from synth.frame.exhibits import Exhibit, Sentence, Tile, Tiles
-from synth.frame.printed_numbers import amount, as_known, three_figures
+from synth.frame.printed_numbers import amount, as_known, per_cent, three_figures
 
 
 def first_screen(found: ComputerResults) -> Iterator[Exhibit]:
@@ -43,9 +45,8 @@ def told_amount(found: ComputerResults, name: str, configured: float) -> tuple[s
     currency = found.config.settings.prices.currency
     if found.money is None:
         return f"{amount(configured)} {currency}", " (at the configured values; no input is uncertain)"
-    low, middle, high = (each.value for each in quantiles_of(found.money, name))
-    value, *ends = (amount(as_known(each, low, high)) for each in (middle, low, high))
-    return f"{value} {currency}", f": median; {ends[0]} to {ends[1]} in 90 of 100 draws of the uncertain inputs"
+    low, middle, high = amounts_of(found.money, name)
+    return f"{middle} {currency}", f": median; {low} to {high} in 90 of 100 draws of the uncertain inputs"
 
 
 def pay_back_tile(found: ComputerResults) -> Tile:
@@ -54,7 +55,9 @@ def pay_back_tile(found: ComputerResults) -> Tile:
         years = found.economics.pay_back.years
         return Tile("never" if years is None else f"{three_figures(years)} years", "until it is paid back")
     _, middle, slow = quantiles_of(found.money, "pay_back_years")
-    return Tile(when(middle), f"it is paid back in the median; in 95 of 100 draws {when(slow)}")
+    never = f"never in {per_cent(never_of(found.money).value)} of the draws"
+    slowest = never if math.isinf(slow.value) else f"{when(slow)} in 95 of 100 draws"
+    return Tile(when(middle), f"it is paid back in the median; {slowest}")
 
 
 def ready_tile(found: ComputerResults) -> Tile:

@@ -55,6 +55,18 @@ def test_an_example_can_be_typed(example: str) -> None:
     assert not context.args
 
 
+TOLD = re.compile(r"retarder-synth ((?:hump |sweep )?[a-z]+)(?= [A-Z-]|['`])")
+"""A command that a sentence has somebody type: an argument, an option or a quotation mark is behind it."""
+
+
+def test_every_command_that_sentences_tell_is_there() -> None:
+    files = [*(ROOT / "synth").rglob("*.py"), *(ROOT / "docs").rglob("*.md"), ROOT / "README.md"]
+    told = {words for file in files for words in TOLD.findall(file.read_text(encoding="utf-8"))}
+    there = {" ".join(words) for words in leaves(typer.main.get_command(app))}
+    assert told <= there | {"study", "hump", "sweep"}
+    assert len(told) > 20
+
+
 @pytest.mark.parametrize("width", [60, 80, 100, 140])
 def test_help_is_not_cut_off(width: int) -> None:
     for guide in GUIDES.values():

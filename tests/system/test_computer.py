@@ -94,6 +94,12 @@ def test_the_first_screen_tells_money_with_no_more_figures_than_its_spread_leave
     assert abs(shown - middle) <= 0.05 * (high - low)
     assert len(number.strip("-").replace(".", "").strip("0")) <= len(f"{high - low:.0f}") - 4
     assert page.index("Find out ") < page.index("<h2>")
+    (row,) = (each for each in told(folder / "out")["tables"]["draws"] if each["output"] == "pay back years")
+    assert (row["q95"]["value"], 0.05 < row["never"]["value"] < 0.5) == (None, True)  # most draws pay back, not 95 %
+    never = f"never in {100.0 * row['never']['value']:.3g} %"
+    assert f"<p>it is paid back in the median; {never} of the draws" in page
+    assert f"in the median and {never} [" in page
+    assert "95 of 100 pay back" not in page
 
 
 def test_the_published_computer_is_the_default(first: tuple[Path, str]) -> None:

@@ -30,7 +30,7 @@ def internal_rate(investment: Investment) -> InternalRate:
     if investment.spent * investment.income_per_year <= 0.0:
         return InternalRate(None, "There is no internal rate: money goes one way only.")
     rate = root(investment.flows)
-    return InternalRate(rate, f"The internal rate is {rate:.4g} a year.")
+    return InternalRate(rate, f"The internal rate is {100.0 * rate:.3g} % a year.")
 
 
 def root(flows: Sequence[float]) -> float:

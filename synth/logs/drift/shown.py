@@ -29,7 +29,7 @@ CAUSES: Final = (
     Column("begin", "begins with pass"),
     Column("log_gain", "log-likelihood gained", form=decimals(1)),
     Column("remedy", "remedy", words=True),
-    Column("cause", "name", words=True),
+    Column("cause", "name", words=True, code=True),
 )
 EXITS: Final = (
     Column("time", "passes", words=True),
@@ -85,7 +85,8 @@ def drifted(found: Watch) -> Iterator[Exhibit]:
     yield Sentence(advice(drift), brief=True, to_do=True)
     yield Table("exits", "Exits before and since", EXITS, list(exit_rows(drift)))
     yield Sentence(
-        "Each cause at its own most likely size and beginning; the logarithm of its likelihood over that of no drift."
+        "Each cause at its most likely beginning and size, of the first one as told above, of the others between those "
+        "supposed; the logarithm of its likelihood over that of no drift."
     )
     yield Table("causes", "Causes", CAUSES, list(cause_rows(found, drift)))
 
@@ -99,8 +100,9 @@ def tiles(found: Watch) -> Tiles:
     ]
     if drift is not None:
         before, since = drift.before, drift.after
-        words = f"is the rms error of {since.passes} passes since then; of those before it was {before.rms_m_s:.3f} m/s"
-        made.append(Tile(f"{since.rms_m_s:.3f} m/s", words))
+        words = f"is the rms error of {since.passes} passes since then"
+        more = f"; of those before it was {before.rms_m_s:.3f} m/s" if before.passes else ""
+        made += [Tile(f"{since.rms_m_s:.3f} m/s", f"{words}{more}")] if since.passes else []
     return Tiles(made)
 
 
@@ -205,11 +207,11 @@ def exit_rows(drift: Drift) -> Iterator[Row]:
 def cause_rows(found: Watch, drift: Drift) -> Iterator[Row]:
     """All causes, the most likely first."""
     for gain in drift.diagnosis.gains:
-        cause = gain.cause
+        cause, size = gain.cause, drift.size.size if gain is drift.diagnosis.first else gain.size
         yield {
             "title": cause.title,
-            "drift": cause.told(gain.size),
-            "size": gain.size,
+            "drift": cause.told(size),
+            "size": size,
             "unit": cause.scale.unit,
             "begin": number(found, gain.begin),
             "log_gain": gain.log_gain,

@@ -30,7 +30,7 @@ RUN: Final = (
 )
 GRID: Final = "The step of the grid widens the peak of that density, most at low targets."
 MORE: Final = (
-    "Further pictures of every table are drawn by: retarder-synth plot DIR. They show its switching lines in all "
+    "Further pictures of every table are drawn by 'retarder-synth inspect DIR -o PICTURES': its switching lines in all "
     "stages, its switching surfaces, and passes of low and high friction."
 )
 

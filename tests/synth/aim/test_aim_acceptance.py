@@ -56,6 +56,11 @@ def test_a_cell_misses_where_chance_cannot_explain_its_over_speeds(made: MadeAim
     assert table.missed == (f"1 car at 150 m: {(last + 1) / 10:.1f} % of 1000",)
     assert table.missed[0] in missed.sentence
     assert made.table.id in missed.sentence
+    for verdict in (kept, missed):  # the worst cell is told as it is judged, as one of many
+        worst = verdict.tables[0].worst
+        assert worst is not None
+        assert worst.value * n == (last if verdict.accepted else last + 1)
+        assert (worst.low95 > 0.11) == (not verdict.accepted)
 
 
 def test_cells_without_speed_do_not_count_but_are_told(made: MadeAim) -> None:

@@ -18,7 +18,7 @@ from synth.logs.drift.charts import charts_of
 from synth.logs.drift.diagnosis import diagnosed
 from synth.logs.drift.drift_size import DriftSize
 from synth.logs.drift.pictures import control_charts
-from synth.logs.drift.shown import MARKED, charts, drifted
+from synth.logs.drift.shown import MARKED, charts, drifted, tiles
 from synth.logs.drift.watch import Drift, Watch, cost_of
 from synth.logs.fitting_passes import fitting_passes
 from synth.retarder.configuration.config_file import load_config
@@ -113,7 +113,18 @@ def test_marks_and_causes_are_told_where_there_is_a_drift(config: ResolvedConfig
     found = watch_of(config, drifts)
     (chart,) = (each for each in charts(found) if isinstance(each, Chart))
     assert chart.caption.endswith(MARKED) == drifts
-    assert [each.name for each in drifted(found) if isinstance(each, Table)] == ["exits", "causes"] * drifts
+    tables = [each for each in drifted(found) if isinstance(each, Table)]
+    assert [each.name for each in tables] == ["exits", "causes"] * drifts
+    if found.drift is not None:
+        first = tables[1].rows[0]
+        assert (first["size"], first["drift"]) == (1.0, found.drift.diagnosis.first.cause.told(1.0))  # as above them
+
+
+def test_a_drift_from_the_first_pass_on_has_no_figure_of_before(config: ResolvedConfig) -> None:
+    found = watch_of(config, True)
+    assert found.drift is not None
+    begun = replace(found, drift=replace(found.drift, before=cost_of(np.empty(0))))
+    assert "nan" not in " ".join(f"{each.figure} {each.of}" for each in tiles(begun).tiles)
 
 
 def test_no_cut_id_is_a_formula_in_the_sheet(config: ResolvedConfig) -> None:
