@@ -19,7 +19,7 @@ CONFIDENCE = 0.95
 FEWEST_TRAINS = 2
 
 WANTED = 0.005
-"""How exactly it is told how many cuts would tell a share: within so much either way."""
+"""How exactly a share is wanted, either way, unless told otherwise."""
 
 NEGLIGIBLE = 1e-3
 """So small a part of a share is nothing."""
@@ -29,7 +29,7 @@ NEGLIGIBLE = 1e-3
 class TrainFigure:
     """A figure of `n` cuts (or trains), with its 95 % interval, NaN where the trains are too few.
 
-    `enough_n`: how many would tell it within `WANTED` either way, N = t²·p(1 − p)/ε² times what cuts of one train have
+    `enough_n`: how many would tell it as exactly as it is wanted, N = t²·p(1 − p)/ε² times what cuts of one train have
     in common; NaN for what is no share.
     """
 
@@ -120,13 +120,13 @@ class FigureOf:
     base: Of
     is_share: bool
 
-    def figure(self, found: TrainOutcomes) -> TrainFigure:
-        """The figure of some trains with its interval."""
+    def figure(self, found: TrainOutcomes, wanted_share: float = WANTED) -> TrainFigure:
+        """The figure of some trains with its interval; `wanted_share`: for `enough_n`."""
         hits, base = (shift_sums(found, of(found)) for of in (self.hits, self.base))
         if not self.is_share:
             return TrainFigure(self.name, self.unit, *ratio(hits, base), len(base))
         p, low, high, effect = share(hits, base)
-        enough = 1.959964**2 * p * (1.0 - p) / WANTED**2 * effect
+        enough = 1.959964**2 * p * (1.0 - p) / wanted_share**2 * effect
         return TrainFigure(self.name, self.unit, p, low, high, int(base.sum()), enough)
 
     def difference(self, found: TrainOutcomes, other: TrainOutcomes) -> tuple[float, float, float]:
@@ -212,6 +212,6 @@ def figures_told(found: TrainOutcomes) -> tuple[FigureOf, ...]:
     return (*FIGURES, *shifts, *((OF_VALVES,) if found.strokes.any() else ()))
 
 
-def train_figures(found: TrainOutcomes) -> tuple[TrainFigure, ...]:
-    """The figures of trains."""
-    return tuple(each.figure(found) for each in figures_told(found))
+def train_figures(found: TrainOutcomes, wanted_share: float = WANTED) -> tuple[TrainFigure, ...]:
+    """The figures of trains; `wanted_share`: for `enough_n` of shares."""
+    return tuple(each.figure(found, wanted_share) for each in figures_told(found))

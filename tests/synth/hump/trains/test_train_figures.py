@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy import stats
 
-from synth.hump.trains.train_figures import WANTED, ratio, share, train_figures
+from synth.hump.trains.train_figures import ratio, share, train_figures
 from tests.synth.hump.trains.made_trials import Day
 
 Floats = NDArray[np.float64]
@@ -99,7 +99,7 @@ def test_nothing_is_told_of_nothing_and_no_interval_of_one_train() -> None:
 
 def test_figures_are_those_of_the_counts() -> None:
     found = Day(cuts=10, steps_m_s=(3.0, 3.4)).on().batch(0, 40)
-    told = {figure.name: figure for figure in train_figures(found)}
+    told = {figure.name: figure for figure in train_figures(found, 0.01)}
     assert told["hump_speed"].value == pytest.approx(found.span_m.sum() / found.span_s.sum())
     assert told["cars_per_hour"].value == pytest.approx(3600.0 * found.span_cars.sum() / found.span_s.sum())
     assert told["catch_ups"].value == found.caught.sum() / 400 > 0.0
@@ -109,6 +109,6 @@ def test_figures_are_those_of_the_counts() -> None:
     assert told["overspeed"].value == pytest.approx(classes)
     assert told["gap_per_cut"].value == pytest.approx(found.gap_m.sum() / found.judged.sum())
     p, effect = told["catch_ups"].value, share(found.caught.astype(float), found.cuts.astype(float))[3]
-    assert told["catch_ups"].enough_n == pytest.approx(1.959964**2 * p * (1.0 - p) / WANTED**2 * effect)
+    assert told["catch_ups"].enough_n == pytest.approx(1.959964**2 * p * (1.0 - p) / 0.01**2 * effect)
     for figure in told.values():
         assert figure.low95 <= figure.value <= figure.high95
