@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -13,10 +12,8 @@ from plant_models import PlantError
 from plant_models.frozen_arrays import Floats, Ints
 from synth.aim.position_models import SampledExits
 from synth.aim.scene import SceneCuts
-from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.table_class import TableClass, draws, table_classes, taken
+from synth.retarder.table_class import TableClass, draws, taken
 from synth.simulation.random_passes import RandomPasses, random_passes
-from tuning_tables import ControllerTable
 
 CHUNK = 2000
 """Cuts whose random numbers are in memory at a time, for each thread."""
@@ -66,11 +63,6 @@ class TablePosition:
                 f"same targets; there are {', '.join(held)}"
             )
         return able
-
-
-def table_position(tables: Sequence[ControllerTable], config: ResolvedConfig, source: str) -> TablePosition:
-    """The position that runs `tables`, made from `config`; `source` is what a message calls it; see `table_classes`."""
-    return TablePosition(table_classes(tables, config, source))
 
 
 def entry_speeds_m_s(cuts: SceneCuts) -> Floats:

@@ -11,12 +11,12 @@ from plant_models.rolling.car_mix import mass_limits_t
 from scripts.studies.aiming.trial import Cuts
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.tuned_table import CREATED
-from synth.aim.table_position import TablePosition, entry_speeds_m_s, table_position
+from synth.aim.table_position import TablePosition, entry_speeds_m_s
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
 from synth.retarder.comparison.baselines import FAMILIES, tune
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.table_class import TableClass
+from synth.retarder.table_class import TableClass, table_classes
 from synth.retarder.tuned_table import read_back, solutions, tuned_table
 from synth.simulation.random_passes import random_passes
 from tuning_tables import ControllerTable
@@ -69,7 +69,8 @@ estimator = {str(estimator).lower()}
         """The position under the tables that a tune makes, as they are read back."""
         config = self.config(estimator)
         made = side_by_side(lambda setup: tables_of(config, setup), self.setups(config))
-        return table_position([table for of_class in made for table in of_class], config, "park book")
+        tables = [table for of_class in made for table in of_class]
+        return TablePosition(table_classes(tables, config, "park book"))
 
     def energy_rule(self) -> TablePosition:
         """The position under the energy rule, tuned for each class and target as a comparison tunes it."""

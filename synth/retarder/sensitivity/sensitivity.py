@@ -63,7 +63,6 @@ class CaseShares:
 
     label: str
     target_m_s: float
-    table_id: str
     nominal: tuple[float, ...]
     outputs: tuple[OutputShares, ...]
 
@@ -131,7 +130,6 @@ def class_shares(
         CaseShares(
             fixed.cut_class.label,
             table.target_speed_m_s,
-            table.id,
             tuple(nominal[i, :, 0].tolist()),
             tuple(output_shares(output, unit, found[i, o], again[i, o]) for o, output in enumerate(OUTPUTS)),
         )
