@@ -9,7 +9,7 @@ from scripts.studies.humping.base_trial import FEEDBACK, OPEN
 from scripts.studies.humping.runs import Group
 from scripts.studies.markdown_table import ABSENT, plus_minus, span
 from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.train_figures import WANTED, TrainFigure, of_cuts, train_figures
+from synth.hump.trains.train_figures import TrainFigure, of_cuts, train_figures
 from synth.hump.trains.trial import HumpTrial, Sensing
 
 PERCENT = 100.0
@@ -42,7 +42,7 @@ CLASSES = ("overspeed_slight", "overspeed_rough", "overspeed_harmful")
 
 def day_figures(found: TrainOutcomes) -> DayFigures:
     """Those of these trains."""
-    told = {figure.name: figure for figure in train_figures(found)}
+    told = {figure.name: figure for figure in train_figures(found, NEAR)}
     low, middle, high = (value_of(told[name]) for name in CLASSES)
     return DayFigures(
         cuts=int(found.cuts.sum()),
@@ -55,7 +55,7 @@ def day_figures(found: TrainOutcomes) -> DayFigures:
         overspeed=value_of(told["overspeed"]),
         classes=(low, middle, high),
         gap_m=value_of(told["gap_per_cut"]),
-        enough_cuts=told["catch_ups"].enough_n * (WANTED / NEAR) ** 2 or None,
+        enough_cuts=told["catch_ups"].enough_n or None,
     )
 
 
