@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from synth.cli import main
+from synth.frame.own_files import MARKER
 from synth.frame.workers.engine import Engine, InThisProcess
 from synth.hump.trains.trial import BATCH
 from synth.retarder.sweep.unit_answer import answer
@@ -73,9 +74,9 @@ def run(config: Path, directory: Path, engine: Engine) -> int:
 
 
 def contents(directory: Path) -> dict[str, bytes]:
-    """Every file by name but the ledger, which tells times."""
+    """Every file by name but the ledger, which tells times, and the marker, which tells the number of the run."""
     files = {path.relative_to(directory).as_posix(): path for path in directory.rglob("*") if path.is_file()}
-    return {name: path.read_bytes() for name, path in files.items() if name != "sweep/ledger.jsonl"}
+    return {name: path.read_bytes() for name, path in files.items() if name not in ("sweep/ledger.jsonl", MARKER)}
 
 
 def events(directory: Path, kind: str) -> list[dict[str, Any]]:
