@@ -26,7 +26,7 @@ SWITCHINGS: Final = Column("switchings", "switchings a pass", form=decimals(1), 
 TIME: Final = Column("time_s", "time", "s", decimals(2), spare=9)
 PREDICTED: Final = Column("predicted_rms_m_s", "predicted rms", "m/s", decimals(4), spare=8)
 PREDICTION_RATIO: Final = Column("prediction_ratio", "predicted / simulated", form=decimals(2))
-BRAKE_SATURATED: Final = Column("brake_saturated", "brake saturated, in 10 000", form=of_ten_thousand, spare=1)
+BRAKE_SATURATED: Final = Column("brake_saturated", "brake saturated, in 10\u00a0000", form=of_ten_thousand, spare=1)
 RMS_WITHIN: Final = Column("rms_within_m_s", "rms of all others", "m/s", decimals(4), detail=True)
 
 RISKS: Final = (

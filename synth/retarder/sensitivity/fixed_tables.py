@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from plant_models import Plant
+from synth.frame.printed_numbers import counted
 from synth.frame.workers.engine import Tell
 from synth.retarder.class_setup import class_setup, origin_of, validation_passes
 from synth.retarder.configuration.cut_class import CutClass
@@ -50,7 +51,7 @@ def tables_tuned(config: ResolvedConfig, created: str, workers: int, tell: Tell)
         setup = class_setup(config, cut_class.label, plant, validation_passes(config).part(0, 1), origin)
         found = solutions(setup.design, config.aims_of(cut_class.label))
         tables = tuple(tuned_table(setup, solution).table for solution in found)
-        tell(f"{cut_class.label}: {len(tables)} tables tuned")
+        tell(f"{cut_class.label}: {counted(len(tables), 'table')} tuned")
         return FixedTables(cut_class, plant, tables)
 
     with ThreadPoolExecutor(max_workers=workers) as pool:

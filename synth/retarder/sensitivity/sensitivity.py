@@ -9,6 +9,7 @@ import numpy as np
 
 from plant_models.frozen_arrays import Floats
 from synth.frame.input_error import InputError
+from synth.frame.printed_numbers import counted
 from synth.frame.workers.engine import Tell
 from synth.retarder.configuration.plant_parameter import Parameter
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -103,7 +104,7 @@ def sensitivity(
     cases: list[CaseShares] = []
     for each, varied in zip(fixed, every, strict=True):
         cases += class_shares(each, varied, keys, unit, trial, threads)
-        tell(f"{each.cut_class.label}: {trial.points} plants, {len(each.tables)} tables")
+        tell(f"{each.cut_class.label}: {trial.points} plants, {counted(len(each.tables), 'table')}")
     names = {one.key: one.name for one in every[0]}
     return Sensitivity(
         config,

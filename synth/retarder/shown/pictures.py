@@ -78,7 +78,7 @@ def case_chart(case: CaseResult) -> Chart:
         file_stem("case", case.name),
         case.name,
         f"95 of 100 cuts leave within ±{speed(found.p95_m_s)} [{low}, {high}] m/s of the target; "
-        f"{of_ten_thousand(found.overspeed)} in 10 000 leave more than {OVERSPEED_M_S:g} m/s above it.",
+        f"{of_ten_thousand(found.overspeed)} in 10\u00a0000 leave more than {OVERSPEED_M_S:g} m/s above it.",
         partial(case_picture, shown_case(case)),
     )
 

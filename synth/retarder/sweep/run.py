@@ -9,6 +9,7 @@ from importlib.metadata import version
 from synth.frame.address_space import address_space_limit_bytes
 from synth.frame.creation_time import creation_time
 from synth.frame.input_error import InputError
+from synth.frame.printed_numbers import counted
 from synth.frame.workers.engine import Engine, Watcher
 from synth.frame.workers.stored_results import missing_of
 from synth.retarder.sweep.bind import bind
@@ -115,9 +116,10 @@ def computed(
             refused = [asdict(each) for each in answer.result.refused]
             ledger.write(DONE, {**facts, "tables": len(rows), "refused": refused})
             worst = max(rows, key=lambda row: row.table.predicted.rms_m_s).table
+            left_out = f"; targets without a table: {len(refused)}" if refused else ""
             watcher.done(
-                f"{order.name}: {len(rows)} tables, highest rms {worst.predicted.rms_m_s:.3f} m/s to "
-                f"{worst.target_speed_m_s:g} m/s{f'; targets without a table: {len(refused)}' if refused else ''}",
+                f"{order.name}: {counted(len(rows), 'table')}, highest predicted rms {worst.predicted.rms_m_s:.3f} "
+                f"m/s to {worst.target_speed_m_s:g} m/s{left_out}",
             )
     return failed
 
