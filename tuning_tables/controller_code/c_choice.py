@@ -19,8 +19,8 @@ SELECT_NOTE: Final = """\
 Fill chosen with the table for a cut of this category and number of axles that shall leave with commanded_m_s.
 Candidates are the tables of the category and number of axles; of several masses the largest. {between} the
 table of the next target below the command: the cut never leaves faster than commanded. Returns how it ended. Where that
-is below 0, or chosen is null, chosen is left as it was: then whoever commands must decide, for no table here is known
-to be safe."""
+is below 0, no table here is known to be safe: the stages of chosen become 0, so that nothing is commanded, and whoever
+commands must decide."""
 
 BLENDED_NOTE: Final = (
     "Between two targets it is what lies between the two tables, where they are of one family; else, and above the "
@@ -38,6 +38,7 @@ int32_t {select}(int32_t category, int32_t axles, float commanded_m_s, {type} *c
     if (chosen == 0) {{
         return RETARDER_NO_CLASS;
     }}
+    chosen->stages = 0;
     if (status >= 0) {{
         *chosen = {tables}[slower];
     }}

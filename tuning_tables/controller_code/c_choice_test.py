@@ -33,7 +33,10 @@ def golden_choices(code: ControllerCode) -> list[str]:
         "    if (status != golden->status) {",
         "        return 0;",
         "    }",
-        f"    return status < 0 || (chosen.crc32 == golden->crc32 && {table_type(code)}_intact(&chosen) == 1);",
+        "    if (status < 0) {",
+        "        return chosen.stages == 0;",
+        "    }",
+        f"    return chosen.crc32 == golden->crc32 && {table_type(code)}_intact(&chosen) == 1;",
         "}",
         "",
     ]
