@@ -65,16 +65,17 @@ def test_holm_stops_at_the_first_that_may_be_chance() -> None:
 def test_a_log_becomes_a_configuration(
     passes: FittingPasses, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    log = passes.log.taken(np.arange(len(passes) // 2))
     (tmp_path / "my.toml").write_text(text_of_classes() + "[output]\nplots = true\n", encoding="utf-8")
-    write_log(passes.log, tmp_path / "day.csv")
+    write_log(log, tmp_path / "day.csv")
     assert main(words(tmp_path)) == 0
     summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
-    assert summary["figures"]["passes"] == len(passes)
+    assert summary["figures"]["passes"] == len(log)
     assert {"config.toml", "report.html", "plots/identify-numbers.svg"} <= summary["files"].keys()
     numbers = {each["key"]: each["value"] for each in summary["tables"]["numbers"]}
     assert numbers["sensor.noise_m_s"]["low95"] < 0.05 < numbers["sensor.noise_m_s"]["high95"]
-    assert {each["n"] for each in numbers.values()} == {len(passes)}
-    assert "identified from 80 passes" in (tmp_path / "out" / "config.toml").read_text(encoding="utf-8")
+    assert {each["n"] for each in numbers.values()} == {len(log)}
+    assert "identified from 40 passes" in (tmp_path / "out" / "config.toml").read_text(encoding="utf-8")
     report, printed = (tmp_path / "out" / "report.html").read_text(encoding="utf-8"), capsys.readouterr().out
     tests = summary["tables"]["tests"]
     assert [test["matters_from"] for test in tests] == [2.0, 5.0, 10.0, 0.01, 3.0]
