@@ -28,7 +28,7 @@ from synth.simulation.controllers import fixed
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.switching_lines import SwitchingLines
-from tests.synth.any_time.tabled import tabled
+from tests.synth.any_time.conftest import tabled
 from tuning_tables import Decisions
 
 AIM_M_S = 3.0

@@ -1,4 +1,8 @@
-"""Closed loop: common random numbers, traces, and tables against lines."""
+"""The closed loop, and two controllers that are made by hand.
+
+Two controllers that are made by hand.
+Closed loop: common random numbers, traces, and tables against lines.
+"""
 
 from __future__ import annotations
 
@@ -10,27 +14,29 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from plant_models import Cut, Friction, Plant, RollingResistance
-from plant_models.stage_regulator import stage_locked_actuator
+from plant_models import Cut, Plant, RollingResistance
 from synth.kernels.loop.closed_loop import run_passes
 from synth.kernels.loop.passes import Draws
-from synth.simulation.closed_loop import (
-    LineController,
-    TableController,
-    close_loop,
-    simulate,
-    simulate_many,
-    trace,
-)
+from synth.retarder.comparison.baselines import energy_rule
+from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate, simulate_many, trace
 from synth.simulation.path_cells import cell_edges_m
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.switching_lines import SwitchingLines
 from tests.synth.case_factory import make_table
-from tests.synth.loop_controllers import constant_lines, energy_controller
 from tuning_tables.json_file import read_json, write_json
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
+
+
+def energy_controller(plant: Plant, target_m_s: float) -> LineController:
+    loop = close_loop(plant, plant.top_stage + 1)
+    return energy_rule(loop, target_m_s, plant.top_stage, 0.8, 0.15, 0.0, 0.15)
+
+
+def constant_lines(plant: Plant, lower: list[float], upper: list[float]) -> LineController:
+    nodes = np.linspace(0.0, plant.exit_m, 2)
+    return LineController(SwitchingLines(nodes, np.outer(lower, [1.0, 1.0]), np.outer(upper, [1.0, 1.0])))
 
 
 def test_path_cells_carry_the_correlation_of_the_friction_process(plant_52t: Plant) -> None:
@@ -103,19 +109,6 @@ def test_trace_is_the_simulated_pass(plant_52t: Plant, passes: RandomPasses) -> 
         assert periods.min() == pytest.approx(1.0)
 
 
-def test_the_command_leaves_only_at_rest_and_goes_as_far_as_it_may(plant_52t: Plant, passes: RandomPasses) -> None:
-    jump = constant_lines(plant_52t, [-math.inf] + [3.2] * 4, [3.2] * 4 + [math.inf])
-    step = replace(jump, farthest=1)
-    by_one = trace(plant_52t, step, passes, 0)
-    at_once = trace(plant_52t, jump, passes, 0)
-    assert np.abs(np.diff(by_one.stage)).max() == 1
-    assert list(np.unique(at_once.stage)) == [0, 4]
-    assert by_one.exit_speed_m_s < by_one.speed_m_s[0]
-    changes = by_one.time_s[1:][np.diff(by_one.stage) != 0]
-    actuator = stage_locked_actuator(plant_52t.position, plant_52t.sensor, 4, 1)
-    assert np.diff(changes).min() > 0.1 * actuator.chain_samples.min() - 1e-9
-
-
 def test_lead_releases_earlier(plant_52t: Plant, passes: RandomPasses) -> None:
     plain = constant_lines(plant_52t, [-math.inf] + [3.2] * 4, [3.2] * 4 + [math.inf])
     released = []
@@ -179,15 +172,3 @@ def test_controller_must_fit_the_loop(plant_52t: Plant, passes: RandomPasses) ->
         loop.run(controller, loop.draws(passes))
     with pytest.raises(ValueError, match="has 5"):
         close_loop(plant_52t, 6)
-
-
-def test_friction_without_spread_gives_the_sensor_alone(plant_52t: Plant, passes: RandomPasses) -> None:
-    plant = replace(
-        plant_52t,
-        friction=Friction(0.0, 0.0, 0.0, 2.0),
-        resistance=RollingResistance(1.4, 0.0),
-        sensor=replace(plant_52t.sensor, noise_m_s=0.0, resolution_m_s=0.0),
-    )
-    same_phase = replace(passes, phase_u=np.full(len(passes), 0.5), entry_u=np.full(len(passes), 0.5))
-    speed = simulate(plant, energy_controller(plant, 3.0), same_phase).exit_speed_m_s
-    assert np.all(speed == speed[0])

@@ -1,4 +1,4 @@
-"""The motion in the closed loop against closed forms and an adaptive integrator."""
+"""The motion in the closed loop against an adaptive integrator, and with smaller steps."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 from plant_models import Plant, PressureHistory
 from plant_models.stage_regulator import stage_locked_actuator
-from synth.kernels.loop.motion import LEFT, MOVING, STALLED, advance
+from synth.kernels.loop.motion import MOVING, STALLED, advance
 from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import (
     ClosedLoop,
@@ -22,34 +22,10 @@ from synth.simulation.closed_loop import (
 )
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import RandomPasses
-from tests.synth.loop_controllers import constant_lines, energy_controller
+from tests.synth.test_closed_loop import constant_lines, energy_controller
 
 EXIT_SPEED_TOLERANCE_M_S = 1e-4
 """Asked for is 1 mm/s."""
-
-
-def test_coasting_keeps_the_energy_balance(plant_52t: Plant, passes: RandomPasses) -> None:
-    controller = constant_lines(plant_52t, [-math.inf] * 5, [math.inf] * 5)
-    loop = close_loop(plant_52t, 5)
-    draws = loop.draws(passes)
-    sample = loop.run(controller, draws)
-    a = loop.path.drag_m_s2_per_n_kn * (8.0 - draws.resistance_n_kn)  # grade and resistance are both in permille
-    speed = np.sqrt(draws.entry_m_s**2 + 2 * a * plant_52t.exit_m)
-    np.testing.assert_allclose(sample.exit_speed_m_s, speed, rtol=1e-11)
-    np.testing.assert_allclose(sample.transit_time_s, (speed - draws.entry_m_s) / a, rtol=1e-9)
-    assert not sample.switchings.any()
-    assert not sample.stalled.any()
-
-
-def test_constant_overpressure_takes_force_times_path(plant_52t: Plant) -> None:
-    path = close_loop(plant_52t, 5).path
-    work = float((path.brake_m_s2_per_kpa * np.diff(path.edges_m)).sum())
-    # 20 kN/550 kPa per pair; each of 4 axles runs through 2 zones of 12.475 m
-    assert work == pytest.approx(20 / 550 * 4 * 2 * 12.475 / plant_52t.cut.inertia_t, rel=1e-12)
-    zero = np.zeros_like(path.gravity_m_s2)
-    *_, speed, _, status = advance(path.edges_m, zero, path.brake_m_s2_per_kpa, 100.0, 1e3, 0, 0.0, 6.0)
-    assert status == LEFT
-    assert speed == pytest.approx(math.sqrt(36.0 - 2 * 100.0 * work), rel=1e-12)
 
 
 def test_advance_does_not_depend_on_how_time_is_divided(plant_52t: Plant) -> None:

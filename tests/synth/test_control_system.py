@@ -1,18 +1,28 @@
-"""The nominal loop in python-control against the simulator and against closed forms."""
+"""The loop in python-control.
+
+The nominal loop in python-control against the simulator.
+A table's loop by python-control and by the simulator: how far apart, in which order, and where they may part.
+"""
 
 from __future__ import annotations
 
-import math
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from plant_models import DopplerSensor, Friction, Plant, RollingResistance
+from synth.frame.summary import plain
 from synth.retarder.comparison.baselines import energy_rule, relay
+from synth.retarder.control_loop import TOLERANCE_M_S
+from synth.retarder.estimation.estimator_design import estimator_of
+from synth.retarder.line_control_loop import ENTRIES, LineControlLoop, line_control_loop
+from synth.retarder.served_class import ServedClass
 from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
-from synth.simulation.control_system import drive_system, motion_system, nominal_loop, regulator_system
-from synth.simulation.nominal_response import SOLVER, commands_of, nominal_response
+from synth.simulation.control_system import motion_system, nominal_loop, regulator_system
+from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant, one_pass
+from synth.simulation.nominal_response import commands_of, nominal_response, parting, response_difference
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
@@ -21,9 +31,6 @@ from tests.synth.case_factory import make_table
 from tuning_tables import ControllerTable, Stage
 
 control = pytest.importorskip("control")
-
-BRAKED_M = 2 * 12.475
-"""Length of both retarders of the pilot plant: every axle is braked over it."""
 
 
 @pytest.fixture(scope="module")
@@ -81,47 +88,6 @@ def test_passes_are_the_simulators(quiet: Plant, law: str) -> None:
     assert switchings >= 6  # the comparison is about something
 
 
-def test_valves_act_as_the_pressure_relay_asks(quiet: Plant) -> None:
-    """From the integrated pressure alone: it rests one dead band beside the stage, on the side it came from."""
-    found = nominal_response(quiet, controller_for(quiet, "table"), 6.2, 0.03)
-    band, stages = quiet.position.pneumatics.dead_band_kpa, quiet.position.stage_pressures_kpa
-    locked = regulator_system(quiet, controller_for(quiet, "table"))
-    assert locked.dt == quiet.sensor.sample_period_s
-    times = [t for t, _ in commands_of(found)]
-    assert len(times) >= 2
-    before = 0
-    for t, k in commands_of(found):
-        at_command = np.interp(t, found.time_s, found.pressure_kpa)
-        # The valve moves after the computing delay and its own delay, and not before.
-        delay = 0.02 + 0.1 + (0.2 if k > before and at_command <= 50.0 else 0.0)
-        waiting = (found.time_s > t) & (found.time_s < t + delay - 1e-9)
-        assert found.pressure_kpa[waiting] == pytest.approx(at_command, abs=1e-3)
-        later = (found.time_s > t + delay + 1e-9) & (found.time_s < t + delay + 0.05)
-        assert np.all((found.pressure_kpa[later] - at_command) * (k - before) > 0.0)
-        before = k
-    for (_, k), rest_s in zip(commands_of(found)[:-1], times[1:], strict=True):
-        rest = float(np.interp(rest_s, found.time_s, found.pressure_kpa))
-        assert abs(rest - stages[k]) == pytest.approx(band, abs=0.01)
-
-
-def test_held_stage_has_the_closed_form_exit_speed(plant_52t: Plant) -> None:
-    """v² = v0² + 2·(g'(i − w)·S_exit − K(P − P0)·4 axles·24.95 m/(Q + 0.42 n)), and no valve moves."""
-    pressure, entry = 300.0, 6.0
-    inertia = 52.0 + 0.42 * 4
-    gravity = 9.81 * 52.0 / inertia * (8.0 - plant_52t.resistance.mean_n_per_kn) * 1e-3 * 37.45
-    work = 20.0 / 550.0 * (pressure - 50.0) * 4 * BRAKED_M / inertia
-    expected = math.sqrt(entry**2 + 2 * (gravity - work))
-    assert expected == pytest.approx(2.6, abs=0.3)  # the brake does matter
-    times = np.linspace(0.0, 12.0, 1201)
-    response = control.input_output_response(
-        nominal_loop(plant_52t), times, np.zeros((1, times.size)), [0.0, entry, pressure],
-        solve_ivp_kwargs=SOLVER,
-    )  # fmt: skip
-    s, v, p = response.outputs
-    assert p == pytest.approx(pressure, abs=1e-9)
-    assert math.sqrt(np.interp(37.45, s, v**2)) == pytest.approx(expected, abs=5e-4)
-
-
 def test_friction_and_resistance_are_parameters(plant_52t: Plant) -> None:
     motion = motion_system(plant_52t)
     at, brake = [5.0, 4.0], [350.0]
@@ -132,16 +98,6 @@ def test_friction_and_resistance_are_parameters(plant_52t: Plant) -> None:
     motion.params = {**motion.params, "resistance_n_kn": 8.0}
     assert motion.dynamics(0.0, at, [50.0])[1] == pytest.approx(0.0, abs=1e-12)
     assert list(motion.dynamics(0.0, [5.0, 0.0], brake)) == [0.0, 0.0]
-
-
-@pytest.mark.parametrize(("valve", "asymptote"), [(1.0, 700.0), (-1.0, 0.0), (0.0, 200.0)])
-def test_drive_fills_and_exhausts_exponentially(plant_52t: Plant, valve: float, asymptote: float) -> None:
-    times = np.linspace(0.0, 0.6, 13)
-    response = control.input_output_response(
-        drive_system(plant_52t), times, np.full(13, valve), [200.0], solve_ivp_kwargs={"rtol": 1e-8}
-    )
-    expected = asymptote + (200.0 - asymptote) * np.exp(-times / 0.3)
-    assert response.outputs == pytest.approx(expected, abs=1e-3)
 
 
 def test_a_stall_is_reported(quiet: Plant) -> None:
@@ -162,3 +118,86 @@ def test_python_control_refuses_to_connect_the_sampled_regulator(quiet: Plant) -
     systems = [nominal_loop(quiet), regulator_system(quiet, controller_for(quiet, "table"))]
     with pytest.raises(ValueError, match="timebase"):
         control.interconnect(systems, inputs=["valve"], outputs=["stage"])
+
+
+pytest.importorskip("control")
+
+
+@pytest.fixture(scope="module")
+def loop(plant_52t: Plant) -> LineControlLoop:
+    """The loop of a plausible table."""
+    return line_control_loop(table_for(plant_52t), ServedClass("gondola", plant_52t))
+
+
+def test_the_nominal_plant_has_no_chance_left(plant_52t: Plant) -> None:
+    """Passes that differ in every random number but entry and phase end alike; on the real plant they do not."""
+    one = one_pass(0.5, 0.5)
+    other = replace(one, cut_z=one.cut_z + 2.0, resistance_u=0.9 * one.weight, noise_z=one.noise_z + np.float32(1.0))
+    exits = {}
+    for name, plant in (("nominal", nominal_plant(plant_52t)), ("real", plant_52t)):
+        law = TableController(table_for(plant))
+        closed = close_loop(plant, law.stages)
+        exits[name] = {float(closed.run(law, closed.draws(passes)).exit_speed_m_s[0]) for passes in (one, other)}
+    assert (len(exits["nominal"]), len(exits["real"])) == (1, 2)
+
+
+@pytest.mark.parametrize("entry_u", [0.1, 0.5, 0.9])
+def test_a_table_with_estimator_is_followed_too(plant_52t: Plant, entry_u: float) -> None:
+    """The estimator's own text runs in both; in python-control on the pressure that is integrated there."""
+    plant = replace(
+        plant_52t, sensor=replace(plant_52t.sensor, resolution_m_s=0.5)
+    )  # coarse: there is much to estimate
+    without_it = TableController(table_for(plant))
+    law = TableController(replace(table_for(plant), estimator=estimator_of(plant)))
+    phase_s = 0.3 * plant.sensor.sample_period_s
+    response = nominal_response(plant, law, nominal_entry_m_s(plant, entry_u), phase_s)
+    found = response_difference(response, nominal_pass(plant, law, entry_u, 0.3))
+    assert found.parted_s is None
+    assert abs(found.largest_m_s) < TOLERANCE_M_S
+    without = nominal_pass(plant, without_it, entry_u, 0.3)
+    assert abs(response.exit_speed_m_s - without.exit_speed_m_s) > TOLERANCE_M_S  # so the estimator does something
+
+
+def test_the_loop_agrees_and_its_document_is_plain(loop: LineControlLoop) -> None:
+    assert loop.agrees
+    assert loop.difference.parted_s is None
+    assert len(loop.portrait) == ENTRIES
+    entries = [float(response.speed_m_s[0]) for response in loop.portrait]
+    assert entries == sorted(entries)
+    document = json.loads(json.dumps(plain(loop.document), allow_nan=False))
+    assert document["difference"]["agrees"] is True
+    assert document["python_control"]["commands"] == [list(each) for each in commands_of(loop.response)]
+    assert document["simulator"]["exit_speed_m_s"] == loop.trace.exit_speed_m_s
+    assert len(document["limit_cycles"]) == len(loop.hunting)
+
+
+def test_a_difference_is_found(loop: LineControlLoop) -> None:
+    """Planted: a pass that is 5 mm/s faster for a moment, and one that commands another stage from a sample on."""
+    trace = loop.trace
+    bump = np.where(np.arange(trace.time_s.size) == trace.time_s.size // 2, 0.005, 0.0)
+    apart = response_difference(loop.response, replace(trace, speed_m_s=trace.speed_m_s + bump))
+    assert apart.largest_m_s == pytest.approx(-0.005, abs=TOLERANCE_M_S)
+    assert not replace(loop, trace=replace(trace, speed_m_s=trace.speed_m_s + bump)).agrees
+    later = replace(trace, stage=np.where(trace.time_s > 0.6 * trace.time_s[-1], 4, trace.stage))
+    parted = response_difference(loop.response, later)
+    assert parted.parted_s is not None
+    assert 0.0 < parted.parted_s < trace.time_s[-1]
+    assert abs(parted.largest_m_s) <= TOLERANCE_M_S  # what comes after the parting does not count
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "at"),
+    [
+        ((), (), None),
+        (((0.1, 1),), ((0.1 + 1e-9, 1),), None),
+        (((0.1, 1), (0.5, 2)), ((0.1, 1), (0.6, 2)), 0.5),
+        (((0.1, 1), (0.5, 2)), ((0.1, 1), (0.5, 0)), 0.5),
+        (((0.1, 1), (0.5, 2)), ((0.1, 1),), 0.5),
+        (((0.1, 1),), ((0.1, 1), (0.7, 2)), 0.7),
+    ],
+)
+def test_commands_part_where_they_first_differ(
+    one: tuple[tuple[float, int], ...], other: tuple[tuple[float, int], ...], at: float | None
+) -> None:
+    assert parting(one, other) == at
+    assert parting(other, one) == at

@@ -14,15 +14,11 @@ from synth.problem.aim import Aim
 from synth.problem.estimator_resolution import LEAST_ERROR_M_S, design_error_m_s
 from synth.problem.resolution import Resolution
 from synth.retarder.estimation.estimate_chain import SLOW_DAY_SHARE, SLOW_DAY_Z, estimate_chain, rms_with_white_error
-from synth.retarder.estimation.estimated_lines import estimated_lines
-from synth.retarder.estimation.estimated_table import SHIFTS, EstimatedTable, Trim, controller_of, moved, trimmed
+from synth.retarder.estimation.estimated_table import SHIFTS, Trim, moved, trimmed
 from synth.retarder.estimation.estimator_design import estimator_of
-from synth.retarder.estimation.tuning_days import tuning_days
-from synth.simulation.closed_loop import LineController, close_loop, simulate, trace
-from synth.simulation.exit_statistics import rms_ratio
+from synth.simulation.closed_loop import LineController, close_loop, trace
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
-from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.chain.speed_measurement import SmoothMeasurement
 from synth.solver.evaluation import Evaluation
@@ -31,14 +27,6 @@ from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tuned_lines import tuned_lines
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=4, resistance_nodes=1)
-
-
-def made_for(
-    plant: Plant, target_m_s: float, passes: RandomPasses, resolution: Resolution = COARSE
-) -> EstimatedTable[PolynomialLines]:
-    """Lines for the estimated speed."""
-    solution = solve(estimate_chain(plant, resolution, target_m_s), Aim(target_m_s))
-    return estimated_lines(plant, solution, 3, passes, tuning_days(plant, passes))[1]
 
 
 def uncertain(plant: Plant, mean_cv: float, day_spread: float = 0.0) -> Plant:
@@ -108,19 +96,6 @@ def test_a_trim_may_change_along_the_path() -> None:
     found, before, after = trimmed(lambda by: float(((np.array(by) - wanted) ** 2).sum()), Trim(3, 400))
     assert after < 0.01 * before
     assert np.array(found) == pytest.approx(wanted, abs=2e-3)
-
-
-def test_lines_for_the_estimate_are_better_than_those_for_the_measured_speed(
-    plant_of: Callable[[float], Plant], passes: RandomPasses
-) -> None:
-    plant = plant_of(36.0)
-    measured = tuned_lines(persistent_chain(plant, COARSE), Aim(3.0), 3).best
-    made = made_for(plant, 3.0, passes)
-    assert made.rms_after_m_s <= made.rms_before_m_s
-    fresh = stratified_passes(12, 0, 4000)
-    controllers = controller_of(made.lines, made.estimator), controller_of(measured, None)
-    estimated, plain = (simulate(plant, each, fresh) for each in controllers)
-    assert rms_ratio(estimated, plain, 3.0)[1][1] < 0.9  # the upper end of the interval, on the same passes
 
 
 def test_the_chain_says_what_passes_with_a_white_error_say(

@@ -1,4 +1,8 @@
-"""Predicted limit cycles against time-stepped relays, the simulator and python-control's own analysis."""
+"""Limit cycles of the speed.
+
+Hunting between two stages by the steps of the product, with the gap of the lines told.
+Predicted limit cycles against time-stepped relays, the simulator and python-control's own analysis.
+"""
 
 from __future__ import annotations
 
@@ -9,27 +13,37 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import (
-    Cut,
-    DopplerSensor,
-    EntrySpeed,
-    Friction,
-    Plant,
-    RollingResistance,
-    TrackProfile,
-)
+from plant_models import Cut, DopplerSensor, EntrySpeed, Friction, Plant, RollingResistance, TrackProfile
 from synth.retarder.comparison.limit_cycle import (
+    LimitCycle,
     StagePair,
+    accelerations,
     cycle_wave,
     first_harmonic,
     hunting_report,
     relay_cycle,
+    stage_pair,
 )
 from synth.retarder.pictures.loop_cycle import describing_function_analysis
 from synth.simulation.closed_loop import LineController, trace
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines
-from tests.synth.hunting import limit_cycle
+
+
+def limit_cycle(
+    plant: Plant,
+    lower_stage: int,
+    gap_m_s: float,
+    stretch_m: tuple[float, float] | None = None,
+    line_rate_m_s2: float = 0.0,
+) -> LimitCycle | None:
+    """Hunting between `lower_stage` and the next, or None if both stages leave the lines to one side.
+
+    `gap_m_s`: raising line minus lowering line; `stretch_m`: part of the path whose means count, None: all of it;
+    `line_rate_m_s2`: dV/ds·v, at which the lines themselves rise.
+    """
+    free, brake = accelerations(plant, np.array(stretch_m or (0.0, plant.exit_m)))
+    return relay_cycle(stage_pair(plant, lower_stage), gap_m_s, float(free[0]) - line_rate_m_s2, float(brake[0]))
 
 
 def long_plant(plant: Plant, grade_permille: float, period_s: float, computing_s: float) -> Plant:

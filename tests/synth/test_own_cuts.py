@@ -10,7 +10,7 @@ import pytest
 from plant_models import EntrySpeed, HistogramEntrySpeed, NormalEntrySpeed
 from plant_models.library import load_position
 from synth.retarder.configuration.config_file import parse_config
-from tests.synth.own_types import CUT, config_in, number, sentences
+from tests.synth.test_own_types import CUT, config_in, number, sentences
 
 
 def category(name: str, number_of: int, load: float, stage: int) -> str:

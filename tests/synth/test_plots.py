@@ -1,11 +1,15 @@
-"""Every picture is drawn without a warning, as PNG and SVG, with the same bytes for the same case."""
+"""Pictures of a tune.
+
+Every picture of a book, drawn in this process.
+Every picture is drawn without a warning, as PNG and SVG, with the same bytes for the same case.
+"""
 
 from __future__ import annotations
 
 import pickle
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -17,9 +21,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
 from matplotlib.text import Text
 
+from synth.frame.exhibits import Chart
 from synth.frame.picture.figure_file import draw, figure_files
 from synth.frame.picture.house_style import MATHEMATICS, logarithmic_y, new_figure
-from synth.frame.picture.picture import picture_files
+from synth.frame.picture.picture import Picture, picture_files
+from synth.frame.picture.studio import draw_chart
 from synth.retarder.case_names import by_class, file_stem
 from synth.retarder.case_result import CaseResult
 from synth.retarder.command_panels import command_image
@@ -30,11 +36,18 @@ from synth.retarder.pictures.feasibility import feasibility
 from synth.retarder.pictures.rms_by_controller import rms_by_controller
 from synth.retarder.pictures.stage_colours import colour_of, outcome, parts_in_stage
 from synth.retarder.pictures.table_picture import Passes, table_lines, table_passes, table_surfaces
-from synth.retarder.shown.pictures import case_chart
+from synth.retarder.shown.pictures import accuracy_charts, case_chart, case_pictures
 from synth.retarder.shown_case import NEAR_M_S, shown_case
 from synth.simulation.passes import ExitSample
-from tests.synth.all_pictures import all_pictures
 from tests.synth.case_factory import make_case, make_policy_map
+
+
+def all_pictures(cases: Sequence[CaseResult], limit_m_s: float) -> Iterator[Picture]:
+    """In the order of the report; each is drawn when it is asked for."""
+    for each in (*accuracy_charts(cases, limit_m_s), *case_pictures(cases)):
+        if isinstance(each, Chart):
+            yield Picture(each.name, "", each.title, each.caption, draw_chart(each))
+
 
 ROOT = Path(__file__).parents[2]
 

@@ -10,7 +10,7 @@ import pytest
 
 from plant_models import Plant, PlantError, Pneumatics
 from synth.retarder.comparison.pressure_cycle import pressure_hunting, pressure_limit_cycle
-from tests.synth.hunting import limit_cycle
+from tests.synth.test_limit_cycle import limit_cycle
 
 TOUCH_KPA = 50.0
 

@@ -1,24 +1,41 @@
-"""One small case through the whole chain, and the pieces that only it has: bound, map, feasibility."""
+"""A tune of one case, what it leaves, and what makes no book.
+
+One small case through the whole chain, and the pieces that only it has: bound, map, feasibility.
+Pieces of what a tune leaves: drawing in processes, names of files, the summary beside tables.
+What every command that tunes does around its tune.
+The book that a file names: refused in one sentence where it is of another position or fits no class.
+"""
 
 from __future__ import annotations
 
 import json
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, NoReturn
 
-import numpy as np
 import pytest
 
+from synth.frame.exhibits import Chart
+from synth.frame.input_error import InputError
+from synth.frame.picture.studio import Studio, draw_chart
 from synth.frame.workers.engine import Teller
+from synth.retarder.asked_tune import AskedTune, tuned
+from synth.retarder.book_classes import book_classes
 from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.estimation.estimate_chain import estimate_chain
+from synth.retarder.failed_case import FailedCase
+from synth.retarder.forms.table_file import file_stem, is_infeasible
 from synth.retarder.policy_map import policy_map, share_of_ties
 from synth.retarder.radar_epochs import RadarEpochs
-from synth.retarder.tune import Book, tune
-from synth.simulation.passes import TRACE_FACTORS
+from synth.retarder.shown.pictures import case_chart, feasibility
+from synth.retarder.tune import Book, no_notice, tune
+from synth.simulation.controllers import TableController
 from synth.solver.backward_induction import solve
-from tuning_tables import ControllerTable, read_json, write_json
+from tests.synth.case_factory import make_case
+from tests.synth.hump.trains.coarse_book import PARK, coarse_classes
+from tuning_tables import ControllerTable, InvalidTable, read_json, write_book, write_json
 
 SMALL = """
 [[cut]]
@@ -71,19 +88,6 @@ def test_the_table_on_disk_is_the_one_that_was_validated(book: Book[CaseResult],
         assert json.loads((directory / f"{case.table.id}.json").read_bytes())["generator"]["name"] == "retarder-synth"
 
 
-def test_the_prediction_is_honest_and_who_is_told_the_friction_is_no_worse(book: Book[CaseResult]) -> None:
-    for case in book.cases:
-        figures, table = case.comparison, case.measured
-        assert table.statistics.rms_m_s < 0.06
-        assert 0.85 < table.predicted_rms_m_s / table.statistics.rms_m_s < 1.15
-        told = figures.friction_known
-        assert told.statistics.rms_m_s * figures.regret == pytest.approx(table.statistics.rms_m_s)
-        assert told.table_ratio >= 1.0  # who is told the friction is no worse, and need not use it
-        assert told.table_ratio_ci95[1] < 1.3
-        assert told.table_ratio_ci95[1] - told.table_ratio_ci95[0] < 0.1  # on the same passes
-        assert len(case.controllers) == 4
-
-
 def test_the_map_agrees_with_the_lines_and_marks_indifference(case: CaseResult) -> None:
     """Far above its line a stage goes up, far below down, wherever that counts."""
     config = parse_config(SMALL, "small.toml")
@@ -113,13 +117,82 @@ def test_feasibility_falls_with_entry_speed(case: CaseResult) -> None:
     assert found.entry_rms_m_s[-1] > found.entry_rms_m_s[len(found.entry_m_s) // 2]
 
 
-def test_no_controller_of_a_case_has_less_than_the_unavoidable_error(book: Book[CaseResult]) -> None:
-    for case in book.cases:
-        least = case.unavoidable.rms_m_s
-        assert 0.0 < least < min(entry.statistics.rms_m_s for entry in case.controllers)
+def test_drawings_do_not_depend_on_the_number_of_processes() -> None:
+    charts = [case_chart(make_case()), case_chart(make_case("heavy", 2.0))]
+    with Studio(2) as studio:
+        studio.begin(charts[1])
+        assert [each.result() for each in map(studio.drawing, charts)] == [draw_chart(each) for each in charts]
 
 
-def test_traces_are_passes_of_the_exported_table(case: CaseResult) -> None:
-    for trace, factor in zip(case.traces, TRACE_FACTORS, strict=True):
-        assert trace.exit_speed_m_s == pytest.approx(case.target_speed_m_s, abs=0.3), factor
-        assert np.all(np.diff(trace.path_m) >= 0.0)
+def test_a_fault_in_a_drawing_process_is_raised_here() -> None:
+    with Studio(2) as studio, pytest.raises(ValueError, match="left cannot be"):
+        studio.drawing(Chart("none", "", "", partial(feasibility, ()))).result()
+
+
+def test_an_id_is_no_path() -> None:
+    from dataclasses import replace
+
+    table = make_case().table
+    ids = ("../../etc/x", "a b/ц", ".hidden", "///")
+    assert [file_stem(replace(table, id=name)) for name in ids] == ["etc-x", "a-b-ц", "hidden", "table"]
+
+
+def test_only_the_summary_of_the_same_configuration_counts() -> None:
+    table = make_case().table
+
+    def summary(sha256: str, name: str) -> dict[str, object]:
+        cases = [{"id": name, "verdict": "infeasible"}]
+        return {"generator": {"config_sha256": sha256}, "tables": {"cases": cases}}
+
+    assert is_infeasible(table, summary(table.generator.config_sha256, table.id))
+    assert not is_infeasible(table, summary("0", table.id))
+    assert not is_infeasible(table, summary(table.generator.config_sha256, "other"))
+    assert not is_infeasible(table, None)
+
+
+CONFIG = parse_config("", "x.toml")
+WORK: Any = SimpleNamespace(progress=SimpleNamespace(note=print), directory=None)
+
+
+@pytest.mark.parametrize(("cases", "sentence"), [((make_case(),), "two tables are alike"), ((), "no table for")])
+def test_what_makes_no_book_is_refused_in_a_sentence_about_the_file(
+    cases: tuple[Any, ...], sentence: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    failed = () if cases else (FailedCase("a class", 2.0, "too coarse"),)
+    book: Book[Any] = Book(CONFIG, "2026-11-20T22:46:00Z", cases, failed)
+    monkeypatch.setattr("synth.retarder.tune.tune", lambda *_: book)
+    monkeypatch.setattr("synth.retarder.first_run.first_time", lambda: False)
+
+    def found(_: Book[Any]) -> NoReturn:
+        raise InvalidTable("two tables are alike.")
+
+    with pytest.raises(InputError, match=f"^x.toml: .*{sentence}"):
+        tuned(AskedTune(CONFIG, "x.toml", RadarEpochs(), 1), WORK, no_notice, found)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two tables of one class, one alone, and the configuration of all."""
+    made, (single, pair) = tmp_path_factory.mktemp("book"), coarse_classes()
+    (made / "coarse.toml").write_text(PARK, encoding="utf-8")
+    for name, of_class, count in (("two.h5", single, 2), ("one.h5", pair, 1)):
+        tables = [c.table for c in of_class.controllers[:count] if isinstance(c, TableController)]
+        write_book([table for table in tables if isinstance(table, ControllerTable)], made / name)
+    return made
+
+
+def test_a_book_is_read_with_its_configuration(folder: Path) -> None:
+    (single,) = book_classes("h.toml: book", folder / "two.h5", folder / "coarse.toml", "rnz-2m-park")
+    assert single.targets_m_s == (1.5, 2.0)
+    assert single.plant.cut.mass_t == 25.0
+    assert single.loops[0].plant is single.plant
+
+
+def test_a_book_that_does_not_fit_is_refused(folder: Path) -> None:
+    other = "two.h5, whose table .* is for the position rnz-2m-park, but position is knp-5-bunch; give a book of that"
+    with pytest.raises(InputError, match=f"h.toml: retarder 401: book names .*{other}"):
+        book_classes("h.toml: retarder 401: book", folder / "two.h5", folder / "coarse.toml", "knp-5-bunch", "position")
+    with pytest.raises(InputError, match=r"h.toml: book names .*one.h5, which does not fit: .* 1 targets"):
+        book_classes("h.toml: book", folder / "one.h5", folder / "coarse.toml", "rnz-2m-park")
+    with pytest.raises(InputError, match="no cut class fits the table"):
+        book_classes("h.toml: book", folder / "two.h5", None, "rnz-2m-park")

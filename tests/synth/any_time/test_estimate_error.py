@@ -1,4 +1,8 @@
-"""The error of an estimate along the path: found again where it is known, and met by chain and simulator alike."""
+"""Chains of estimates and of told frictions, and the memory of their passes.
+
+The error of an estimate along the path: found again where it is known, and met by chain and simulator alike.
+Passes leave their memory as they found it, so that no evaluation knows of those before it.
+"""
 
 from __future__ import annotations
 
@@ -19,9 +23,10 @@ from synth.solver.any_time.estimate_error import EstimateError, error_along_path
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.any_time.sampled_chain import SampledChain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
+from synth.solver.any_time.surface_polish import NEGLIGIBLE_MASS
 from synth.solver.chain.scenarios import Scenarios
 from synth.solver.chain.speed_measurement import SmoothMeasurement
-from tests.synth.any_time.tabled import tabled
+from tests.synth.any_time.conftest import tabled
 from tests.synth.any_time.test_surfaces import TARGET_M_S, at, falling
 
 AIM = Aim(TARGET_M_S, Criterion())
@@ -126,3 +131,49 @@ def test_other_passes_err_as_was_found(plant_of: Callable[[float], Plant]) -> No
     slope = float(np.polyfit(extra, mean_error, 1)[0])
     assert found.per_acceleration_s[-1] < -0.2
     assert slope == pytest.approx(found.per_acceleration_s[-1], rel=0.25)
+
+
+MEMORY_AIM = Aim(3.0, Criterion())
+
+
+@pytest.fixture(scope="module")
+def memory_chain(plant: Plant) -> SampledChain:
+    return sampled_chain(plant, design_resolution(plant, 3.0, coarser=2.0))
+
+
+def level_lines(memory_chain: SampledChain, lower_m_s: float, upper_m_s: float) -> np.ndarray:
+    """The same two speeds at every node and mode; no command that a mode does not have."""
+    lines = np.empty((2, len(memory_chain.drive_m2_s2) - 1, len(memory_chain.modes.stage)))
+    lines[0] = np.where(memory_chain.modes.allowed[:, 0], lower_m_s, -np.inf)
+    lines[1] = np.where(memory_chain.modes.allowed[:, 2], upper_m_s, np.inf)
+    return lines
+
+
+def test_memory_is_zeros_between_passes(memory_chain: SampledChain) -> None:
+    evaluation = SurfaceEvaluation(memory_chain, threads=2)
+    evaluation.gradient(level_lines(memory_chain, 3.0, 3.2), MEMORY_AIM)
+    evaluation.density(level_lines(memory_chain, 2.0, 4.0))
+    assert 1 <= len(evaluation.free) <= 2
+    for memory in evaluation.free:
+        assert not memory.heading.any()
+        assert not memory.here.any()
+
+
+def test_an_evaluation_after_others_has_the_bits_of_a_first_one(memory_chain: SampledChain) -> None:
+    lines, used = level_lines(memory_chain, 3.0, 3.2), SurfaceEvaluation(memory_chain)
+    for other in ((1.0, 1.5), (4.0, 6.0)):
+        used.gradient(level_lines(memory_chain, *other), MEMORY_AIM)
+    again, first = used.gradient(lines, MEMORY_AIM), SurfaceEvaluation(memory_chain).gradient(lines, MEMORY_AIM)
+    assert again.cost_m2_s2 == first.cost_m2_s2
+    assert np.array_equal(again.slopes, first.slopes)
+    assert np.array_equal(again.bends, first.bends)
+    assert np.array_equal(used.density(lines).probability, SurfaceEvaluation(memory_chain).density(lines).probability)
+
+
+def test_leaving_out_more_costs_less_than_a_polish_can_tell(memory_chain: SampledChain) -> None:
+    lines = level_lines(memory_chain, 3.0, 3.2)
+    exact, coarse = (
+        SurfaceEvaluation(memory_chain, negligible_mass=m).gradient(lines, MEMORY_AIM) for m in (1e-12, NEGLIGIBLE_MASS)
+    )
+    assert coarse.cost_m2_s2 == pytest.approx(exact.cost_m2_s2, rel=1e-4)
+    assert coarse.cost_m2_s2 != exact.cost_m2_s2

@@ -1,4 +1,8 @@
-"""What surfaces promise: against simulated passes, against the stage-locked solver, against their own differences."""
+"""Surfaces: what they promise, and surfaces for a told friction.
+
+What surfaces promise: against simulated passes, against the stage-locked solver, against their own differences.
+Surfaces for a regulator that is told the friction: each is best at its own, and between them they are joined.
+"""
 
 from __future__ import annotations
 
@@ -19,22 +23,22 @@ from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_ALONE, CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.any_time.sampled_chain import SampledChain, check_sampled_chain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
-from synth.solver.any_time.surface_polish import polish_surfaces
+from synth.solver.any_time.surface_polish import least_gap, polish_surfaces
+from synth.solver.any_time.told_surfaces import ToldSurfaces, told_surfaces
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.descent import Descent
+from synth.solver.finer_speed import known_factors
 from synth.solver.policy_density import exit_density
-from tests.synth.any_time.conftest import short_plant
-from tests.synth.any_time.locked_surfaces import at_rest_only
-from tests.synth.any_time.tabled import tabled
+from synth.solver.polynomial_lines import MINIMUM_GAP_M_S
+from synth.solver.told_lines import SQUARED_ERROR_ALONE
+from tests.synth.any_time.conftest import at_rest_only, short_plant, tabled
 
 Polished = Descent[PolynomialSurfaces]
 TARGET_M_S = 3.0
 AIM = Aim(TARGET_M_S, Criterion())
 PRICED = Aim(TARGET_M_S, Criterion(time_price_m2_s3=0.01))
 KNOWN = Resolution(path_step_m=0.15, speed_step_m_s=0.01, friction_nodes=1, resistance_nodes=1)
-GRID_ERROR = 0.015
-"""Of a cost on this grid; halving its steps changes it by less."""
 
 
 def one_stage_a_command(chain: Chain) -> Chain:
@@ -114,23 +118,6 @@ def test_a_prediction_is_what_passes_find(plant: Plant, ahead_m: float) -> None:
     assert time_s == pytest.approx(float(np.average(transit, weights=sample.weight)), rel=2e-3)
 
 
-@pytest.mark.long
-def test_stage_locked_lines_cost_what_the_locked_solver_says(plant: Plant) -> None:
-    """Two discretisations of one process: transients as one step, or sample by sample with the pressure as a state.
-
-    Between pressures of the grid the end of a transient is smeared over two samples. For lines that wait for it this
-    needs a finer grid than surfaces do: 2.4 % at 30 kPa.
-    """
-    resolution = replace(KNOWN, transient_substeps=4)
-    transitions = one_stage_a_command(persistent_chain(plant, resolution))
-    lines = solve(transitions, AIM).lines
-    density = exit_density(transitions, lines)
-    theirs = density.rms_m_s(TARGET_M_S) ** 2 + AIM.criterion.switching_tolerance_m2_s2 * density.switchings
-    here = sampled_chain(plant, resolution, pressure_step_kpa=15.0)
-    locked = at_rest_only(lines, here.modes)
-    assert SurfaceEvaluation(here).gradient(locked, AIM).cost_m2_s2 == pytest.approx(theirs, rel=GRID_ERROR)
-
-
 def test_without_transients_locked_lines_cost_what_the_locked_solver_says(plant: Plant) -> None:
     """Every change of stage ends within its period: nothing can be commanded on its way."""
     valves = Pneumatics(700.0, 0.0, 0.002, 0.004, 0.002, 0.006, 0.006, 15.0)
@@ -208,3 +195,39 @@ def test_halving_all_steps_changes_the_prediction_little(plant: Plant, polish: P
         rms.append(SurfaceEvaluation(each, 2).density(at(polish.best, each)).rms_m_s(TARGET_M_S))
     assert rms[0] == pytest.approx(rms[1], rel=0.02)
     assert rms[1] == pytest.approx(rms[2], rel=0.01)
+
+
+@pytest.fixture(scope="module")
+def design(plant: Plant) -> SampledChain:
+    return sampled_chain(plant, design_resolution(plant, TARGET_M_S))
+
+
+@pytest.fixture(scope="module")
+def told(plant: Plant, design: SampledChain) -> ToldSurfaces:
+    """From surfaces that are polished for all frictions."""
+    common = polish_surfaces(falling(plant), SurfaceEvaluation(design, 2), AIM).best
+    found = told_surfaces(design, TARGET_M_S, common)
+    return ToldSurfaces(found.factor, found.surfaces)
+
+
+def cost(design: SampledChain, told: ToldSurfaces, at: float, factor: float) -> float:
+    """Of the surfaces for friction `at`, where the friction is `factor`."""
+    known = replace(design, scenarios=known_factors(design.plant, np.array([factor]), 1))
+    lines = told.at(at).at(design.grid.path_m[:-1], design.modes)
+    return SurfaceEvaluation(known).gradient(lines, Aim(TARGET_M_S, SQUARED_ERROR_ALONE)).cost_m2_s2
+
+
+def test_at_each_friction_its_own_surfaces_are_best(design: SampledChain, told: ToldSurfaces) -> None:
+    for factor, other in ((0.85, 1.15), (1.15, 0.85), (1.0, 1.3)):
+        assert cost(design, told, factor, factor) < cost(design, told, other, factor)
+
+
+def test_between_two_frictions_surfaces_are_joined_and_keep_their_distance(told: ToldSurfaces) -> None:
+    low, high = told.factor[3:5]
+    middle = told.at(float(0.5 * (low + high)))
+    mean = 0.5 * (told.surfaces[3].coefficients + told.surfaces[4].coefficients)
+    assert middle.coefficients == pytest.approx(mean)
+    assert (told.at(0.0).coefficients == told.surfaces[0].coefficients).all()
+    assert (told.at(9.0).coefficients == told.surfaces[-1].coefficients).all()
+    for factor in np.linspace(0.3, 1.7, 15):
+        assert least_gap(told.at(float(factor))).min() >= MINIMUM_GAP_M_S - 1e-9

@@ -1,23 +1,30 @@
-"""Tables that brake cuts of the pilot plant often, and the plants of their classes."""
+"""What the tests of the page share.
+
+Tables that brake cuts of the pilot plant often, and the plants of their classes.
+The scripts of the page, run without it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 from plant_models import Approach, Plant, TrackProfile
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.estimation.estimator_design import estimator_of
 from synth.retarder.explore.beside import Beside, beside
-from synth.retarder.explore.explore_page import PlayedTable
+from synth.retarder.explore.explore_page import PlayedTable, part
 from synth.retarder.sensors.passage_table import plausible_motion
 from synth.retarder.served_class import PassageClass, ServedClass, sensors_of
 from tests.controller_code.sample_book import FOUR_AXLES, table_of, with_slopes
+from tests.in_javascript import told
 from tests.synth.conftest import pilot_plant
 from tests.tuning_tables.passages.made_tables import table_of as passages_of
 from tuning_tables import Approach as TableApproach
 from tuning_tables import ControllerTable, Decisions, ValidRange
+from tuning_tables.controller_code.js_rules import JsRules
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
 from tuning_tables.table_kinds import StageTable
@@ -105,3 +112,8 @@ def played_passages() -> PlayedTable:
     table = replace(heard_table(), id="heard")
     served = PassageClass("class of heard", sensed_plant(table), sensors_of(table.sensors))
     return PlayedTable(table, served, LIMITS_T, False, passes_beside(table, served))
+
+
+def told_by(rules: JsRules | None, scripts: tuple[str, ...], asking: str, given: Any) -> Any:
+    """What `asking`, run behind the rules and these scripts of the page, tells."""
+    return told("\n".join([rules.text if rules else "", *(part(name) for name in scripts), asking]), given)

@@ -14,8 +14,7 @@ from synth.retarder.explore.plant_data import entry_quantiles_m_s, plant_data
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import random_passes
 from tests.in_javascript import needs_javascript
-from tests.synth.explore.braked import LIMITS_T, STAGES, estimating_table, plant_of
-from tests.synth.explore.scripts_of_page import told_by
+from tests.synth.explore.braked import LIMITS_T, STAGES, estimating_table, plant_of, told_by
 from tuning_tables.controller_code.js_rules import js_rules
 
 CUTS = 4000

@@ -15,8 +15,7 @@ from synth.retarder.explore.explore_page import explore_page
 from synth.retarder.explore.plant_data import plant_data
 from synth.retarder.served_class import ServedClass
 from tests.in_javascript import CHROMIUM, needs_javascript
-from tests.synth.explore.braked import LIMITS_T, TABLES, played, played_passages
-from tests.synth.explore.scripts_of_page import told_by
+from tests.synth.explore.braked import LIMITS_T, TABLES, played, played_passages, told_by
 from tuning_tables.controller_code.js_rules import js_rules
 
 EVIL = "</script><script>throw 1</script><img src=x onerror=alert(1)> & \u2028"

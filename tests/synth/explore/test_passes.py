@@ -31,8 +31,8 @@ from tests.synth.explore.braked import (
     measured_table,
     plant_of,
     sensed_plant,
+    told_by,
 )
-from tests.synth.explore.scripts_of_page import told_by
 from tuning_tables import Decisions
 from tuning_tables.controller_code.js_rules import JsRules, js_passage_rules, js_rules
 from tuning_tables.passages.sensor_layout import DecidesOn

@@ -14,8 +14,7 @@ from synth.simulation.logged_passes import drive_pressures_kpa
 from synth.simulation.passage_loop import close_passage_loop
 from synth.simulation.random_passes import random_passes
 from tests.in_javascript import needs_javascript
-from tests.synth.explore.braked import LIMITS_T, TABLES, estimating_table, heard_table, plant_of, sensed_plant
-from tests.synth.explore.scripts_of_page import told_by
+from tests.synth.explore.braked import LIMITS_T, TABLES, estimating_table, heard_table, plant_of, sensed_plant, told_by
 from tests.synth.explore.test_passes import cuts_of
 from tuning_tables import ControllerTable, decide_for
 from tuning_tables.controller_code.js_rules import js_passage_rules, js_rules

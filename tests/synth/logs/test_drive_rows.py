@@ -1,13 +1,30 @@
-"""The pressure along logged passes against the pressure histories of the drive."""
+"""Rows of a log: pressure, released drives, and a path in parts.
+
+The pressure along logged passes against the pressure histories of the drive.
+A drive that is open to the air when released: recognised from its log, and then no number is off by it.
+A path that treadles set right within the passes: the numbers stay what they are without.
+"""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from plant_models.library.catalogue import load_position
+from plant_models.pressure_gauge import PressureGauge
 from plant_models.valve_drive import ValveDrive
+from scripts.studies.identification.truths import GAUGE, TRUTHS, Truth, Yard
 from synth.kernels.measured.drive_rows import Commands, drive_rows
+from synth.logs import unknowns as asked
+from synth.logs.estimate import posterior
+from synth.logs.fitting_passes import FittingPasses, fitting_passes
+from synth.logs.identify_shown import log_sentences
+from synth.logs.pass_rows import pass_rows
+from synth.logs.released_drive import released_drive_vents
+from synth.logs.unknowns import unknowns_of
+from tuning_tables.pass_log.pass_log import PassLog
 
 POSITION = load_position("knp-5-bunch").position
 TOUCH = POSITION.force.touch_pressure_kpa
@@ -71,3 +88,135 @@ def test_a_released_drive_that_is_open_to_the_air_goes_on_to_zero(above: int, ed
     np.testing.assert_allclose(kpa[66:], again.pressure_kpa(edges), atol=1e-9)
     total = again.overpressure_integral(edges, TOUCH)
     np.testing.assert_allclose(PERIOD_S * over[66:-1].mean(axis=1), np.diff(total), atol=1e-9)
+
+
+AIR_KPA = 15.0
+OPEN = Truth(
+    "open to the air",
+    f"""
+[retarder]
+stage_pressures_kpa = [0.1, {150 + AIR_KPA}, {300 + AIR_KPA}, {450 + AIR_KPA}, {600 + AIR_KPA}]
+[retarder.pneumatics]
+supply_pressure_kpa = {700 + AIR_KPA}
+exhaust_pressure_kpa = {AIR_KPA}
+[retarder.force]
+touch_pressure_kpa = {50 + AIR_KPA}
+""",
+    GAUGE,
+)
+"""The assumed plant on a scale on which the air has the pressure of its dead band: only there our drive exhausts to the
+air, because the edge of the dead band of stage 0 lies at it."""
+
+
+@pytest.fixture(scope="module")
+def vented(yard: Yard) -> FittingPasses:
+    """80 passes, on the scale of the assumed plant again."""
+    log = yard.passes(OPEN, 80, 7).log
+    return fitting_passes(replace(log, pressure_kpa=log.pressure_kpa - AIR_KPA), yard.config.plants(), "test")
+
+
+def vents(log: PassLog, passes: FittingPasses) -> bool:
+    position = passes.plant.position
+    return released_drive_vents(log, position.stage_pressures_kpa, position.pneumatics)
+
+
+def test_both_kinds_of_drive_are_recognised(passes: FittingPasses, vented: FittingPasses) -> None:
+    assert vented.released_vents
+    assert not passes.released_vents
+    for each in (passes, vented):
+        for first in range(0, 80, 20):
+            assert vents(each.log.taken(np.arange(first, first + 20)), each) == each.released_vents
+
+
+def test_without_readings_nothing_is_said(vented: FittingPasses) -> None:
+    blind = replace(vented.log, pressure_kpa=np.full(len(vented.log.time_s), np.nan))
+    assert not vents(blind, vented)
+    assert not vents(vented.log.taken([0]), vented)
+
+
+def one_step(passes: FittingPasses, yard: Yard) -> dict[str, float]:
+    """From the true numbers to the most likely ones, by one step, in standard errors."""
+    unknowns = unknowns_of(passes, yard.config.parameters)
+    keys = tuple(unknown.key for unknown in unknowns)
+    truth = TRUTHS[0].values(keys)
+    u = np.array([unknown.standing(truth[unknown.key]) for unknown in unknowns])
+    there = posterior(passes, unknowns, 2).linearised(u)
+    covariance = np.linalg.inv(np.eye(len(u)) + there.information)
+    step = covariance @ (there.scores.sum(axis=0) - u) / np.sqrt(np.diag(covariance))
+    return dict(zip(keys, step.tolist(), strict=True))
+
+
+def test_dead_band_and_noise_are_those_of_the_drive(vented: FittingPasses, yard: Yard) -> None:
+    right = one_step(vented, yard)
+    wrong = one_step(replace(vented, released_vents=False), yard)
+    for key in (asked.DEAD_BAND, asked.GAUGE_NOISE):
+        assert abs(right[key]) < 4.0
+        assert abs(wrong[key]) > 10.0
+
+
+@pytest.mark.parametrize("noise_kpa", [0.0, 10.0])
+def test_noise_of_the_gauge_does_not_mislead(noise_kpa: float, passes: FittingPasses, vented: FittingPasses) -> None:
+    z = np.random.default_rng(3).standard_normal(len(vented.log.time_s))
+    for each in (passes, vented):
+        z = np.resize(z, len(each.log.time_s))
+        shown = PressureGauge(noise_kpa, 5.0).reading_kpa(each.log.pressure_kpa, z)
+        assert vents(replace(each.log, pressure_kpa=shown), each) == each.released_vents
+
+
+TREADLE_M = 12.0
+
+
+def set_right(log: PassLog, off_m: float) -> PassLog:
+    """Its path is `off_m` too far until the treadle, and right behind it."""
+    return replace(log, path_m=np.where(log.path_m < TREADLE_M, log.path_m + off_m, log.path_m))
+
+
+def log_start(log: PassLog) -> float:
+    """Ahead of all passes."""
+    return float(log.path_m.min())
+
+
+@pytest.mark.parametrize("off_m", [0.2, -0.2])
+def test_steps_are_those_of_the_cut(passes: FittingPasses, off_m: float) -> None:
+    true, parted = pass_rows(passes), pass_rows(replace(passes, log=set_right(passes.log, off_m)))
+    assert np.max(np.abs(parted.step_m - true.step_m)) < 0.03
+    met = set_right(passes.log, off_m).path_m != passes.log.path_m
+    alone = np.add.reduceat(met, passes.log.first_row[:-1]) == np.diff(passes.log.first_row)
+    assert (np.isfinite(parted.show_m_s) == alone).all()
+
+
+def test_a_path_that_counts_too_much_says_nothing_wrong_of_the_sensor(passes: FittingPasses) -> None:
+    """2 % too much from each treadle to the next; between the first and the last the path is known."""
+    treadles_m = (0.0, 8.0, 16.0, 24.0)
+    log, last = passes.log, np.full(len(passes.log.path_m), log_start(passes.log))
+    for at in treadles_m:
+        last = np.where(log.path_m >= at, at, last)
+    counted = last + 1.02 * (log.path_m - last)
+    true, parted = pass_rows(passes), pass_rows(replace(passes, log=replace(log, path_m=counted)))
+    both = np.isfinite(parted.show_m_s)
+    assert both.mean() > 0.9
+    assert abs(np.mean((parted.show_m_s - true.show_m_s)[both])) < 0.005
+    known = (log.path_m > 8.5) & (log.path_m < 15.0)
+    assert np.max(np.abs(parted.step_m - true.step_m)[known]) < 0.002
+
+
+@pytest.mark.parametrize("off_m", [0.2, -0.2])
+def test_the_numbers_are_those_without(passes: FittingPasses, yard: Yard, off_m: float) -> None:
+    """By one step from the true numbers each: it moves by less than its standard error."""
+    unknowns = unknowns_of(passes, yard.config.parameters)
+    truth = TRUTHS[0].values(tuple(unknown.key for unknown in unknowns))
+    u = np.array([unknown.standing(truth[unknown.key]) for unknown in unknowns])
+    steps = []
+    for each in (passes, replace(passes, log=set_right(passes.log, off_m))):
+        there = posterior(each, unknowns, 2).linearised(u)
+        covariance = np.linalg.inv(np.eye(len(u)) + there.information)
+        steps.append(covariance @ (there.scores.sum(axis=0) - u) / np.sqrt(np.diag(covariance)))
+    assert np.max(np.abs(steps[1] - steps[0])) < 1.0
+
+
+def test_it_is_told_with_the_number(passes: FittingPasses) -> None:
+    values = TRUTHS[0].values(())
+    assert list(log_sentences(passes, values)) == []
+    (told,) = log_sentences(replace(passes, log=set_right(passes.log, 0.2)), values)
+    met = sum(bool((passes.log.path_m[passes.log.rows(i)] > TREADLE_M).any()) for i in range(len(passes)))
+    assert told.startswith(f"The path was set anew {met} times, in {met} of 80 passes, by 0.2")

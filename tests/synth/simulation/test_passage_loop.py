@@ -1,4 +1,4 @@
-"""The loop of passages: closed forms, readings, the lock, common random numbers, any rule and any sensors."""
+"""The loop of passages: readings, common random numbers, any rule and any sensors."""
 
 from __future__ import annotations
 
@@ -11,14 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from plant_models import Friction, Plant, Pneumatics, PointSensors, RollingResistance, every_axle, first_axle
+from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import deciding_passages
-from plant_models.stage_regulator import stage_locked_actuator
 from synth.simulation.closed_loop import close_loop
-from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passage_controller import of_speeds
 from synth.simulation.passage_loop import close_passage_loop, simulate_passages
-from synth.simulation.passage_sample import DECIDED, NOT_HEARD, TAKEN, UNFINISHED, PassageSample, shares_of_outcomes
+from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from tests.effort import sized
@@ -41,87 +39,6 @@ def passes() -> RandomPasses:
 @pytest.fixture(scope="module")
 def plant() -> Plant:
     return with_approach(pilot_plant(52.0), 5.0)
-
-
-# ------------------------------------------------------------------------------------------ closed forms
-
-
-def test_a_coasting_cut_passes_the_coils_when_energy_says(plant: Plant, passes: RandomPasses) -> None:
-    sensors = exact(SENSORS)
-    loop = close_passage_loop(plant, sensors, plant.top_stage + 1)
-    for i in (0, 5, 9):
-        draws = loop.draws(passes.part(i, i + 1))
-        trace = loop.follow(holding_rule(plant, sensors), draws)
-        v, a = draws.entry_m_s[0], loop.radar.path.drag_m_s2_per_n_kn * (8.0 - draws.resistance_n_kn[0])
-        places = np.array(sensors.path_m)[:, None] + np.array([-0.1, 0.1]) + 5.0
-        times = (np.sqrt(v * v + 2.0 * a * places) - v) / a
-        np.testing.assert_allclose(trace.readings.time_s, times[:, 1], rtol=1e-10)
-        np.testing.assert_allclose(trace.readings.middle_s, times.mean(axis=1), rtol=1e-10, atol=1e-12)
-        np.testing.assert_allclose(trace.readings.reading_m_s, 0.2 / np.diff(times)[:, 0], rtol=1e-10)
-        assert trace.exit_speed_m_s == pytest.approx(math.sqrt(v * v + 2.0 * a * (plant.exit_m + 5.0)), rel=1e-12)
-        assert list(trace.readings.passage) == list(trace.readings.believed) == list(loop.deciding.number)
-
-
-def test_a_reading_is_off_the_speed_at_the_decision_by_half_a_base(passes: RandomPasses) -> None:
-    """Held at the top stage the cut is braked by a; the decision comes with v lower by a·(base/2)/v."""
-    plant = replace(
-        with_approach(pilot_plant(52.0), 0.0, initial_stage=4),
-        friction=Friction(0.0, 0.0, 0.0, 2.0),
-        resistance=RollingResistance(1.4, 0.0),
-    )
-    sensors = exact(PointSensors((3.0, 5.5), base_m=0.3))
-    loop = close_passage_loop(plant, sensors, 5)
-    path = loop.radar.path
-    for trace in followed(loop, holding_rule(plant, sensors), passes.part(0, 5)):
-        for at, time in enumerate(trace.readings.time_s):
-            event = int(np.flatnonzero(trace.time_s == time)[0])
-            v, kpa = trace.speed_m_s[event], trace.overpressure_kpa[event]
-            cell = int(np.searchsorted(path.edges_m, sensors.path_m[at])) - 1
-            drag = 1.4 * path.drag_m_s2_per_n_kn
-            a = path.gravity_m_s2[cell] - drag - path.brake_m_s2_per_kpa[cell] * kpa
-            assert a < -0.5
-            bias = trace.readings.reading_m_s[at] - v
-            assert bias == pytest.approx(-a * 0.15 / trace.readings.reading_m_s[at], rel=0.01)
-
-
-def test_without_transients_work_follows_from_stages_alone(passes: RandomPasses) -> None:
-    """Valves that act at once: energy balance from decision to decision, with the rule in plain words."""
-    still = replace(
-        with_approach(pilot_plant(52.0), 5.0),
-        friction=Friction(0.15, 0.0, 0.0, 2.0),
-        resistance=RollingResistance(1.4, 0.0),
-    )
-    fast = Pneumatics(700.0, 0.0, 0.0, 0.0, 0.0, 1e-3, 1e-3, 15.0)
-    plant = replace(still, position=replace(still.position, pneumatics=fast))
-    sensors = exact(replace(SENSORS, computing_delay_s=0.0, scan_period_s=0.001))
-    loop, rule = close_passage_loop(plant, sensors, 5), braking_rule(plant, sensors, 3.0)
-    path, band = loop.radar.path, 15.0
-    gained = np.append(0.0, np.cumsum((path.gravity_m_s2 - 1.4 * path.drag_m_s2_per_n_kn) * np.diff(path.edges_m)))
-    braked = np.append(0.0, np.cumsum(path.brake_m_s2_per_kpa * np.diff(path.edges_m)))
-    stage_kpa = np.array(plant.position.stage_pressures_kpa)
-    draws = loop.draws(passes.part(0, 40))
-    exits, commands = loop.run(rule, draws).exit_speed_m_s, 0
-    for i in range(40):
-        e, s, stage, kpa = 0.5 * draws.entry_m_s[i] ** 2, -5.0, 0, 0.0
-
-        def energy(to_m: float, e: float, s: float, kpa: float, factor: float) -> float:
-            free = np.interp([s, to_m], path.edges_m, gained)
-            work = np.interp([s, to_m], path.edges_m, braked)
-            return float(e + np.diff(free)[0] - factor * kpa * np.diff(work)[0])
-
-        for number, middle in enumerate(sensors.path_m):
-            v = math.sqrt(2.0 * energy(middle, e, s, kpa, draws.cut_factor[i]))
-            e, s = energy(middle + 0.1, e, s, kpa, draws.cut_factor[i]), middle + 0.1
-            wanted = int(np.count_nonzero(v > rule.rule.switching_m_s[number, stage]))
-            if wanted != stage:
-                rests = stage_kpa[wanted] + (band if wanted < stage else -band)
-                kpa, stage, commands = max(0.0, rests - 50.0), wanted, commands + 1
-        v_exit = math.sqrt(2.0 * energy(plant.exit_m, e, s, kpa, draws.cut_factor[i]))
-        assert exits[i] == pytest.approx(v_exit, abs=0.01)  # some milliseconds of 1 m/s² are left
-    assert commands > 60
-
-
-# --------------------------------------------------------------------------------------- law of readings
 
 
 def in_stds(sensors: PointSensors, speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -165,43 +82,12 @@ def test_a_reading_that_is_missing_commands_nothing(plant: Plant, passes: Random
     )
 
 
-# -------------------------------------------------------------------------------------------------- lock
-
-
-def test_a_passage_counts_only_where_the_transient_has_ended(plant: Plant, passes: RandomPasses) -> None:
-    """Sensors close together: whether each pair may decide follows from the commands before, by the clock of scans."""
-    sensors = PointSensors((-5.0, -3.5, 0.5, 2.0, 3.0, 7.0, 8.5, 13.0, 16.0, 16.5, 24.0), axles=every_axle)
-    loop, rule = close_passage_loop(plant, sensors, 5), braking_rule(plant, sensors, 3.0)
-    actuator = stage_locked_actuator(plant.position, sensors, 4, 1)
-    found = {DECIDED: 0, UNFINISHED: 0}
-    for trace in followed(loop, rule, passes.part(0, 30)):
-        heard, mode, stage, rests = trace.readings, 0, 0, -math.inf
-        assert np.all(np.diff(heard.time_s) > 0)
-        for at, middle in enumerate(heard.middle_s):
-            assert heard.outcome[at] == (DECIDED if middle >= rests else UNFINISHED)
-            found[heard.outcome[at]] += 1
-            if heard.stage[at] != stage:
-                assert heard.outcome[at] == DECIDED
-                chain = actuator.command[mode, heard.stage[at]]
-                rests = heard.time_s[at] + actuator.chain_samples[chain] * sensors.scan_period_s
-                mode, stage = int(actuator.chain_mode[chain]), int(heard.stage[at])
-    assert min(found.values()) > 100
-    sample = loop.run(rule, loop.draws(passes))
-    shares = shares_of_outcomes(sample, (UNFINISHED,), TAKEN)
-    counted = [np.mean(each[each > 0] == UNFINISHED) for each in sample.outcome.T]
-    assert [share for share, _ in shares] == pytest.approx(counted)
-    assert all(low <= share <= high for share, (low, high) in shares)
-
-
 def test_before_the_entrance_no_higher_stage_is_entered(passes: RandomPasses) -> None:
     plant = with_approach(pilot_plant(52.0), 5.0, entrance_stage=2, initial_stage=1)
     always = of_speeds(plant, SENSORS, np.zeros((6, 5, 4)))
     for trace in followed(close_passage_loop(plant, SENSORS, 5), always, passes.part(0, 3)):
         assert trace.stage[0] == 1
         assert list(trace.readings.stage[:2]) == [2, 4]
-
-
-# --------------------------------------------------------------------------------- common random numbers
 
 
 def test_cuts_are_those_of_the_radar(plant: Plant, passes: RandomPasses) -> None:
@@ -238,16 +124,6 @@ def test_a_trace_is_the_simulated_pass(plant: Plant, passes: RandomPasses) -> No
         assert trace.path_m[-1] == plant.exit_m
         assert np.count_nonzero(~np.isnan(trace.measured_m_s)) == len(trace.readings.time_s)
     assert sample.switchings.mean() > 1.5
-
-
-def test_known_friction_and_statistics_go_on_as_with_the_radar(plant: Plant, passes: RandomPasses) -> None:
-    loop, rule = close_passage_loop(plant, SENSORS, 5), braking_rule(plant, SENSORS, 3.0)
-    assert np.all(loop.draws(passes, 0.85).cut_factor == 0.85)
-    known = exit_statistics(loop.run(rule, loop.draws(passes, 0.85)), 3.0)
-    assert known.std_m_s < exit_statistics(loop.run(rule, loop.draws(passes)), 3.0).std_m_s
-
-
-# ------------------------------------------------------------------------------------ any rule, any sensors
 
 
 @settings(max_examples=sized(15, 60))

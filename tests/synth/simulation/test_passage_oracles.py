@@ -1,4 +1,4 @@
-"""The loop of passages against an adaptive integrator with its own rule, and against a radar where sensors abound."""
+"""The loop of passages against an adaptive integrator with its own rule."""
 
 from __future__ import annotations
 
@@ -10,16 +10,12 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from plant_models import Cut, DopplerSensor, EntrySpeed, Plant, PointSensors, PressureHistory, every_axle, first_axle
+from plant_models import PressureHistory, every_axle, first_axle
 from plant_models.point_sensors import Axles, deciding_passages
 from synth.kernels.loop.passes import Draws
-from synth.simulation.closed_loop import LineController, close_loop
-from synth.simulation.exit_statistics import exit_statistics
-from synth.simulation.passage_controller import PassageController, of_speeds
+from synth.simulation.passage_controller import PassageController
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.random_passes import random_passes
-from synth.simulation.stratified_passes import stratified_passes
-from synth.solver.switching_lines import SwitchingLines
 from tests.synth.conftest import pilot_plant
 from tests.synth.simulation.passage_cases import SENSORS, braking_rule, with_approach
 
@@ -168,39 +164,3 @@ def test_a_pass_agrees_with_an_adaptive_integrator(axles: Axles, substeps: int |
         unfinished += int(np.count_nonzero(told[:, 3] == 0))
     assert commands >= 6
     assert (unfinished > 0) == (axles is every_axle)
-
-
-def one_after_the_other() -> Plant:
-    """A short retarder and a long cut, whose axles come into it one after the other: passages at equal distances."""
-    plant = pilot_plant(22.0)
-    cut = Cut("С", 40.0, (0.0, 9.6, 19.2, 28.8, 38.4), 4)
-    position = replace(plant.position, zones_m=((0.0, 9.3),))
-    return replace(plant, position=position, cut=cut, entry=EntrySpeed(3.8, 4.4))
-
-
-def test_many_sensors_are_a_radar_with_the_same_noise() -> None:
-    """A decision every 0.3 m is a radar sampled at 0.1 s where cuts roll with 3 m/s; σ_t/base·v² is its noise there."""
-    plant = one_after_the_other()
-    sensors = PointSensors(
-        tuple(np.round(0.3 * np.arange(32), 9).tolist()), base_m=0.05, base_tolerance=0.0, timer_noise_s=2e-4,
-        timer_resolution_s=0.0, computing_delay_s=0.02, axles=every_axle,
-    )  # fmt: skip
-    radar = replace(plant, sensor=DopplerSensor(9.0 * 2e-4 / 0.05, 0.0, 0.1, 0.02))
-    top, passages = plant.top_stage, len(deciding_passages(sensors, plant.cut, plant.exit_m))
-    line = np.where(np.arange(top) < np.arange(top + 1)[:, None], 3.0, 3.2)
-    rule = of_speeds(plant, sensors, np.repeat(line[None], passages, axis=0))
-    lines = SwitchingLines(
-        np.array([0.0, plant.exit_m]),
-        np.repeat([[-np.inf]] + [[3.0]] * top, 2, axis=1),
-        np.repeat([[3.2]] * top + [[np.inf]], 2, axis=1),
-    )
-    drawn = stratified_passes(6, 0, 4000)
-    points, waves = close_passage_loop(plant, sensors, top + 1), close_loop(radar, top + 1)
-    by_points = points.run(rule, points.draws(drawn))
-    by_waves = waves.run(LineController(lines), waves.draws(drawn))
-    one, other = exit_statistics(by_points, 3.0), exit_statistics(by_waves, 3.0)
-    assert passages == pytest.approx(plant.exit_m / 0.3, abs=2)
-    assert one.switchings == pytest.approx(other.switchings, rel=0.03)
-    assert one.rms_m_s == pytest.approx(other.rms_m_s, rel=0.03)
-    assert one.bias_m_s == pytest.approx(other.bias_m_s, abs=0.01)
-    assert one.p95_m_s == pytest.approx(other.p95_m_s, rel=0.03)

@@ -1,8 +1,13 @@
-"""The nominal loop with point sensors in python-control, against the simulator and against closed forms."""
+"""Passes beside the loop: in python-control, commanded from outside, and by a table.
+
+The nominal loop with point sensors in python-control, against the simulator.
+A pass that is commanded from outside, sample by sample, against the kernels of the closed loop.
+A table for point sensors in the loop: hearing every axle it commands what it commands when told its passages.
+"""
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -10,21 +15,33 @@ import pytest
 
 from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
-from synth.simulation.control_system import nominal_loop
-from synth.simulation.impulse_train import resting_train
+from synth.kernels.loop.passage_pulses import Pair
+from synth.kernels.loop.passage_regulator import begin_cut, stage_after_pair
+from synth.problem.aim import Aim
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.retarder.bench.run import TableShadow
+from synth.retarder.sensors.passage_table import passage_table
+from synth.retarder.sensors.tuned_passages import passage_chains, tuned_passages
+from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_plant, one_pass
 from synth.simulation.nominal_response import SAME_PASSAGE_S, commands_of, response_difference
+from synth.simulation.passage_controller import of_table
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop, filled_trace
-from synth.simulation.passage_response import (
-    passage_regulator_start,
-    passage_regulator_system,
-    passage_response,
-    rolled,
-)
-from synth.simulation.passage_sample import PassageTrace
-from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule, exact, holding_rule, with_approach
-
-control = pytest.importorskip("control")
+from synth.simulation.passage_response import passage_regulator_start, passage_regulator_system, passage_response
+from synth.simulation.passage_sample import UNFINISHED, PassageTrace
+from synth.simulation.random_passes import random_passes
+from synth.simulation.sampled_pass import PassEnd, SampledPass, sampled_pass
+from synth.simulation.stratified_passes import stratified_passes
+from synth.solver.chain.sensor_passages import with_point_sensors
+from tests.controller_code.fmi.test_position_unit import CASES, Case
+from tests.effort import sized
+from tests.synth.conftest import pilot_plant
+from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule, with_approach
+from tuning_tables import ControllerTable, Generator
+from tuning_tables.passages.held_passages import held_by
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.programs import at_pulse, tracker
 
 TOLERANCE_M_S = 0.001
 """As for a radar: the simulator plays transients in parts of constant pressure."""
@@ -80,33 +97,6 @@ def quantised(axles: Axles) -> PointSensors:
     return replace(SENSORS, timer_noise_s=0.0, base_tolerance=0.0, axles=axles)
 
 
-def test_without_commands_the_exit_is_that_of_energy(plant: Plant) -> None:
-    """v² = v0² + 2·g'·(i − w)·(way), the brake released; the path of each coil is met on the way."""
-    sensors = exact(SENSORS)
-    loop = close_passage_loop(plant, sensors, plant.top_stage + 1)
-    found = passage_response(loop, holding_rule(plant, sensors), 5.5)
-    gravity = 9.81 * 52.0 / (52.0 + 0.42 * 4) * 1e-3 * (8.0 - plant.resistance.mean_n_per_kn)
-    assert found.exit_speed_m_s == pytest.approx(math.sqrt(5.5**2 + 2.0 * gravity * plant.exit_m), abs=1e-7)
-    assert commands_of(found) == ()
-    for place in sensors.path_m[1:]:
-        for coil in (place - 0.1, place + 0.1):
-            assert np.abs(found.path_m - coil).min() < 1e-9
-
-
-def test_the_impulse_element_finds_the_time_of_a_place(plant: Plant) -> None:
-    """Against s = v·t + a·t²/2 with the brake released, wherever the place lies between two points."""
-    motion = nominal_loop(plant)
-    start = np.array([0.0, -4.0, 5.0, 15.0])
-    a = float(motion.dynamics(0.0, start[1:], [0.0])[1])
-    for to_m in (-3.99999, -3.9, -1.2345, 3.3):
-        points = rolled(motion, start, to_m, resting_train(0.0))
-        way = to_m + 4.0
-        expected = (math.sqrt(25.0 + 2.0 * a * way) - 5.0) / a
-        assert points[0, -1] == pytest.approx(expected, abs=1e-8)
-        assert points[1, -1] == to_m
-    assert rolled(motion, start, -4.0, resting_train(0.0)).shape == (4, 1)
-
-
 @pytest.mark.long
 def test_a_stall_is_reported(plant: Plant) -> None:
     sensors = quantised(first_axle)
@@ -143,3 +133,88 @@ def test_the_regulator_is_a_discrete_system_of_no_period(plant: Plant) -> None:
     rests[2] = 2.0
     assert list(system.output(0.0, rests, soon)) == [stage]
     assert system.dynamics(0.0, rests, soon)[3] == 1.0
+
+
+PASSES, SEED = sized(12, 300), 3
+TOLERANCE = 1e-10
+"""m/s and s. Both compute the same in double precision, in another order: 4e-12 were measured in 100 passes."""
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=list(CASES))
+def test_under_the_stages_of_a_table_it_ends_as_in_the_simulator(case: Callable[[], Case]) -> None:
+    plant, table = case()
+    loop = close_loop(plant, len(table.stages))
+    draws = loop.draws(random_passes(SEED, 0, PASSES))
+    simulated = loop.run(TableController(table), draws)
+    for i in range(PASSES):
+        end, commands = driven(sampled_pass(loop, draws.part(i, i + 1)), table)
+        assert end.exit_speed_m_s == pytest.approx(simulated.exit_speed_m_s[i], abs=TOLERANCE)
+        assert end.time_s == pytest.approx(simulated.transit_time_s[i], abs=TOLERANCE)
+        assert end.stalled == simulated.stalled[i]
+        assert commands == simulated.switchings[i]
+
+
+def driven(rolling: SampledPass, table: ControllerTable) -> tuple[PassEnd, int]:
+    """The end under `table`, and how many commands it gave."""
+    asked, reading, commands = TableShadow(table), next(rolling), 0
+    while True:
+        stage = asked.stage_at(reading)
+        commands += stage != reading.stage
+        try:
+            reading = rolling.send(stage)
+        except StopIteration as ended:
+            return ended.value, commands
+
+
+COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.1, friction_nodes=3, path_levels=1, resistance_nodes=1)
+
+
+def solved(mass_t: float, axles: Axles, resolution: Resolution = COARSE) -> tuple[PassageTable, PassageLoop]:
+    """A table as it is exported, and the loop of its plant and sensors."""
+    sensors = PointSensors((-8.0, 10.0, 18.0, 24.0, 29.0, 33.0, 39.0), axles=axles)
+    plant = with_point_sensors(pilot_plant(mass_t), sensors)
+    tuned = tuned_passages(passage_chains(plant, sensors, resolution), Aim(3.0, Criterion()))
+    table = passage_table(tuned, Generator("retarder-synth", "0", "0" * 64), "t", "2026-11-22T00:00:00Z")
+    return table, close_passage_loop(plant, sensors, len(table.pressure_kpa))
+
+
+@pytest.mark.parametrize(("mass_t", "axles"), [(22.0, every_axle), (52.0, first_axle)])
+def test_hearing_every_axle_commands_what_being_told_commands(mass_t: float, axles: Axles) -> None:
+    table, loop = solved(mass_t, axles)
+    assert list(table.heard_path_m[: len(loop.heard.path_m)]) == list(loop.heard.path_m.astype(np.float32))
+    assert list(table.heard_passage[: len(loop.heard.path_m)]) == list(loop.heard.decides)
+    draws = loop.draws(stratified_passes(5, 0, 600))
+    told, tracked = loop.run(of_table(table, False), draws), loop.run(of_table(table, True), draws)
+    assert np.array_equal(tracked.switchings, told.switchings)
+    assert np.array_equal(tracked.outcome, told.outcome)
+    np.testing.assert_allclose(tracked.exit_speed_m_s, told.exit_speed_m_s, rtol=1e-9)
+    assert tracked.switchings.mean() > 0.5
+    passes = random_passes(7, 0, 10)
+    for i in range(10):
+        drawn = loop.draws(passes.part(i, i + 1))
+        one, other = (loop.follow(of_table(table, tracks), drawn).readings for tracks in (False, True))
+        here = np.isin(other.passage, one.passage)
+        assert list(other.passage) == list(other.believed)
+        assert list(one.stage) == list(other.stage[here])
+
+
+def test_the_kernel_runs_the_step_of_a_controller() -> None:
+    """The pairs of a pass, given to the step as Python runs it: the same stages, pair by pair, and the same belief."""
+    table, loop = solved(52.0, first_axle)
+    held, passes = held_by(table), random_passes(7, 0, 4)
+    for i in range(4):
+        heard = loop.follow(of_table(table, True), loop.draws(passes.part(i, i + 1))).readings
+        state, compiled = np.zeros(6, dtype=np.float32), np.ones(6, dtype=np.float32)
+        tracker.begin_cut(state)
+        begin_cut(compiled)
+        before_s, stage = -60.0, table.initial_stage
+        for at, time_s in enumerate(heard.time_s):
+            over_s = table.sensors.base_m / heard.reading_m_s[at]
+            ended = bool(heard.outcome[at] != UNFINISHED)
+            since_s, pair = time_s - before_s, Pair(heard.told_sensor[at], -1, -1, 0.0, over_s, heard.reading_m_s[at])
+            wanted = at_pulse.at_pulse(held, state, pair.sensor, since_s, over_s, stage, ended)
+            again, taken_for = stage_after_pair(held, True, compiled, pair, since_s, stage, ended)
+            assert wanted == again == heard.stage[at]
+            assert int(state[0]) == heard.believed[at] == taken_for
+            assert np.array_equal(state, compiled)
+            before_s, stage = time_s, wanted

@@ -1,4 +1,8 @@
-"""Work and savings of a yard against sums over drawn trains, against counts by hand, and in their limits."""
+"""Work of a hump, waits for it, and what is saved.
+
+Work and savings of a yard against sums over drawn trains, against counts by hand, and in their limits.
+Waits for humping against exact queues and a simulation that knows no formula.
+"""
 
 from __future__ import annotations
 
@@ -6,16 +10,17 @@ import math
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.special import stdtrit
 
 from plant_models.errors import PlantError
-from synth.computer.economics.hump_queue import allen_cunneen_h
+from synth.computer.economics.hump_queue import HumpQueue, allen_cunneen_h, erlang_c, whitt_h
 from synth.computer.economics.hump_rates import RATES, HumpChange, HumpRates, rates_after
 from synth.computer.economics.hump_work import hump_queue, hump_work
 from synth.computer.economics.savings import operating_savings, released_capital, total
 from synth.frame.settings.changed import changed
 from tests.synth.computer.economics.made_cases import CHANGE, HANDLING, PRICES, TODAY, TRAFFIC
-
-NEW = rates_after(TODAY, CHANGE)
 
 
 def hump_rates(*figures: float) -> HumpRates:
@@ -83,12 +88,6 @@ def test_savings_by_hand() -> None:
     assert cargo.amount == pytest.approx(2400 * 0.02 / 24.0 * 0.6 * 50.0 * 600.0)
 
 
-def test_nothing_changed_saves_nothing() -> None:
-    same = hump_work(TODAY, TRAFFIC, HANDLING)
-    assert total(operating_savings(same, same, TRAFFIC, PRICES)) == 0.0
-    assert total(released_capital(same, same, TRAFFIC, PRICES)) == 0.0
-
-
 def test_each_improvement_saves() -> None:
     before = hump_work(TODAY, TRAFFIC, HANDLING)
     for name, step in (
@@ -99,40 +98,6 @@ def test_each_improvement_saves() -> None:
         items = operating_savings(before, after, TRAFFIC, PRICES)
         assert total(items) > 0.0, name
         assert min(item.amount for item in items) >= -1e-9, name
-
-
-def test_a_shorter_wait_counts_most_where_the_hump_is_full() -> None:
-    waits = []
-    for cars in (1200.0, 3000.0, 4800.0):
-        traffic = changed(TRAFFIC, cars_per_day=cars)
-        before, after = (hump_work(rates, traffic, HANDLING) for rates in (TODAY, NEW))
-        waits.append(before.wait_h - after.wait_h)
-    assert waits[0] < waits[1] < waits[2]
-
-
-def test_twenty_thousand_cars_a_day_need_more_leads() -> None:
-    """The largest traffic of [hump-computer-1970s] is more than 736 cars an hour can hump on one lead."""
-    most = changed(TRAFFIC, cars_per_day=20_000.0)
-    with pytest.raises(PlantError, match="overloaded"):
-        hump_work(NEW, most, HANDLING)
-    found = hump_work(NEW, changed(most, leads=4), HANDLING)
-    assert 0.5 < found.load < 1.0
-
-
-def test_released_capital_grows_as_in_the_source() -> None:
-    """[hump-computer-1970s]: 240 thousand roubles at 5000 cars a day, 1000 at 20 000: 48 and 50 roubles per daily car.
-
-    So its Δt hardly depends on the traffic; without waits ours, N·Δt/24, does not either.
-    """
-    even = changed(TRAFFIC, cars_per_train_std=0.0, arrival_scv=0.0)
-    calm = changed(HANDLING, between_trains_std_h=0.0)
-    capital = []
-    for cars, leads in ((5000.0, 1), (20_000.0, 4)):
-        traffic = changed(even, cars_per_day=cars, leads=leads)
-        before, after = (hump_work(rates, traffic, calm) for rates in (TODAY, NEW))
-        capital.append(total(released_capital(before, after, traffic, PRICES)))
-    assert capital[1] / capital[0] == pytest.approx(4.0)
-    assert capital[1] / capital[0] == pytest.approx(1000.0 / 240.0, rel=0.05)
 
 
 def test_another_wait_law_is_asked() -> None:
@@ -167,3 +132,104 @@ def test_impossible_inputs(make: object, sentence: str) -> None:
     assert callable(make)
     with pytest.raises(PlantError, match=sentence):
         make()
+
+
+Floats = NDArray[np.float64]
+LAWS = (allen_cunneen_h, whitt_h)
+
+
+def queue(load: float, arrival_scv: float = 1.0, service_scv: float = 1.0, leads: int = 1) -> HumpQueue:
+    """A train takes a lead for 0.4 h."""
+    return HumpQueue(load * leads / 0.4, arrival_scv, 0.4, service_scv, leads)
+
+
+def kingman_bound_h(made: HumpQueue) -> float:
+    """The mean wait on one lead is at most λ(σ_a² + σ_s²) / (2(1 − ρ)) for any arrivals (Kingman 1962)."""
+    load = made.load
+    return made.service_h * (made.arrival_scv / load + load * made.service_scv) / (2.0 * (1.0 - load))
+
+
+def gamma_times(random: np.random.Generator, mean: float, scv: float, shape: tuple[int, int]) -> Floats:
+    """Times with this mean and squared coefficient of variation."""
+    return np.full(shape, mean) if scv == 0.0 else random.gamma(1.0 / scv, mean * scv, shape)
+
+
+def simulated(made: HumpQueue, trains: int = 50_000, replicates: int = 24, seed: int = 3) -> tuple[float, float]:
+    """Mean wait by Lindley's recursion and half its 95 % interval; a quarter of each replicate is run-up.
+
+    W_{k+1} = max(0, W_k + S_k − A_k): the sum of S − A less its running minimum.
+    """
+    random = np.random.default_rng(seed)
+    shape = replicates, trains
+    service = gamma_times(random, made.service_h, made.service_scv, shape)
+    between = gamma_times(random, 1.0 / made.trains_per_h, made.arrival_scv, shape)
+    walk = np.cumsum(service - between, axis=1)
+    wait = walk - np.minimum(np.minimum.accumulate(walk, axis=1), 0.0)
+    means = wait[:, trains // 4 :].mean(axis=1)
+    return float(means.mean()), float(stdtrit(replicates - 1, 0.975) * means.std(ddof=1) / math.sqrt(replicates))
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("load", [0.1, 0.5, 0.9])
+def test_exact_waits(law: object, load: float) -> None:
+    assert callable(law)
+    assert law(queue(load)) == pytest.approx(0.4 * load / (1.0 - load), rel=1e-14)  # M/M/1: ρ/(μ − λ)
+    assert law(queue(load, 1.0, 0.0)) == pytest.approx(0.4 * load / (2.0 * (1.0 - load)), rel=1e-14)  # M/D/1
+
+
+@pytest.mark.parametrize(("load", "service_scv"), [(0.5, 0.0), (0.7, 0.3), (0.85, 1.0), (0.7, 2.0)])
+def test_poisson_trains_wait_as_simulated(load: float, service_scv: float) -> None:
+    made = queue(load, 1.0, service_scv)
+    wait, half = simulated(made)
+    assert half < 0.05 * wait
+    assert abs(whitt_h(made) - wait) < 1.5 * half  # 99.7 %, four cases
+
+
+@pytest.mark.parametrize("load", [0.5, 0.8, 0.95])
+@pytest.mark.parametrize("service_scv", [0.0, 0.3, 1.0])
+def test_trains_that_come_in_bunches_wait_longer_than_told(load: float, service_scv: float) -> None:
+    made = queue(load, 2.0, service_scv)
+    wait, half = simulated(made)
+    assert 0.8 * wait - 1.5 * half < whitt_h(made) < wait + 1.5 * half
+    assert wait < kingman_bound_h(made) + 1.5 * half
+
+
+def test_exact_wait_of_trains_by_timetable() -> None:
+    """D/M/1: W = τσ/(1 − σ), σ = exp(−(1 − σ)/ρ) below 1."""
+    for load in (0.5, 0.7, 0.9):
+        sigma = float(brentq(lambda s, load=load: s - math.exp(-(1.0 - s) / load), 0.0, 1.0 - 1e-6))
+        exact = 0.4 * sigma / (1.0 - sigma)
+        made = queue(load, 0.0, 1.0)
+        assert abs(whitt_h(made) - exact) < 0.06 * exact
+        assert allen_cunneen_h(made) > 1.03 * exact, "Allen and Cunneen's is too long for even arrivals"
+
+
+@pytest.mark.parametrize("leads", [2, 3])
+def test_waits_on_several_leads(leads: int) -> None:
+    """M/M/c from the balance of its states, summed up."""
+    made = queue(0.8, leads=leads)
+    offered = 0.8 * leads
+    states = np.arange(400)
+    rates = offered / np.minimum(states[1:], leads)
+    p = np.concatenate([[1.0], np.cumprod(rates)])
+    p /= p.sum()
+    waiting = float((p * np.maximum(states - leads, 0)).sum())
+    assert erlang_c(made) == pytest.approx(float(p[leads:].sum()), rel=1e-12)
+    assert allen_cunneen_h(made) == pytest.approx(waiting / made.trains_per_h, rel=1e-12)  # Little
+
+
+def test_limits() -> None:
+    heavy = queue(0.9999, 0.4, 0.3)
+    assert whitt_h(heavy) == pytest.approx(kingman_bound_h(heavy), rel=2e-3)
+    assert whitt_h(queue(0.9, 0.0, 0.0)) == 0.0
+    assert whitt_h(queue(0.0)) == 0.0
+    for load in (0.95, 0.99):
+        exact = 0.4 / (1.0 - math.sqrt(load)) ** 2
+        assert queue(load).relaxation_h == pytest.approx(exact, rel=0.03)
+
+
+def test_an_overloaded_hump_says_by_how_much() -> None:
+    with pytest.raises(PlantError, match=r"2\.75 trains an hour come and fewer than 2\.5 .* load is 1\.1 "):
+        queue(1.1)
+    with pytest.raises(PlantError, match="overloaded"):
+        queue(1.0)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from itertools import permutations
 
 import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from synth.computer.sizing.response_time import PeriodicTask, exact_load, longest_responses_s
+from synth.computer.sizing.response_time import PeriodicTask, longest_responses_s
 from synth.computer.sizing.trackside_controllers import ScanCycle
 
 
@@ -50,20 +49,6 @@ def scheduled(tasks: tuple[PeriodicTask, ...], offsets: tuple[int, ...], until: 
                 longest[job[4]] = max(longest[job[4]], now + 1 - job[2])
                 jobs.remove(job)
     return longest
-
-
-@pytest.mark.parametrize(
-    ("tasks", "right"),
-    [
-        # Burns and Wellings, Real-Time Systems and Programming Languages, the sets with T = 7, 12, 20 and 80, 40, 20
-        ((task(7, 3, 1), task(12, 3, 2), task(20, 5, 3)), (3, 6, 20)),
-        ((task(20, 5, 1), task(40, 10, 2), task(80, 40, 3)), (5, 15, 80)),
-        # Lehoczky 1990: the first job of the second task (114) is not its slowest
-        ((task(70, 26, 1), task(100, 62, 2)), (26, 118)),
-    ],
-)
-def test_textbook_sets(tasks: tuple[PeriodicTask, ...], right: tuple[float, ...]) -> None:
-    assert longest_responses_s(tasks) == right
 
 
 @st.composite
@@ -130,35 +115,6 @@ def test_decimals_are_taken_as_they_are_written() -> None:
     # 0.3 = 3 · 0.1 in decimals, not in binary: a float would count a fourth release
     urgent, other = task(0.1, 0.05, 1), task(1.0, 0.15, 2)
     assert longest_responses_s((urgent, other))[1] == 0.3
-
-
-def deadlines_hold(tasks: tuple[PeriodicTask, ...]) -> bool:
-    """Whether every job is done before the next: these tasks have no jitter, so the processor may be used up."""
-    if exact_load(tasks) > 1:
-        return False
-    return all(longest <= each.period_s for each, longest in zip(tasks, longest_responses_s(tasks), strict=True))
-
-
-def rate_monotonic(tasks: tuple[PeriodicTask, ...]) -> tuple[PeriodicTask, ...]:
-    """The same tasks with priorities by period, the shortest first."""
-    ordered = sorted(tasks, key=lambda each: each.period_s)
-    return tuple(replace(each, priority=place) for place, each in enumerate(ordered, start=1))
-
-
-@given(small_sets())
-def test_rate_monotonic_order_is_the_best_where_deadlines_are_periods(tasks: tuple[PeriodicTask, ...]) -> None:
-    any_order = any(
-        deadlines_hold(tuple(replace(each, priority=place) for place, each in enumerate(order, start=1)))
-        for order in permutations(tasks)
-    )
-    assert deadlines_hold(rate_monotonic(tasks)) == any_order
-
-
-@given(small_sets())
-def test_below_the_bound_of_liu_and_layland_all_is_in_time(tasks: tuple[PeriodicTask, ...]) -> None:
-    count = len(tasks)
-    if sum(each.work_s / each.period_s for each in tasks) <= count * (2.0 ** (1.0 / count) - 1.0):
-        assert deadlines_hold(rate_monotonic(tasks))
 
 
 def test_a_processor_may_be_used_up() -> None:

@@ -1,7 +1,12 @@
-"""Random trains with random faults on random humps, and what the control made of them against what really happened."""
+"""Random trains, and what the control made of them.
+
+Random trains with random faults on random humps, and what the control made of them against what really happened.
+By hand: `python -m tests.synth.hump.control.judged_trains FIRST LAST` humps the trains of these seeds and counts.
+"""
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -16,7 +21,6 @@ from synth.hump.control.hump_state import replayed
 from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
 from synth.hump.control.route_table import RouteTable
 from tests.plant_models.hump.random_humps import random_hump
-from tests.synth.hump.control.cut_motion import MovingCut
 from tests.synth.hump.control.made_trains import (
     LONG_M,
     USUAL_M,
@@ -29,13 +33,12 @@ from tests.synth.hump.control.made_trains import (
     uncoupled,
 )
 from tests.synth.hump.control.queue_of_cuts import FOULING_M, random_stalls
-from tests.synth.hump.control.reference_faults import Fault, LateSwitch
+from tests.synth.hump.control.reference_sections import Fault, LateSwitch, MovingCut
 from tests.synth.hump.control.reference_track import ReferenceTrack
 
 SURE, NEAR = 1.25, 2.0
 """A gap within a cut that is wider than the rule asks for by the first factor is one for sure; so is one between two
 cuts that is wider by the second: speeds change while it passes."""
-
 SLOW_S, SLOW_M = 0.3, 0.25
 """An object that moved less than that in so long, and moves no more in the next, is slower than the rule's 1 m/s."""
 
@@ -229,3 +232,30 @@ def judgement(humping: Humping) -> Counter[str]:
             "wrong uncouplings false": len(found - wrong),
         }
     )
+
+
+SCENES = {
+    "no fault": Scene(),
+    "points": Scene(faults=3, points_alone=True),
+    "uncoupling": Scene(wrong_share=0.15),
+    "sensors and points": Scene(faults=3),
+    "all": Scene(faults=3, wrong_share=0.1),
+    "stalled": Scene(stalled_share=0.1),
+    "stalled, points": Scene(faults=3, points_alone=True, stalled_share=0.1),
+    "stalled, all": Scene(faults=3, wrong_share=0.1, stalled_share=0.1),
+    "published model, points": Scene(faults=3, points_alone=True, published=True),
+    "stalled, published model, points": Scene(faults=3, points_alone=True, stalled_share=0.1, published=True),
+}
+
+
+def main(first: int, last: int) -> None:
+    """Print the counts of every scene; the seeds go round among them."""
+    for place, (name, scene) in enumerate(SCENES.items()):
+        counts: Counter[str] = Counter()
+        for seed in range(first + place, last, len(SCENES)):
+            counts.update(judgement(random_humping(seed, scene)))
+        print(f"{name}: {dict(counts)}", flush=True)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), int(sys.argv[2]))

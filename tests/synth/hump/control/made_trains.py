@@ -1,4 +1,8 @@
-"""Trains of random cuts, and what rolls when they are uncoupled rightly or wrongly."""
+"""Trains for the tests of the hump control.
+
+Trains of random cuts, and what rolls when they are uncoupled rightly or wrongly.
+Trains over the small hump of `test_hump_control`, and what the control did with them.
+"""
 
 from __future__ import annotations
 
@@ -9,19 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.hump.control.cut_record import CutRecord, Mark
+from synth.hump.control.event import Event, Kind
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.models import ENTRY
 from synth.hump.control.route_table import RouteTable
 from synth.hump.control.sorting_list import SortingList
-from tests.synth.hump.control.cut_motion import MovingCut
+from tests.plant_models.hump.random_humps import small_hump
 from tests.synth.hump.control.queue_of_cuts import NO_STALLS, Queue, Stall
-from tests.synth.hump.control.reference_faults import (
+from tests.synth.hump.control.reference_sections import (
     CounterSlip,
     FalselyFree,
     FalselyOccupied,
     Fault,
     LateSwitch,
+    MovingCut,
     StuckSwitch,
+    moving_cut,
 )
 from tests.synth.hump.control.reference_track import ReferenceTrack
 
@@ -29,7 +36,6 @@ TICK_S = 0.1
 GRID_M = 10.0
 COUPLED_M = 3.5
 """Between the last axle of a car and the first of the next one, coupled."""
-
 USUAL_M, LONG_M = 8.65, 20.5
 """From the first axle of a car to its third one; sections of random humps are 18 m long, shorter than the long car."""
 
@@ -164,3 +170,29 @@ def random_uncoupling(
     splits = {c.serial: 4 * int(random.integers(1, c.cars)) for c in cuts if c.cars > 1 and random.random() < share}
     kept = {c.serial: 4 * int(random.integers(1, c.cars + 1)) for c in cuts[1:] if random.random() < share}
     return splits, {serial: axles for serial, axles in kept.items() if serial not in splits}
+
+
+TABLE = RouteTable(small_hump())
+
+
+def rolling(cut: int, start_s: float, speed_m_s: float = 5.0, cars: int = 1, base_m: float = 8.65) -> MovingCut:
+    """A cut of constant speed."""
+    return moving_cut(cut, axle_places(cars, base_m).tolist(), start_s, [(500.0, speed_m_s)])
+
+
+def told(control: HumpControl, *kinds: Kind) -> list[Event]:
+    """The events of some kinds."""
+    return [event for event in control.events if event.kind in kinds]
+
+
+def commands(control: HumpControl) -> list[tuple[int, int, float]]:
+    """(switch, cut, position) of every throw."""
+    return [(event.element, event.cut, event.value) for event in told(control, Kind.COMMANDED)]
+
+
+def close_pair(operation: Operation | None = None) -> HumpControl:
+    """Cut 1 to track 2; cut 2 to track 1 comes on switch 1, 21 m behind it, before cut 1 has left it."""
+    control, _ = humped(
+        TABLE, [record(1, 2), record(2, 1)], [rolling(1, 0.0, 2.5), rolling(2, 8.5, 2.5)], (), operation
+    )
+    return control

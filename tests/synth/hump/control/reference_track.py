@@ -17,10 +17,7 @@ from math import isfinite
 from plant_models.hump.switch import Switch
 from synth.hump.control.models import ENTRY, AxlePass, Braking, Occupation
 from synth.hump.control.route_table import RouteTable
-from tests.synth.hump.control.cut_motion import MovingCut
-from tests.synth.hump.control.faulty_points import FaultyPoints
-from tests.synth.hump.control.reference_faults import CounterSlip, Fault
-from tests.synth.hump.control.reference_sections import ReferenceSections
+from tests.synth.hump.control.reference_sections import CounterSlip, Fault, FaultyPoints, MovingCut, ReferenceSections
 
 
 class Step(IntEnum):

@@ -14,9 +14,8 @@ from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
 from synth.hump.control.route_table import RouteTable
 from synth.hump.control.section_counter import Finding, SectionCounter
 from tests.plant_models.hump.random_humps import small_hump
-from tests.synth.hump.control.cut_motion import MovingCut, moving_cut
 from tests.synth.hump.control.made_trains import axle_places, humped, record
-from tests.synth.hump.control.reference_faults import CounterSlip, LateSwitch
+from tests.synth.hump.control.reference_sections import CounterSlip, LateSwitch, MovingCut, moving_cut
 
 TABLE = RouteTable(small_hump())
 

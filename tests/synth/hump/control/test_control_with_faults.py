@@ -17,18 +17,28 @@ from synth.hump.control.models import ENTRY
 from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
 from synth.hump.control.route_table import RouteTable
 from tests.plant_models.hump.random_humps import small_vertices
-from tests.synth.hump.control.cut_motion import MovingCut, moving_cut
-from tests.synth.hump.control.made_trains import LONG_M, axle_places, humped, record
-from tests.synth.hump.control.reference_faults import (
+from tests.synth.hump.control.made_trains import (
+    LONG_M,
+    TABLE,
+    axle_places,
+    close_pair,
+    commands,
+    humped,
+    record,
+    rolling,
+    told,
+)
+from tests.synth.hump.control.reference_sections import (
     CounterSlip,
     FalselyFree,
     FalselyOccupied,
     Fault,
     LateSwitch,
+    MovingCut,
     StuckSwitch,
+    moving_cut,
 )
 from tests.synth.hump.control.reference_track import ReferenceTrack
-from tests.synth.hump.control.small_hump_trains import TABLE, close_pair, commands, rolling, told
 
 
 @pytest.mark.requirement("HUMP-04")

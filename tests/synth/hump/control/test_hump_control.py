@@ -17,10 +17,9 @@ from synth.hump.control.models import ExitSpeed, Misroute, Resistance
 from synth.hump.control.practice_rules import PUBLISHED_MODEL
 from synth.hump.control.route_store import RouteStore
 from synth.hump.control.sorting_list import SortingList
-from tests.synth.hump.control.cut_motion import moving_cut
-from tests.synth.hump.control.made_trains import axle_places, humped, record
+from tests.synth.hump.control.made_trains import TABLE, axle_places, close_pair, commands, humped, record, rolling, told
+from tests.synth.hump.control.reference_sections import moving_cut
 from tests.synth.hump.control.reference_track import ReferenceTrack
-from tests.synth.hump.control.small_hump_trains import TABLE, close_pair, commands, rolling, told
 
 
 @pytest.mark.requirement("HUMP-02")

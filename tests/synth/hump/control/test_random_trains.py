@@ -1,10 +1,15 @@
-"""Random trains with random faults on random humps: what must never happen, and what the counters find.
+"""Many trains: what never happens, and how fast the control is.
 
-Every example is a hump, a train and faults of its own. `many_trains` humps 100 000 of them by hand.
+Random trains with random faults on random humps: what must never happen, and what the counters find.
+
+Every example is a hump, a train and faults of its own. `judged_trains` humps 100 000 of them by hand.
+Humps of 2ⁿ tracks: a switch, a retarder behind the first and the second one, and a park retarder on every track.
+The control is far faster than the hump, and its work grows no faster than cuts and axles do.
 """
 
 from __future__ import annotations
 
+import time
 from itertools import pairwise
 
 import numpy as np
@@ -12,15 +17,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from plant_models.hump import Branch, Edge, HumpGraph, Retarder, Signal, Switch, TrackSection, Vertex
 from synth.hump.control.axle_counters import AxleCounters
-from synth.hump.control.cut_record import Mark
+from synth.hump.control.cut_record import CutRecord, Mark
 from synth.hump.control.event import Kind
 from synth.hump.control.misrouting import Misrouting
+from synth.hump.control.route_table import RouteTable
 from tests.effort import sized
-from tests.synth.hump.control.judged_trains import Humping, Scene, judgement, random_humping
-from tests.synth.hump.control.many_trains import SCENES
+from tests.synth.hump.control.judged_trains import SCENES, Humping, Scene, judgement, random_humping
+from tests.synth.hump.control.made_trains import axle_places, humped, record
 from tests.synth.hump.control.queue_of_cuts import APART_M
-from tests.synth.hump.control.reference_faults import LateSwitch
+from tests.synth.hump.control.reference_sections import LateSwitch, MovingCut
 
 SEEDS = st.integers(0, 2**32 - 1)
 NEVER = ("thrown under", "thrown beside", "lost", "silent counters", "other states")
@@ -104,3 +111,81 @@ def test_a_missed_and_an_invented_catch_up_are_found(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(Humping, "told", frozenset({(Kind.CATCH_UP, 9, 9, 0.0)}))
     judged = judgement(humping)
     assert (judged["catch-ups missed"], judged["catch-ups false"]) == (len(true), 1)
+
+
+def edge(to: int | None, length_m: float) -> Edge:
+    return Edge(to, length_m, ((0.0, 5.0),))
+
+
+class Building:
+    """Numbers are given in the order of building."""
+
+    def __init__(self) -> None:
+        self.switches, self.retarders, self.tracks = 0, 400, 0
+        self.vertices: list[Vertex] = []
+
+    def retarder(self, to: int) -> int:
+        self.retarders += 1
+        zones = ((0.0, 12.0),)
+        self.vertices.append(
+            Retarder(self.retarders, edge(to, 40.0), zones, 2.0, 14.0, "knp-5-bunch", exit_std_m_s=0.15)
+        )
+        return self.retarders
+
+    def grow(self, levels: int, below: int) -> int:
+        """The first element of what has so many levels of switches, below so many."""
+        if levels == 0:
+            self.tracks += 1
+            self.vertices.append(TrackSection(600 + self.tracks, edge(None, 600.0), 600.0, self.tracks))
+            return self.retarder(600 + self.tracks)
+        self.switches += 1
+        number = self.switches
+        left, right = (Branch(edge(self.grow(levels - 1, below + 1), 32.0), 4.73, 27.0) for _ in range(2))
+        self.vertices.append(Switch(number, left, right, 6.0, 5.0, 0.6, 0.2))
+        return self.retarder(number) if below in (1, 2) else number
+
+
+def full_hump(levels: int) -> HumpGraph:
+    """2 to the power of `levels` tracks."""
+    building = Building()
+    first = building.grow(levels, 0)
+    return HumpGraph((*building.vertices, Signal(201, edge(first, 42.0))), (201,))
+
+
+LEAST_TIMES = 2000.0
+
+
+def dense_train(table: RouteTable, cuts: int) -> tuple[list[CutRecord], list[MovingCut]]:
+    """Cuts of two cars that follow each other as densely as 2.7 m/s over the crest gives, 5 m/s behind it."""
+    random = np.random.default_rng(1)
+    train = [record(n, int(random.choice(table.graph.tracks)), 2) for n in range(1, cuts + 1)]
+    axles, places = axle_places(2), np.array([0.0, 1000.0])
+    starts = [cut.serial * cut.length_m / 2.7 for cut in train]
+    return train, [
+        MovingCut(cut.serial, axles.copy(), np.array([start, start + 200.0]), places.copy())
+        for cut, start in zip(train, starts, strict=True)
+    ]
+
+
+def test_it_is_2000_times_faster_than_the_hump() -> None:
+    """32 tracks, 40 cuts, ticks of 0.1 s; the track of the tests is in the time."""
+    table = RouteTable(full_hump(5))
+    train, objects = dense_train(table, 40)
+    best = float("inf")
+    for _ in range(3):
+        begin = time.process_time()
+        control, _ = humped(table, train, objects)
+        best = min(best, time.process_time() - begin)
+    assert len(control.state.arrived) == 40
+    assert control.events[-1].time_s / best > LEAST_TIMES
+
+
+def test_the_log_grows_with_the_cuts_and_the_switches_of_a_route() -> None:
+    """The log, which is what the control does, grows with the cuts; tracks add a switch a doubling."""
+
+    def lines(levels: int, cuts: int) -> int:
+        table = RouteTable(full_hump(levels))
+        return len(humped(table, *dense_train(table, cuts))[0].events)
+
+    assert lines(5, 80) <= 4.1 * lines(5, 20)
+    assert lines(6, 40) <= 1.3 * lines(5, 40)

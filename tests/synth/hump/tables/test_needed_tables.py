@@ -32,7 +32,7 @@ from synth.hump.trains.position_choice import HeldTables
 from synth.hump.trains.resolved_trial import load_trial, resolve_trial
 from synth.retarder.configuration.config_file import parse_config
 from tests.effort import every, sized
-from tests.synth.hump.control.drawn_list import drawn_list
+from tests.synth.hump.control.test_sorting_list import drawn_list
 from tests.system.conftest import changed
 
 GRAPHS = {name: load_hump(name).graph for name in sorted(hump_names())}

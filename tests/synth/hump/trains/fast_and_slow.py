@@ -1,14 +1,19 @@
-"""The same random trains for the layered simulator and for the slow one, and what each says of them in one form."""
+"""The same trains for two simulators.
+
+Drawn cuts as the slow simulator takes them, and when they are let go.
+The same random trains for the layered simulator and for the slow one, and what each says of them in one form.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.hump import HumpGraph
-from plant_models.rolling.random_cuts import CutPopulation
+from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.hump_position import Arrivals
@@ -17,12 +22,37 @@ from synth.hump.trains.humping import Hump, humped
 from synth.hump.trains.normal_hump_position import NormalHumpPosition
 from synth.hump.trains.train_cuts import TrainCuts, trains
 from synth.hump.trains.train_memory import TrainMemory
-from tests.synth.hump.trains.made_slow_trains import crest_times_s, slow_body
-from tests.synth.hump.trains.rolling_cuts import route_rolling
-from tests.synth.hump.trains.slow_train import Heads, SlowCut, SlowTrain
+from tests.synth.hump.trains.humped_trains import route_rolling
+from tests.synth.hump.trains.slow_train import Heads, SlowBody, SlowCar, SlowCut, SlowTrain
+
+
+def slow_body(drawn: DrawnCuts, i: int, bend_heads: Mapping[int, Heads]) -> SlowBody:
+    """The numbers of one drawn cut, whose row may have room for more cars; heads of bends by track."""
+    cars = []
+    for place, mass_t in zip(drawn.types[i], drawn.mass_t[i], strict=True):
+        car = drawn.mix.cars[place].car
+        overhang = (car.length_m - car.axle_offsets_m[-1]) / 2.0
+        if mass_t > 0.0:
+            cars.append(SlowCar(car.length_m, float(mass_t), tuple(overhang + a for a in car.axle_offsets_m)))
+    return SlowBody(
+        tuple(cars),
+        float((drawn.mass_t[i] * drawn.basic_n_per_kn[i]).sum() / drawn.mass_t[i].sum()),
+        float(drawn.head_wind_m_s[i]),
+        float(drawn.air_n_per_kn[i]),
+        bend_heads,
+    )
+
+
+def crest_times_s(bodies: Sequence[SlowBody], speeds_m_s: Sequence[float]) -> list[float]:
+    """When the middles of coupled cuts are at the crest; the train gets faster evenly between two releases."""
+    times = [0.0]
+    for k in range(1, len(bodies)):
+        path = 0.5 * (bodies[k - 1].length_m + bodies[k].length_m)
+        times.append(times[-1] + path / (0.5 * (speeds_m_s[k - 1] + speeds_m_s[k])))
+    return times
+
 
 Floats = NDArray[np.float64]
-
 HEADS_M = (0.9, 0.9, 0.5)
 """Energy heads of the full brakes of the positions."""
 

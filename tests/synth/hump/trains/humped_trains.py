@@ -1,4 +1,8 @@
-"""Trains that were humped on the large hump without a plan, so fast that cuts catch up with one another."""
+"""Cuts on routes, and trains of them.
+
+Cuts made ready to roll on routes that are made ready for them alone.
+Trains that were humped on the large hump without a plan, so fast that cuts catch up with one another.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.hump import Route
 from plant_models.library.hump_entry import HumpEntry, load_hump
+from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from plant_models.rolling.weather import Weather
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.trains.asked import Asked
@@ -16,14 +22,22 @@ from synth.hump.trains.hump_position import Arrivals
 from synth.hump.trains.hump_routes import hump_routes
 from synth.hump.trains.humping import Hump, humped
 from synth.hump.trains.normal_hump_position import NormalHumpPosition
+from synth.hump.trains.route_rolling import RouteRolling, rolling_on
+from synth.hump.trains.route_ways import route_ways
 from synth.hump.trains.train_cuts import TrainCuts
 from synth.hump.trains.train_cuts import trains as drawn_trains
 from synth.hump.trains.train_memory import TrainMemory
 from tests.plant_models.rolling.populations import CATEGORIES, MIX, population
-from tests.synth.hump.trains.rolling_cuts import route_rolling
+
+
+def route_rolling(
+    population: CutPopulation, routes: tuple[Route, ...], cuts: DrawnCuts, threads: int = 0
+) -> RouteRolling:
+    """`cuts` on `routes`, by the law of resistance and the weather of `population`."""
+    return rolling_on(route_ways(population, routes, cuts.mix), population, cuts, threads)
+
 
 Floats = NDArray[np.float64]
-
 TRAINS, CUTS = 8, 24
 EXITS_M_S = (5.2, 4.4, 1.5)
 FIRST, SEED = 3, 11

@@ -8,8 +8,7 @@ from enum import Enum
 from math import inf, sqrt
 
 from plant_models.hump import Route
-from tests.synth.hump.trains.slow_marks import MarkAt, marks_of
-from tests.synth.hump.trains.slow_train import Mark, SlowCut
+from tests.synth.hump.trains.slow_train import Mark, MarkAt, SlowCut, marks_of
 from tests.synth.hump.trains.slow_way import SlowWay
 
 SAME_S = 1e-12

@@ -11,10 +11,17 @@ from math import inf
 
 from plant_models.hump import HumpGraph, Retarder, RouteElement, Switch
 from tests.synth.hump.trains.slow_cut import SAME_S, Mode, MovingCut, Push, first_root
-from tests.synth.hump.trains.slow_fit import require_fit
-from tests.synth.hump.trains.slow_marks import MarkAt
-from tests.synth.hump.trains.slow_record import SlowRecord
-from tests.synth.hump.trains.slow_train import Kind, Mark, Passage, SlowRun, SlowTrain, coupled
+from tests.synth.hump.trains.slow_train import (
+    Kind,
+    Mark,
+    MarkAt,
+    Passage,
+    SlowRecord,
+    SlowRun,
+    SlowTrain,
+    coupled,
+    require_fit,
+)
 from tests.synth.hump.trains.slow_way import SlowWay
 
 STEP_S = 0.02

@@ -1,10 +1,19 @@
-"""What the slow simulator is given, and what it tells: a train by its bare numbers, events, and times at joints."""
+"""The train of the slow simulator: cuts, marks, and what happened.
+
+What the slow simulator is given, and what it tells: a train by its bare numbers, events, and times at joints.
+What a cut comes to on a route, in order of the place of its head.
+What has happened to a train so far: events, passages, and how near decisions were to their limits.
+What the slow simulator refuses, because the model of humping does not speak of it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum, IntEnum
+from math import inf
+
+from plant_models.hump import Retarder, Route, RouteElement, Signal, Switch
 
 Heads = tuple[tuple[float, float], ...]
 """Of each bend of a route, in order: metres of head that it takes (per (m/s)², whatever the speed)."""
@@ -191,3 +200,88 @@ class SlowRun:
         """When; infinite for what never was."""
         passage = self.passages.get((cut, element, mark))
         return passage.time_s if passage is not None else float("inf")
+
+
+FIRST_AXLE = frozenset({Mark.FIRST_FROM, Mark.FIRST_TO, Mark.FIRST_FOULING, Mark.ENTRANCE})
+
+
+@dataclass(frozen=True, order=True)
+class MarkAt:
+    """`mark` of the element `order` of the route, when the head is at `head_m` and the axle at `place_m`."""
+
+    head_m: float
+    order: int
+    mark: Mark
+    place_m: float
+
+
+def places_of(element: RouteElement, route: Route) -> list[tuple[Mark, float]]:
+    """Places of the marks of one element of `route`, none of a signal."""
+    vertex = element.vertex
+    if isinstance(vertex, Signal):
+        return []
+    found = [(Mark.FIRST_FROM, element.from_m), (Mark.LAST_FROM, element.from_m)]
+    if element is route.elements[-1]:
+        return [*found, (Mark.TRACK, element.from_m)]
+    found += [(Mark.FIRST_TO, element.to_m), (Mark.LAST_TO, element.to_m)]
+    if isinstance(vertex, Switch):
+        place = route.fouling_m(vertex.number)
+        found += [(Mark.FIRST_FOULING, place), (Mark.LAST_FOULING, place)]
+    if isinstance(vertex, Retarder):
+        found += [(Mark.ENTRANCE, element.at_m), (Mark.EXIT, element.at_m + vertex.exit_m)]
+    return found
+
+
+def marks_of(body: SlowBody, route: Route) -> list[MarkAt]:
+    """All marks of a cut on `route`, in the order in which it comes to them."""
+    marks = []
+    for order, element in enumerate(route.elements):
+        for mark, place in places_of(element, route):
+            behind = 0.0
+            if mark is not Mark.TRACK:
+                behind = body.first_axle_m if mark in FIRST_AXLE else body.last_axle_m
+            marks.append(MarkAt(place + behind, order, mark, place))
+    return sorted(marks)
+
+
+class SlowRecord:
+    """Events in the order in which they are found; passages by (cut, element, mark)."""
+
+    def __init__(self) -> None:
+        self.events: list[SlowEvent] = []
+        self.passages: dict[tuple[int, int, Mark], Passage] = {}
+        self.decisions: list[tuple[float, int, int, Mark, float]] = []
+        self.margins_s: list[float] = []
+
+    def tell(self, time_s: float, kind: Kind, element: int, cut: int, value: float = 0.0) -> None:
+        """Note an event."""
+        self.events.append(SlowEvent(time_s, kind, element, cut, value))
+
+    def passed(self, j: int, number: int, mark: Mark, time_s: float, delay_s: float = 0.0) -> bool:
+        """Whether the last axle of cut `j` was at `mark` by `time_s`, and `delay_s` before that."""
+        self.decisions.append((time_s, j, number, mark, delay_s))
+        passage = self.passages.get((j, number, mark))
+        return passage is not None and passage.time_s + delay_s <= time_s
+
+    def closest(self) -> float:
+        """Seconds by which the nearest decision could have been another; infinite where none was made."""
+        margins = list(self.margins_s)
+        for time_s, j, number, mark, delay_s in self.decisions:
+            passage = self.passages.get((j, number, mark))
+            if passage is not None:
+                margins.append(abs(time_s - passage.time_s - delay_s))
+        return min(margins, default=inf)
+
+
+def require_fit(cut: SlowCut, route: Route, free_to_m: float) -> None:
+    """Raise `ValueError` for a cut or a track of which the model does not speak."""
+    positions = [(e.at_m, e.at_m + e.vertex.exit_m) for e in route.elements if isinstance(e.vertex, Retarder)]
+    if len(cut.exit_speeds_m_s) < len(positions) or 0 < len(cut.brake_heads_m) < len(positions):
+        raise ValueError(f"track {route.track}: {len(positions)} positions, and fewer commands or heads")
+    if any(speed <= 0.0 for speed in (*cut.exit_speeds_m_s, cut.hump_speed_m_s)):
+        raise ValueError("speeds of the hump and commands must be more than 0")
+    ends = [0.5 * cut.body.length_m - cut.body.first_axle_m, *(end + cut.body.base_m for _, end in positions)]
+    if any(end >= begin for end, (begin, _) in zip(ends, positions, strict=False)):
+        raise ValueError(f"track {route.track}: the cut is longer than the way between two positions")
+    if not route.elements[-1].from_m < free_to_m <= route.length_m:
+        raise ValueError(f"track {route.track}: cars stand at {free_to_m:g} m; it must be on the last section")

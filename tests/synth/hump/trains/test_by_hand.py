@@ -1,4 +1,8 @@
-"""Bare cars whose times are known in closed form: intervals, one switch, contact, coupling, energy."""
+"""Humping in closed form.
+
+Bare cars at one switch, whose times are known in closed form: late points, a stop, a fouled fouling point.
+Cuts on their tracks: those that touch and roll on as one, and what is seen to be free.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from synth.hump.trains.hump_routes import Mark
+from synth.hump.trains.motion import Cars, Moving
+from synth.hump.trains.standing_cars import StandingCars
 from tests.synth.hump.trains.bare_cuts import (
     FIRST_M,
     GRAVITY_M_S2,
@@ -16,99 +22,14 @@ from tests.synth.hump.trains.bare_cuts import (
     RELAY_S,
     RIGHT_TRACK,
     THROW_S,
+    EvenFall,
     Orders,
     Scene,
     one_switch,
-    straight,
 )
 
 Floats = NDArray[np.float64]
-
-PLACES_M = {0: (20.0, 50.0), 1: (80.0, 104.0)}
 HALF_M = 0.5 * LENGTH_M
-
-
-def rolled_s(path_m: Floats | float, speed_m_s: float, fall: float) -> Floats:
-    """Time from rest of the push on an even fall."""
-    end = np.sqrt(speed_m_s**2 + 2.0 * GRAVITY_M_S2 * fall * np.asarray(path_m))
-    return np.asarray(2.0 * np.asarray(path_m) / (speed_m_s + end))
-
-
-@pytest.mark.parametrize("fall", [0.0, 0.02])
-def test_two_alike_cuts_are_as_far_apart_everywhere_as_at_the_crest(fall: float) -> None:
-    """Pushed at one speed they come to each place one cut length over that speed after another; and when, is told by
-    2·L/(u + v)."""
-    speed = np.array([[2.0, 2.0, 2.0], [1.3, 1.3, 1.3]])
-    memory = Scene(straight(), np.full((2, 3), LEFT_TRACK), Orders(speed), fall).run()
-    apart = LENGTH_M / speed[:, 0]
-    np.testing.assert_allclose(np.diff(memory.crest_s, axis=1), np.repeat(apart[:, None], 2, axis=1), rtol=1e-12)
-    gaps = np.diff(memory.time_s, axis=1)
-    np.testing.assert_allclose(gaps, np.broadcast_to(apart[:, None, None, None], gaps.shape), rtol=1e-9)
-    for train in range(2):
-        for element, (begin, end) in PLACES_M.items():
-            for mark, place, axle in (
-                (Mark.FIRST_IN, begin, FIRST_M),
-                (Mark.LAST_IN, begin, LAST_M),
-                (Mark.FIRST_OUT, end, FIRST_M),
-                (Mark.LAST_OUT, end, LAST_M),
-            ):
-                expected = rolled_s(place + axle - HALF_M, speed[train, 0], fall)
-                assert memory.time_s[train, 0, element, mark] == pytest.approx(float(expected), abs=1e-9)
-    stays = memory.time_s[:, :-1, :, Mark.LAST_OUT] - memory.time_s[:, :-1, :, Mark.FIRST_IN]
-    np.testing.assert_array_equal(memory.unseparated[:, 1:], stays > apart[:, None, None])
-
-
-def test_the_train_is_pushed_evenly_between_two_cuts() -> None:
-    """20 m and 14 m long, at 2 and 3 m/s: 17 m at 2.5 m/s on average."""
-    memory = Scene(
-        straight(),
-        np.full((1, 2), LEFT_TRACK),
-        Orders(np.array([[2.0, 3.0]])),
-        lengths_m=np.array([[20.0, 14.0]]),
-    ).run()
-    assert memory.crest_s.tolist() == [[0.0, 6.8]]
-
-
-def test_an_even_brake_takes_the_time_of_its_mean_speed() -> None:
-    """5 → 2 m/s on 20 m of brake and 10 m of axles: 30/3.5 s; half of the path is over at v² = 14.5."""
-    memory = Scene(straight(), np.array([[LEFT_TRACK]]), Orders(np.array([[5.0]]), 2.0)).run()
-    begins = (82.0 + FIRST_M - HALF_M) / 5.0
-    assert memory.begin_s[0, 0, 0] == pytest.approx(begins)
-    assert memory.end_s[0, 0, 0] == pytest.approx(begins + 30.0 / 3.5)
-    squares = 25.0 - 21.0 * (np.array([80.0 + LAST_M, 104.0 + FIRST_M]) - 82.0 - FIRST_M) / 30.0
-    paths = (25.0 - squares) / 0.7
-    np.testing.assert_allclose(
-        memory.time_s[0, 0, 1, [Mark.LAST_IN, Mark.FIRST_OUT]],
-        begins + 2.0 * paths / (5.0 + np.sqrt(squares)),
-        rtol=1e-12,
-    )
-
-
-def energies(fall: float, resisted: float) -> tuple[Floats, Floats]:
-    """(v²/2 at the end of free rolls, what fall and resistance leave of the energy before) of a braked cut."""
-    speed = np.array([[4.0]])
-    memory = Scene(
-        straight(),
-        np.array([[LEFT_TRACK]]),
-        Orders(speed, 3.0),
-        fall,
-        resisted=np.array([[resisted]]),
-        free_m=300.0,
-    ).run()
-    won = GRAVITY_M_S2 * (fall - resisted)
-    first = 0.5 * 16.0 + won * (82.0 + FIRST_M - HALF_M)
-    last = 0.5 * 9.0 + won * (300.0 - 102.0 - LAST_M)
-    ends = 0.5 * np.array([memory.entry_m_s[0, 0, 0], memory.end_speed_m_s[0, 0]]) ** 2
-    return ends, np.array([first, last])
-
-
-@pytest.mark.parametrize(("fall", "resisted"), [(0.0, 0.0), (0.02, 0.0), (0.02, 0.018), (0.0, 0.002)])
-def test_energy_is_kept_but_for_what_brake_and_resistance_take(fall: float, resisted: float) -> None:
-    found, kept = energies(fall, resisted)
-    np.testing.assert_allclose(found, kept, rtol=1e-9)
-
-
-BASE_M = LAST_M - FIRST_M
 
 
 def speeds_for(extra_s: float) -> tuple[Floats, float]:
@@ -154,16 +75,6 @@ def test_between_a_throw_and_none_a_cut_is_separated_and_yet_late() -> None:
     assert memory.unseparated[0, 1, 0]
 
 
-def test_a_cut_that_touches_another_rolls_behind_it() -> None:
-    """The first one at 1 m/s, the second one at 3: 7 s after it at the crest, and at 52.5 m it has it."""
-    memory = Scene(one_switch(), np.full((1, 2), LEFT_TRACK), Orders(np.array([[1.0, 3.0]]))).run()
-    assert memory.contact_at[0, 1] == 0
-    ahead, behind = memory.time_s[0]
-    np.testing.assert_allclose(behind[1, Mark.FIRST_IN], ahead[1, Mark.LAST_IN])
-    np.testing.assert_allclose(behind[1, Mark.LAST_OUT], ahead[1, Mark.LAST_OUT] + BASE_M / 1.0, rtol=1e-9)
-    assert np.isnan(memory.end_m[0, 1])
-
-
 def test_a_cut_that_stops_blocks_the_switch() -> None:
     """10 ‰ against 2 m/s: it stops after 4/(2·9.5·0.01) = 21.05 m, with its head at 28.05 m, and the first axle of the
     second one, of 2.1 m/s, does not come to the switch either; on 5 ‰ it stops at 49.1 m, on the switch."""
@@ -176,17 +87,6 @@ def test_a_cut_that_stops_blocks_the_switch() -> None:
     assert np.isinf(memory.time_s[0, 0, 0, Mark.LAST_OUT])
     assert memory.misrouted_at[0, 1] == 0
     assert memory.contact_at[0, 1] == 0
-
-
-def test_cuts_couple_to_those_that_stand() -> None:
-    """Free to 300 m; the first cut couples there at its speed, the second one a cut length earlier."""
-    speeds = np.array([[3.0, 2.0]])
-    memory = Scene(one_switch(), np.full((1, 2), LEFT_TRACK), Orders(speeds), free_m=300.0).run()
-    assert memory.end_m.tolist() == [[300.0, 300.0 - LENGTH_M]]
-    np.testing.assert_allclose(memory.end_speed_m_s, speeds)
-    np.testing.assert_allclose(memory.free_m, memory.end_m)
-    assert memory.end_time_s[0, 0] == pytest.approx((300.0 - HALF_M) / 3.0)
-    assert not memory.caught_on_track.any()
 
 
 @pytest.mark.parametrize(("stops_m", "foul"), [(70.0, True), (85.0, False)])
@@ -203,3 +103,109 @@ def test_a_cut_that_stands_short_of_the_fouling_point_is_fouled(stops_m: float, 
     assert memory.end_m[0, 0] == pytest.approx(stops_m)
     assert (memory.route[0, 1], memory.contact_at[0, 1]) == (1 - memory.route[0, 0], 2)
     assert memory.foul[0, 1].tolist() == [foul, False]
+
+
+CUT_M = 14.0
+NEVER, NO_MARKS = np.array([np.inf]), np.empty((1, 0))
+
+
+class BareCars(Cars):
+    """Cars that weigh the same and may couple."""
+
+    rolls: EvenFall
+
+
+def cars(resisted: float = 0.0, row: int = 0) -> BareCars:
+    """One cut on flat track, which resistance slows down."""
+    return BareCars(EvenFall(0.0, np.full(row + 1, resisted)), np.array([row]), np.array([0]))
+
+
+def moving(head_m: float, speed_m_s: float, time_s: float) -> Moving:
+    """One cut."""
+    return Moving(np.array([head_m]), np.array([speed_m_s]), np.array([time_s]))
+
+
+def test_one_that_stands_before_the_other_comes_is_not_caught_rolling() -> None:
+    standing = StandingCars(np.array([[130.0]]), cars(row=1).rolls)
+    first = standing.add(
+        np.array([0]), cars(), moving(118.0, 1.0, 0.0), moving(130.0, 1.0, 12.0), np.array([CUT_M]), NO_MARKS
+    )
+    assert len(first.which) == 0
+    later = moving(108.0, 1.5, 8.0), moving(116.0, 1.5, 8.0 + 8.0 / 1.5)
+    assert len(standing.add(np.array([0]), cars(row=1), *later, np.array([CUT_M]), NO_MARKS).which) == 0
+    assert standing.free_m.tolist() == [[130.0 - 2.0 * CUT_M]]
+
+
+def test_what_is_free_is_seen_as_it_was_at_the_time() -> None:
+    """A cut that rolls is taken to couple, also by one behind another that still rolls; when it stands, one sees its
+    gap."""
+    standing, lanes, routes = StandingCars(np.array([[400.0]]), cars(row=1).rolls), np.array([0]), np.array([0])
+    resisted = 0.1 / GRAVITY_M_S2
+
+    def seen(now_s: float) -> float:
+        return float(standing.seen_m(lanes, routes, np.array([now_s]))[0])
+
+    assert seen(0.0) == 400.0
+    length = np.array([CUT_M])
+    standing.add(lanes, cars(resisted), moving(100.0, 2.0, 10.0), moving(120.0, 0.0, 30.0), length, NO_MARKS)
+    assert seen(29.0) == 400.0 - CUT_M
+    assert seen(30.0) == 120.0 - CUT_M
+    standing.add(lanes, cars(resisted, 1), moving(80.0, 1.0, 25.0), moving(85.0, 0.0, 35.0), length, NO_MARKS)
+    assert seen(29.0) == 400.0 - 2.0 * CUT_M
+    assert seen(35.0) == 85.0 - CUT_M
+
+
+def test_cuts_that_do_not_come_by_themselves_take_room() -> None:
+    standing = StandingCars(np.array([[400.0, 300.0]]), cars().rolls)
+    standing.block(np.array([0]), np.array([1]), np.array([CUT_M]))
+    assert standing.free_m.tolist() == [[400.0, 300.0 - CUT_M]]
+
+
+def braked_m_s2(slowed: tuple[float, ...]) -> EvenFall:
+    """Cuts on flat track that lose so much speed in a second."""
+    return EvenFall(0.0, np.array(slowed) / GRAVITY_M_S2)
+
+
+@pytest.mark.parametrize(("second_m_s2", "free_m"), [(0.01, 400.0), (0.05, 400.0), (0.01, 180.0)])
+def test_two_cuts_that_touch_roll_on_with_their_momentum(second_m_s2: float, free_m: float) -> None:
+    """In closed form: the first from 100 m at 2 m/s, losing 0.05 m/s²; the second from there at 4 m/s, 15 s later. Both
+    weigh the same, so they go on at the mean of both speeds and lose the mean of both decelerations."""
+    rolls = braked_m_s2((0.05, second_m_s2))
+    standing, lanes, length = StandingCars(np.array([[free_m]]), rolls), np.array([0]), np.array([CUT_M])
+    one, other = (Cars(rolls, np.array([row]), np.array([0])) for row in (0, 1))
+    ends = moving(min(140.0, free_m), 0.0, 40.0)
+    assert len(standing.add(lanes, one, moving(100.0, 2.0, 0.0), ends, length, NO_MARKS).which) == 0
+    alone = moving(float(standing.free_m[0, 0]), 1.0, 40.0)
+    found = standing.add(lanes, other, moving(100.0, 4.0, 15.0), alone, length, NO_MARKS)
+    # 100 + 4 τ − b τ²/2 is the head, 86 + 2 (15 + τ) − 0.025 (15 + τ)² the tail, τ after 15 s
+    a, b, c = 0.5 * (0.05 - second_m_s2), 4.0 - 2.0 + 0.05 * 15.0, 100.0 - (86.0 + 30.0 - 0.025 * 225.0)
+    tau = (-b + np.sqrt(b * b - 4.0 * a * c)) / (2.0 * a) if a else -c / b
+    first, second = 2.0 - 0.05 * (15.0 + tau), 4.0 - second_m_s2 * tau
+    head = 100.0 + 4.0 * tau - 0.5 * second_m_s2 * tau**2 + CUT_M
+    speed, slows = 0.5 * (first + second), 0.5 * (0.05 + second_m_s2)
+    stop = head + speed**2 / (2.0 * slows)
+    assert found.which.tolist() == [0]
+    assert found.members.tolist() == [[0, 1]]
+    assert found.contact.time_s[0] == pytest.approx(15.0 + tau, abs=0.03)
+    assert found.head_m[0] == pytest.approx(head, abs=0.05)
+    assert found.speed_m_s[0] == pytest.approx(speed, abs=2e-3)
+    assert found.end_m[0] == pytest.approx(min(stop, free_m), abs=0.05 + 2e-3 * speed / slows)
+    assert found.end_m_s[0] == pytest.approx(np.sqrt(max(speed**2 - 2.0 * slows * (free_m - head), 0.0)), abs=5e-3)
+    assert standing.free_m[0, 0] == pytest.approx(found.end_m[0] - 2.0 * CUT_M)
+    assert (stop > free_m) == (free_m == 180.0)
+
+
+def test_a_third_cut_pushes_both() -> None:
+    """Momentum and resistance of three that weigh the same: thirds."""
+    rolls = braked_m_s2((0.05, 0.05, 0.0))
+    standing, lanes, length = StandingCars(np.array([[500.0]]), rolls), np.array([0]), np.array([CUT_M])
+    for row, (speed, start) in enumerate(((2.0, 0.0), (4.0, 15.0), (4.0, 24.0))):
+        cut, ends = Cars(rolls, np.array([row]), np.array([0])), moving(140.0, 0.0, 60.0)
+        found = standing.add(lanes, cut, moving(100.0, speed, start), ends, length, NO_MARKS)
+    assert found.members.tolist() == [[0, 1, 2]]
+    both, third = found.contact.ahead_m_s[0], found.contact.behind_m_s[0]
+    assert found.speed_m_s[0] == pytest.approx((2.0 * both + third) / 3.0)
+    assert found.head_m[0] == pytest.approx(found.contact.head_m[0] + 2.0 * CUT_M)
+    slows = 0.1 / 3.0
+    assert found.end_m[0] == pytest.approx(found.head_m[0] + found.speed_m_s[0] ** 2 / (2.0 * slows))
+    assert standing.free_m[0, 0] == pytest.approx(found.end_m[0] - 3.0 * CUT_M)

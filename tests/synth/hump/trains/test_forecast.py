@@ -1,4 +1,4 @@
-"""What a control expects of cuts, beside numpy, and beside the simulation of cuts that roll just as expected."""
+"""What a control expects of cuts, beside numpy; beside the simulation see `test_uneven_routes`."""
 
 from __future__ import annotations
 
@@ -10,17 +10,15 @@ from numpy.typing import NDArray
 
 from plant_models.rolling.weather import Weather
 from synth.hump.trains.asked import Asked
-from synth.hump.trains.forecast import Expected, Given, SpeedRange, Ways, from_crest
-from synth.hump.trains.hump_routes import HumpRoutes, Mark
-from synth.hump.trains.humping import Hump, humped
+from synth.hump.trains.forecast import Expected, SpeedRange, Ways, from_crest
+from synth.hump.trains.hump_routes import HumpRoutes
 from synth.hump.trains.known_rolls import KnownRolls
 from synth.hump.trains.motion import Cars, Moving, Push
-from synth.hump.trains.normal_hump_position import NormalHumpPosition
 from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.train_cuts import TrainCuts, expected
 from synth.hump.trains.train_memory import TrainMemory
 from synth.hump.trains.trial import HumpTrial
-from tests.synth.hump.trains.made_trials import Day, GivenHead
+from tests.synth.hump.trains.made_trials import Day
 
 Floats = NDArray[np.float64]
 
@@ -113,26 +111,6 @@ def test_the_last_choice_runs_fastest_and_entries_are_limited(hump: str) -> None
     assert 0.1 < (found.beyond_m_s > 0.1).mean() < 0.95
 
 
-def test_a_pass_takes_the_integral_of_its_slowness() -> None:
-    """One position: v² falls evenly along all of the path."""
-    trial = SHORT.on("dumper")
-    routes = trial.routes
-    _, own, start, push = single_cuts(trial)
-    way = own.cars.routes
-    to, leaves = routes.entrance_m[way, 0] + own.first_axle_m, routes.exit_m[way, 0] + own.last_axle_m
-    resistance = own.cars.resistance_n_per_kn
-    rolled = own.cars.rolls.roll_on(
-        own.cars.rows, way, start.head_m, start.speed_m_s, np.stack((to, leaves), axis=1), resistance
-    )
-    comes = rolled.speed_m_s[:, 0]
-    told = from_crest(routes, own, start, push, (Given(np.full(COUNT, 2.5)),)).followed()
-    share = (np.arange(4000) + 0.5) / 4000
-    squares = comes[:, None] ** 2 + (2.5**2 - comes[:, None] ** 2) * share
-    path = leaves - to
-    takes = path * (1.0 / np.sqrt(squares)).mean(axis=1)
-    np.testing.assert_allclose(told.ended_s[:, 0], start.time_s + rolled.time_s[:, 0] + takes, atol=1e-2)
-
-
 class AsTold:
     """Commands as a forecast chose them; errors of the positions are none."""
 
@@ -146,26 +124,6 @@ class AsTold:
     def speed(self, cut: int, memory: TrainMemory) -> Floats:
         """At the crest."""
         return np.linspace(1.4, 3.0, COUNT)
-
-
-@pytest.mark.parametrize("day", [SHORT, LONG], ids=["short", "long"])
-@pytest.mark.parametrize("hump", ["large", "medium", "dumper"])
-def test_cuts_that_roll_as_expected_pass_when_forecast(day: Day, hump: str) -> None:
-    """A train of one cut in the simulation: all times of both marks, long cuts that are in two positions included."""
-    trial = day.on(hump)
-    routes = trial.routes
-    made, own, start, push = single_cuts(trial)
-    speeds = tuple(Given(np.full(COUNT, 3.0 - 0.5 * q)) for q in range(routes.positions))
-    told = from_crest(routes, own, start, push, speeds).followed()
-    positions = tuple(NormalHumpPosition(0.0, GivenHead(9.0)) for _ in range(routes.positions))
-    hump_of = Hump(routes, positions, rolling_on(trial.ways, made.population, expected(made), 1))
-    control = AsTold(told.exit_m_s)
-    free = np.tile(routes.length_m, (COUNT, 1))
-    memory = humped(hump_of, made, free, control, control)
-    for mark, times in ((Mark.FIRST_IN, told.first_in_s), (Mark.LAST_OUT, told.last_out_s)):
-        assert np.isfinite(times).all()
-        simulated = memory.time_s[:, 0, :, mark] + start.time_s[:, None]
-        np.testing.assert_allclose(simulated, times, atol=1e-2)
 
 
 def test_rolls_that_are_known_are_those_that_are_worked_out() -> None:

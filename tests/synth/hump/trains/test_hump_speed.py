@@ -1,4 +1,9 @@
-"""Hump speeds from headways: beside brute force over all sequences of steps, and by hand."""
+"""Hump speeds, intervals, and what is known of cuts.
+
+Hump speeds from headways: beside brute force over all sequences of steps, and by hand.
+Rules for the interval, by hand on a few choices.
+What is known of cuts before they roll: good and bad runners beside drawn ones.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +13,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
+from synth.hump.trains.forecast import Compared
 from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, pair_by_pair, whole_train
+from synth.hump.trains.interval import NEARLY_M_S, centred, early, possible
+from synth.hump.trains.trial import reduced_gravity_m_s2
+from tests.synth.hump.trains.made_trials import Day
 
 Floats = NDArray[np.float64]
-
 STEPS = (1.0, 1.6, 2.4)
 LIMITS = HumpSpeedLimits(STEPS, 0.03)
 METHODS: tuple[SpeedMethod, ...] = (whole_train, pair_by_pair)
@@ -132,3 +141,99 @@ def test_one_cut_and_one_step() -> None:
     limits = HumpSpeedLimits((1.7,))
     for method in METHODS:
         assert method(np.full((2, 1), 14.0), np.full((2, 1, 4), -np.inf), limits).tolist() == [[1.7], [1.7]]
+
+
+INF = np.inf
+
+
+def compared(**changes: list[float] | list[bool]) -> Compared:
+    """One cut with four choices."""
+    values = {
+        "ahead_s": [0.1, 1.0, 2.0, 3.0],
+        "behind_s": [4.0, 2.5, 1.9, 0.5],
+        "able": [True] * 4,
+        "beyond_m_s": [0.0] * 4,
+        "arrival_s": [90.0, 91.0, 92.0, 93.0],
+        "speeds_m_s": [12.0, 11.0, 10.0, 9.0],
+    } | changes
+    return Compared(**{name: np.array([value]) for name, value in values.items()})
+
+
+@pytest.mark.parametrize(
+    ("changes", "place"),
+    [
+        ({}, 2),
+        ({"able": [True, True, False, True]}, 1),
+        ({"arrival_s": [90.0, INF, INF, 93.0]}, 3),
+        ({"ahead_s": [INF] * 4}, 0),
+        ({"ahead_s": [INF] * 4, "behind_s": [INF] * 4}, 3),
+        ({"ahead_s": [-INF] * 4, "able": [False, True, False, False]}, 1),
+        ({"ahead_s": [-INF] * 4}, 3),
+        ({"beyond_m_s": [0.0, 0.0, 0.05, 0.0]}, 1),
+        ({"beyond_m_s": [0.5, 0.45, 0.41, 0.9]}, 2),
+        ({"able": [False] * 4}, 2),
+    ],
+)
+def test_a_centred_cut_is_in_the_middle_of_what_it_can(changes: dict[str, list[float]], place: int) -> None:
+    """min(ahead, behind) is 0.1, 1, 1.9, 0.5; more than 5 s is not asked for, and the slowest then; among choices of
+    which no one can be kept apart, one that the cut can have."""
+    assert centred(compared(**changes)).tolist() == [place]
+
+
+@pytest.mark.parametrize(
+    ("changes", "place"),
+    [
+        ({}, 1),
+        ({"ahead_s": [0.1, 0.2, 0.7, 0.3]}, 2),
+        ({"ahead_s": [0.1, 0.2, 0.4, 0.3]}, 2),
+        ({"ahead_s": [-INF] * 4, "able": [False, False, True, True]}, 2),
+        ({"ahead_s": [0.9, 1.0, 2.0, 3.0], "able": [False, False, True, True]}, 2),
+        ({"ahead_s": [INF] * 4}, 0),
+    ],
+)
+def test_an_early_cut_is_as_early_as_its_margin_allows(changes: dict[str, list[float]], place: int) -> None:
+    assert early(compared(**changes), 0.5).tolist() == [place]
+
+
+def test_limits_of_entry_are_kept_or_missed_by_as_little_as_can_be() -> None:
+    within = compared(beyond_m_s=[0.0, 0.05, 0.0, 1.0])
+    assert possible(within).tolist() == [[True, False, True, False]]
+    beyond = compared(beyond_m_s=[0.3, 0.3 + 0.9 * NEARLY_M_S, 0.3 + 1.1 * NEARLY_M_S, 1.0])
+    assert possible(beyond).tolist() == [[True, True, False, False]]
+
+
+@pytest.mark.parametrize("law", [HumpNormLaw(), Tb10062Law()], ids=["norm", "tb 10062"])
+def test_good_and_bad_runners_are_those_quantiles_of_drawn_cuts(law: ResistanceLaw) -> None:
+    """2.3 % of single cars are below and above; of longer cuts, whose law is not that of a car, 1 to 4 %."""
+    trial = Day(cuts=40, most_cars=6, cars_mean=2.0, law=law).on()
+    trains = trial.source.trains(0, 300)
+    known = trial.known(trains, np.tile(trial.routes.length_m, (300, 1)))
+    resistance = trains.drawn.resistance_n_per_kn
+    for cars in (1, 2, 4):
+        own = trains.cars == cars
+        below, above = (resistance < known.good_n_per_kn)[own].mean(), (resistance > known.bad_n_per_kn)[own].mean()
+        chance = 4.0 * np.sqrt(0.023 / own.sum())
+        if cars == 1:
+            assert below == pytest.approx(0.023, abs=chance)
+            assert above == pytest.approx(0.023, abs=chance)
+        else:
+            assert 0.0 <= below < 0.04 + chance
+            assert 0.01 - chance < above < 0.04 + chance
+    assert (known.good_n_per_kn < known.mean_n_per_kn).all()
+    assert (known.mean_n_per_kn < known.bad_n_per_kn).all()
+
+
+def test_rows_of_a_cut_are_those_of_its_train() -> None:
+    trial = Day(cuts=7).on()
+    trains = trial.source.trains(3, 5)
+    known = trial.known(trains, np.tile(trial.routes.length_m, (5, 1)))
+    rows = known.of_cut(2)
+    assert rows.tolist() == [2, 9, 16, 23, 30]
+    expected = known.expected(rows, known.route[rows], known.mean_n_per_kn[rows])
+    np.testing.assert_array_equal(expected.first_axle_m, trains.first_axle_m[rows])
+    np.testing.assert_array_equal(expected.cars.routes, trains.route[rows])
+    gravity = reduced_gravity_m_s2(trains)
+    np.testing.assert_allclose(known.braked_m2_s2, 2.0 * gravity[:, None] * 0.8 * np.array([2.4, 2.4, 1.5]))
+    aim = known.aim_of(rows)
+    np.testing.assert_allclose(aim.speed_m_s, 1.4, rtol=1e-6)
+    np.testing.assert_allclose(np.asarray(aim.most_entry_m_s) ** 2, aim.speed_m_s**2 + known.braked_m2_s2[rows, -1])

@@ -1,4 +1,8 @@
-"""What is measured of the cuts of drawn trains on the large hump, by the kernel that rolls them."""
+"""What is read of cuts, and the aim that takes it.
+
+What is measured of the cuts of drawn trains on the large hump, by the kernel that rolls them.
+The aim of the last position keeps its probability on fresh cuts; what it reads is the resistance of the cut.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +13,19 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from plant_models.hump import TrackSection
+from plant_models.library.catalogue import load_car, load_weight_categories
+from plant_models.rolling.car_mix import CarMix, MixedCar
+from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
+from plant_models.rolling.weather import Weather
 from synth.aim.knowledge import ByCategory, Requirement
 from synth.aim.position_models import NormalPosition
 from synth.hump.trains.aim_control import AimControl, ReadAhead
 from synth.hump.trains.aim_design import CARS, AimDesign, MeasuredAhead, hump_aim
 from synth.hump.trains.asked import Asked
 from synth.hump.trains.expected_way import ExpectedWay
+from synth.hump.trains.hump_aim import CategoryAim, HumpAim
 from synth.hump.trains.motion import Cars, Moving, rolled_free
 from synth.hump.trains.resistance_prior import bend_spreads, resistance_prior
 from synth.hump.trains.rollability import MeasuredRollability, measured_rollability
@@ -23,12 +33,22 @@ from synth.hump.trains.speed_sensors import SpeedSensors
 from synth.hump.trains.train_cuts import TrainCuts, expected, trains
 from synth.hump.trains.train_memory import TrainMemory
 from tests.plant_models.rolling.populations import MIX, population
-from tests.synth.hump.trains.asked_cuts import large
-from tests.synth.hump.trains.rolling_cuts import route_rolling
+from tests.synth.hump.trains.asked_cuts import (
+    FIRST_M,
+    GRADE,
+    GRAVITY_M_S2,
+    LAST_M,
+    EvenSlope,
+    alike_cuts,
+    asked_at,
+    large,
+)
+from tests.synth.hump.trains.humped_trains import route_rolling
 from tests.synth.hump.trains.test_train_cuts import PEOPLE, TRAINS
+from tuning_tables.aim import AimAxes
+from tuning_tables.aim.held_aim import aim_grid
 
 Floats = NDArray[np.float64]
-
 ROUTES = large()
 COUNT = 4000
 EXITS_M_S = (4.8, 4.2)
@@ -88,6 +108,17 @@ def test_measured_trains_are_as_uncertain_as_they_say(position: int) -> None:
     assert gained == pytest.approx((told.std_n_per_kn**2).mean() / (before.std_n_per_kn**2).mean(), rel=0.12)
 
 
+def test_a_speed_is_read_only_when_the_last_axle_is_out() -> None:
+    measured, asked = rollability(drawn()), asked_on_the_way(drawn(), 1)
+    memory, now_s = asked.memory, asked.start.time_s
+    memory.end_s[:, 0, 0] = now_s + 1.0
+    waits = measured.expected(asked).mean_n_per_kn
+    memory.exit_m_s[:, 0, 0] += 0.5
+    assert measured.expected(asked).mean_n_per_kn.tolist() == waits.tolist()
+    memory.end_s[:, 0, 0] = now_s - 1.0
+    assert (measured.expected(asked).mean_n_per_kn != waits).mean() > 0.9
+
+
 def aimed(knowledge: ByCategory | MeasuredAhead) -> tuple[NDArray[np.bool_], Floats]:
     """Whether the drawn cuts couple too fast that are aimed at places anywhere on their tracks, and their gaps."""
     made = drawn()
@@ -136,3 +167,105 @@ def test_bends_spread_as_they_are_drawn() -> None:
             heads = cuts.bend_v2_m_s2[:, (middles > begin) & (middles < end)].sum(axis=1)
             assert spread[row, position, 0] == pytest.approx(heads.std(), rel=0.03)
     assert (spread[..., 1] == 0.0).all()
+
+
+CATEGORIES = load_weight_categories()
+GONDOLAS_AND_TANKS = CarMix(
+    (MixedCar(load_car("gondola-4").car, 0.7, 11.6), MixedCar(load_car("tank-4").car, 0.3, 9.0))
+)
+POSITION = NormalPosition(0.1, only_brakes=False)
+DESIGN = AimDesign(
+    CutPopulation(GONDOLAS_AND_TANKS, CATEGORIES, HumpNormLaw(), Weather()),
+    POSITION,
+    Requirement(0.1, (0.5, 7.0)),
+    MeasuredAhead(0.1),
+    cars=(1, 3, 5),
+)
+
+
+@cache
+def aim() -> HumpAim:
+    return hump_aim(ROUTES, DESIGN)
+
+
+def test_expected_speed_is_that_of_the_mean_reading_where_cuts_are_measured() -> None:
+    place = np.zeros(1, dtype=np.int64)
+    asked = place, place + 2, place + 3, np.array([150.0])
+    mean = np.array([aim().tables[0][2].mean_n_per_kn])
+    assert aim().expected_m_s(*asked, measured=True) == aim().command_m_s(*asked, mean)
+    assert aim().expected_m_s(*asked, measured=False) == aim().command_m_s(*asked)
+    assert aim().command_m_s(*asked, mean) > aim().command_m_s(*asked)
+
+
+def test_routes_share_speeds_where_their_tracks_are_alike() -> None:
+    assert len(aim().tables) == 1
+    first, *others = ROUTES.routes
+    section = first.elements[-1].vertex
+    assert isinstance(section, TrackSection)
+    steep = replace(section, next=replace(section.next, grades=((0.0, 2.0),)))
+    steeper = replace(first, elements=(*first.elements[:-1], replace(first.elements[-1], vertex=steep)))
+    changed = replace(ROUTES, routes=(steeper, *others))
+    design = replace(DESIGN, knowledge=ByCategory(), cars=(1,), design_cuts=200)
+    found = hump_aim(changed, design)
+    assert found.group.tolist() == [0] + [1] * len(others)
+    steep_m_s, plain_m_s = (table[0].by_category.speed_m_s[0, 2:6, 0] for table in found.tables)
+    assert (steep_m_s < plain_m_s - 0.02).all()
+
+
+def test_threads_change_nothing() -> None:
+    design = replace(DESIGN, cars=(1, 2), design_cuts=300)
+    one, two = (hump_aim(ROUTES, replace(design, threads=threads)) for threads in (1, 2))
+    for alone, beside in zip(one.tables[0], two.tables[0], strict=True):
+        assert alone.measured is not None
+        assert beside.measured is not None
+        assert np.array_equal(alone.measured.speed_m_s, beside.measured.speed_m_s)
+
+
+def linear_aim() -> HumpAim:
+    """One group and category: exit speed = 1 + distance/100 + resistance/10; by category alone 0.7 + distance/100."""
+    cars, distance, resistance = np.array([1]), np.array([0.0, 500.0]), np.array([-10.0, 50.0])
+    plain = aim_grid(AimAxes(cars, distance), 0.7 + distance[None, :] / 100.0)
+    speeds = 1.0 + distance[None, :, None] / 100.0 + resistance[None, None, :] / 10.0
+    measured = aim_grid(AimAxes(cars, distance, resistance), speeds)
+    return HumpAim(np.zeros(32, dtype=np.int64), ((CategoryAim(plain, measured),),), 0.4)
+
+
+def test_command_by_hand() -> None:
+    trains = alike_cuts(4, np.zeros(4, dtype=np.int64), np.ones(4, dtype=np.int64))
+    own, mean = np.array([0.5, 1.5, 3.0, 1.0]), np.full(4, 1.3)
+    memory = TrainMemory(4, 1, ROUTES)
+    memory.exit_m_s[:, 0, 1], memory.end_s[:, 0, 1] = [5.0, 4.0, 3.0, np.nan], 50.0  # the last speed was not read
+    slope = EvenSlope(own)
+    begin, end = ROUTES.exit_m[0, 1] + LAST_M, ROUTES.entrance_m[0, 2] + FIRST_M
+    rows = np.arange(4)
+    rolled = slope.roll_on(rows[:3], rows, np.full(3, begin), memory.exit_m_s[:3, 0, 1], np.full((3, 1), end))
+    comes = np.append(rolled.speed_m_s[:, 0], 4.0)
+    release = ROUTES.exit_m[0, 2] + LAST_M
+    free = release + np.array([100.0, 200.0, 50.0, 100.0])
+    asked = asked_at(ROUTES, 2, memory, comes, free)
+    way = ExpectedWay(slope, mean, np.full(4, GRAVITY_M_S2))
+    exact = ReadAhead(SpeedSensors(ROUTES, trains, 1e-4), way)
+    plain = AimControl(linear_aim(), ROUTES, trains)
+    assert plain.command(asked) == pytest.approx([1.7, 2.7, 1.2, 1.7], abs=1e-6)
+    assert replace(plain, reading=exact).command(asked) == pytest.approx([2.05, 3.15, 1.8, 1.7], abs=1e-3)
+    near = replace(asked, free_m=np.full(4, release - 1.0))
+    assert plain.command(near).tolist() == [0.4] * 4
+
+
+def test_readings_scatter_as_they_say() -> None:
+    count = 4000
+    trains = alike_cuts(count, np.zeros(count, dtype=np.int64), np.ones(count, dtype=np.int64))
+    own, gravity = np.full(count, 2.0), np.full(count, GRAVITY_M_S2)
+    memory = TrainMemory(count, 1, ROUTES)
+    memory.exit_m_s[:, 0, 1], memory.end_s[:, 0, 1] = 5.0, 50.0
+    length = ROUTES.entrance_m[0, 2] + FIRST_M - ROUTES.exit_m[0, 1] - LAST_M
+    square = 25.0 + 2.0 * GRAVITY_M_S2 * (GRADE - 0.002) * length
+    asked = asked_at(ROUTES, 2, memory, np.full(count, np.sqrt(square)), np.full(count, 500.0))
+    sensors = SpeedSensors(ROUTES, trains, 0.1)
+    reading = ReadAhead(sensors, ExpectedWay(EvenSlope(own), np.full(count, 1.0), gravity))
+    found, std = reading.n_per_kn(asked), 1e3 * 0.1 * np.sqrt(25.0 + square) / (GRAVITY_M_S2 * length)
+    assert sensors.stretch(asked, 2).std_n_per_kn(gravity).mean() == pytest.approx(std, rel=0.01)
+    assert found.std() == pytest.approx(std, rel=0.05)
+    assert found.mean() == pytest.approx(2.0, abs=4.0 * std / np.sqrt(count))
+    some = replace(asked, lanes=asked.lanes[7:9], routes=asked.routes[7:9], start=asked.start.chosen(np.array([7, 8])))
+    assert reading.n_per_kn(some).tolist() == found[7:9].tolist()

@@ -10,8 +10,6 @@ import pytest
 from plant_models import PlantError
 from plant_models.brake_power import FullBrake
 from plant_models.library.catalogue import load_car, load_weight_categories
-from plant_models.rolling.weather import Weather
-from synth.aim.table_position import class_exits, entry_speeds_m_s
 from synth.hump.trains.class_choice import ClassChoice
 from synth.hump.trains.hump_position import Arrivals
 from synth.hump.trains.table_hump_position import Looped, TableHumpPosition
@@ -19,7 +17,6 @@ from synth.retarder.table_class import TableClass
 from synth.simulation.closed_loop import simulate, trace
 from synth.simulation.keyed_passes import keyed_passes
 from synth.simulation.random_passes import RandomPasses
-from tests.synth.aim.conftest import LIGHT, TRACK, scene_on
 from tests.synth.hump.trains.coarse_book import coarse_classes, coming, estimating
 
 CATEGORIES = load_weight_categories()
@@ -74,19 +71,6 @@ def test_times_begin_at_the_entrance(classes: tuple[TableClass, ...], position: 
         assert seen.path_m[0] == -of_class.plant.approach.length_m < 0.0
         entrance_s = np.interp(0.0, seen.path_m, seen.time_s)
         assert passed.time_s[i] == pytest.approx(seen.time_s[-1] - entrance_s, abs=1e-3)
-
-
-def test_it_is_what_the_aims_take_for_a_table(classes: tuple[TableClass, ...]) -> None:
-    """Drawn cuts of other masses, with wind: `TablePosition` on equal passes, target for target."""
-    of_class, cuts = classes[0], scene_on(TRACK, Weather()).draw(LIGHT, 1, 5, 0, N)
-    entry, rows = entry_speeds_m_s(cuts), np.arange(N)
-    expected = class_exits(of_class, passes_of(of_class), cuts, rows, entry)
-    position = TableHumpPosition(ClassChoice(classes, CATEGORIES))
-    for k, target in enumerate(of_class.targets_m_s):
-        resistance = cuts.resistance_at(0.5 * (entry + target), rows)
-        came = coming(of_class, entry, resistance, np.full(N, target), cuts.rolling.cuts.cut_mass_t)
-        apart = np.abs(position.passed(came).exit_m_s - expected[:, k])
-        assert np.mean(apart < 1e-9) > 0.99
 
 
 def mixed_cuts(classes: tuple[TableClass, ...], n: int = N) -> Arrivals:

@@ -1,10 +1,16 @@
-"""Humps whose routes have different numbers of positions: who commands, what is forecast, and where cuts end."""
+"""Uneven humps, and trains over them.
+
+Copies of the large hump whose routes have different numbers of positions.
+Humps whose routes have different numbers of positions: who commands, what is forecast, and where cuts end.
+"""
 
 from __future__ import annotations
 
 import csv
 import itertools
 import json
+import re
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,8 +19,9 @@ import pytest
 
 from synth.cli import main
 from synth.hump.configuration.trial_file import parse_trial_file
+from synth.hump.hump_file import hump_text, parse_hump
 from synth.hump.trains.forecast import Given, SpeedRange, from_crest, from_entrance
-from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
+from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark, hump_routes
 from synth.hump.trains.humping import Hump, humped
 from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.motion import Moving
@@ -23,7 +30,6 @@ from synth.hump.trains.resolved_trial import resolve_trial
 from synth.hump.trains.route_rolling import rolling_on
 from synth.hump.trains.speed_program import speed_program
 from synth.hump.trains.train_cuts import expected
-from synth.hump.trains.train_figures import ratio
 from synth.hump.trains.train_trace import body_of
 from synth.hump.trains.trial import Control, HumpTrial, Sensing
 from synth.simulation.free_roll import rolling_cuts
@@ -32,7 +38,61 @@ from tests.plant_models.hump.random_humps import SMALL
 from tests.synth.hump.trains.made_trials import Day, GivenHead
 from tests.synth.hump.trains.mixed_cuts import without_padding
 from tests.synth.hump.trains.test_forecast import COUNT, AsTold, single_cuts
-from tests.synth.hump.trains.uneven_humps import OWN_TRACK, SHORT_TRACKS, UNEVEN, routes_of
+
+SHORT_TRACKS = tuple(range(1, 9))
+OWN_TRACK = 33
+
+
+def bunch_without_park() -> str:
+    """Tracks 1 to 8 have no park retarders: what led to one leads to the section behind it."""
+    text = hump_text(Path("large"))
+    for track in SHORT_TRACKS:
+        park, section = 420 + track, 600 + track
+        text = without_rows(text, {park})
+        text, swaps = re.subn(rf"to = {park}\b", f"to = {section}", text)
+        assert swaps == 1
+    return text
+
+
+def track_behind_the_second_position() -> str:
+    """The bunch of retarder 414 is gone: one track stands in its place, right behind that retarder."""
+    text = hump_text(Path("large"))
+    text = without_rows(text, behind(text, 7))
+    own = f"""{{ number = 654, type = "track", track = {OWN_TRACK}, next = {{ length_m = 720.0 }} }},"""
+    section = "section = [\n"
+    assert text.count(section) == 1
+    text, swaps = re.subn(r"to = 7\b", "to = 654", text)
+    assert swaps == 1
+    return text.replace(section, f"{section}    {own}\n")
+
+
+def without_rows(text: str, numbers: set[int]) -> str:
+    """`text` without the rows of these elements."""
+    kept = [line for line in text.splitlines() if not any(line.startswith(f"    {{ number = {n},") for n in numbers)]
+    assert len(kept) == len(text.splitlines()) - len(numbers)
+    return "\n".join(kept) + "\n"
+
+
+def behind(text: str, number: int) -> set[int]:
+    """`number` and the elements behind it."""
+    hump = tomllib.loads(text)["hump"]
+    rows = {row["number"]: row for kind in ("signal", "switch", "retarder", "section") for row in hump[kind]}
+    found, ahead = {number}, [number]
+    while ahead:
+        row = rows[ahead.pop()]
+        to = [row[key]["to"] for key in ("left", "right", "next") if "to" in row.get(key, {})]
+        ahead += to
+        found |= set(to)
+    return found
+
+
+UNEVEN = {"bunch": bunch_without_park, "own track": track_behind_the_second_position}
+
+
+def routes_of(name: str) -> HumpRoutes:
+    """The routes of one of them."""
+    return hump_routes(parse_hump(UNEVEN[name](), "uneven", "uneven.toml").graph, 201)
+
 
 NAMES = tuple(UNEVEN)
 MEASURED = Control(sensing=Sensing(), slow_down_s=0.2)
@@ -164,18 +224,6 @@ def test_a_cut_rolls_freely_from_its_last_position_to_the_standing_cars(name: st
         assert memory.end_speed_m_s[lane, cut] == pytest.approx(rolled.speed_m_s[0, -1], abs=1e-9)
         seen += 1
     assert seen >= 10
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_feedback_catches_no_more_than_an_open_loop(name: str) -> None:
-    """The same trains, too fast, with inexact positions; what a feedback saves by train, with its interval."""
-    caught = {}
-    for key, control in (("open", Control(False)), ("closed", Control())):
-        day = Day(cuts=16, std_m_s=0.3, constant_m_s=2.6, control=control)
-        caught[key] = trial_on(name, day).batch(0, 80).caught
-    value, low, _ = ratio((caught["closed"] - caught["open"]).astype(float), np.full(80, 16.0))
-    assert low <= 0.0
-    assert value < 0.01
 
 
 def test_a_list_may_send_cuts_to_short_and_long_routes(tmp_path: Path) -> None:

@@ -127,26 +127,6 @@ def test_pay_back_of_a_yard() -> None:
     assert value.quantiles[0].value < value.mean.value < value.quantiles[2].value
 
 
-def test_losses_of_failures_pass_through_to_the_effect() -> None:
-    """A function of other inputs ahead of the case: year's loss λx/2·S1·8760 of yard-facts §6 as running cost."""
-
-    def model(at: Mapping[str, float]) -> dict[str, float]:
-        loss = 0.5 * at["failures_per_h"] * 2.5 * at["loss_per_h"] * 8760.0
-        return {"loss": loss, **case_figures(CASE, {"terms.running_cost_per_year": loss})}
-
-    ranges: dict[str, Range] = {"failures_per_h": LogNormal(0.0012, 0.0048), "loss_per_h": Uniform(1300.0, 5000.0)}
-    made = drawn(model, ranges, 2000)
-    without = case_figures(CASE, {"terms.running_cost_per_year": 0.0})["effect_per_year"]
-    np.testing.assert_allclose(made.found["effect_per_year"], without - made.found["loss"])
-    middle = output_figures(made, "loss").quantiles[1]
-    # Median of a product of independent inputs, by integration over the lognormal one.
-    p = (np.arange(20_000) + 0.5) / 20_000
-    scale = 0.5 * 2.5 * 8760.0 * ranges["failures_per_h"].quantile(p)
-    share = [np.clip((x / scale - 1300.0) / 3700.0, 0.0, 1.0).mean() for x in (middle.low95, middle.high95)]
-    assert 0.5 - 0.035 < share[0] < 0.5 + 0.012
-    assert 0.5 - 0.012 < share[1] < 0.5 + 0.035
-
-
 def test_faults() -> None:
     with pytest.raises(PlantError, match="no input has a range"):
         drawn(linear, {"x": Constant(1.0)})
