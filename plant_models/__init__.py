@@ -1,6 +1,5 @@
 """The plant: cars, retarders, pneumatics, friction, sensors and motion, in SI, without solver words."""
 
-from plant_models.approach import Approach
 from plant_models.cut import Car, Cut, couple
 from plant_models.entry_speed import EntryLaw, EntrySpeed, HistogramEntrySpeed, NormalEntrySpeed
 from plant_models.errors import PlantError
@@ -12,7 +11,7 @@ from plant_models.point_sensors import PointSensors, every_axle, first_axle
 from plant_models.retarder import PressingForce, RetarderPosition, WeightForce
 from plant_models.rolling_resistance import RollingResistance
 from plant_models.speed_sensor import DopplerSensor
-from plant_models.track_profile import TrackProfile
+from plant_models.track_profile import Approach, TrackProfile
 
 __all__ = [
     "Approach",

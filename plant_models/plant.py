@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plant_models.approach import AT_THE_ENTRANCE, Approach
 from plant_models.cut import Cut
 from plant_models.entry_speed import EntryLaw
 from plant_models.errors import require
@@ -17,7 +16,7 @@ from plant_models.motion import mean_braked_axles, path_breaks_m, path_coefficie
 from plant_models.retarder import RetarderPosition
 from plant_models.rolling_resistance import RollingResistance
 from plant_models.speed_sensor import DopplerSensor
-from plant_models.track_profile import TrackProfile
+from plant_models.track_profile import AT_THE_ENTRANCE, Approach, TrackProfile
 from plant_models.valve_drive import ValveDrive
 
 SLOWEST_START_M_S = 0.3

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from tuning_tables.declared.members import LeafMember, SectionMember, members_of
-from tuning_tables.table_kinds import KINDS
+from tuning_tables.document import KINDS
 from tuning_tables.units import NO_UNIT, unit_of
 
 PAGE: Final = Path(__file__).parents[1] / "docs" / "reference" / "table-format.md"

@@ -2,7 +2,6 @@ from synth.api.aiming import aim_tables as aim_tables
 from synth.api.aiming import load_aim as load_aim
 from synth.api.as_pandas import to_pandas as to_pandas
 from synth.api.as_xarray import to_xarray as to_xarray
-from synth.api.baselines import compare_with_baselines as compare_with_baselines
 from synth.api.design import FittedLines as FittedLines
 from synth.api.design import fit as fit
 from synth.api.design import solve as solve
@@ -12,6 +11,7 @@ from synth.api.logs import identify as identify
 from synth.api.logs import load_passes as load_passes
 from synth.api.logs import log_passes as log_passes
 from synth.api.passes import Simulated as Simulated
+from synth.api.passes import compare_with_baselines as compare_with_baselines
 from synth.api.passes import predict as predict
 from synth.api.passes import simulate as simulate
 from synth.api.passes import trace as trace
@@ -22,11 +22,11 @@ from synth.api.problems import load_config as load_config
 from synth.api.problems import load_problem as load_problem
 from synth.api.trains import hump_trains as hump_trains
 from synth.api.trains import load_trial as load_trial
-from synth.frame.input_error import InputError as InputError
+from synth.frame.faults import InputError as InputError
 from synth.frame.version import __version__ as __version__
 from synth.hump.hump_file import load_hump as load_hump
-from synth.problem.aim import Aim as Aim
 from synth.problem.criterion import Criterion as Criterion
+from synth.problem.problem import Aim as Aim
 from synth.problem.problem import Problem as Problem
 from synth.problem.resolution import Resolution as Resolution
 from synth.simulation.exit_statistics import ExitStatistics as ExitStatistics

@@ -9,8 +9,7 @@ from contextlib import contextmanager
 import pytest
 
 from synth.frame.terminal import printed_page
-from synth.frame.terminal.printed_page import Printed, PrintedVerdict
-from synth.frame.terminal.printed_table import PrintedTable
+from synth.frame.terminal.printed_page import Printed, PrintedTable, PrintedVerdict
 
 WIDTHS = (60, 80, 100, 140)
 """Of the terminals that are tried."""

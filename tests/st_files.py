@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tuning_tables.aim.aim_tables import AimTables
-from tuning_tables.aim.st_source import aim_export
+from tuning_tables.aim.exports import aim_export
 from tuning_tables.correction import Correction
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_names import RETARDER, ExportPrefix
+from tuning_tables.exports import correction_export, line_export
+from tuning_tables.language.st_layout import part_files
+from tuning_tables.passages.exports import passage_export
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_export
-from tuning_tables.plc_forms.iec import part_files
 from tuning_tables.self_test_size import FULL, SelfTestSize
-from tuning_tables.st_correction import correction_export
-from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
 
 Files = Mapping[str, bytes]

@@ -6,25 +6,20 @@ A controller with a radar needs `read_json` and `decide_for`; one with point sen
 """
 
 from tuning_tables.active_table import ActiveTable
-from tuning_tables.alarm import Alarm
-from tuning_tables.approach import Approach, Interlock
-from tuning_tables.clock import RegulatorClock
 from tuning_tables.csv_file import to_csv, write_csv
-from tuning_tables.decisions import Decisions
+from tuning_tables.decisions import Approach, Decisions, Interlock, RegulatorClock
+from tuning_tables.document import table_schema
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OtherKind, TableError, UnknownFormat
 from tuning_tables.estimator import Estimator, begin, unseen_samples
-from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_any_book, read_book, write_book
 from tuning_tables.json_file import from_json, read_json, read_table, to_json, write_json
 from tuning_tables.passages.passage_book import PassageBook, PassageChoice
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.passages.plausible_motion import PlausibleMotion
 from tuning_tables.passages.rule import begin_tracking, stage_at_pulse
-from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
-from tuning_tables.provenance import CutId, Generator, RetarderId
-from tuning_tables.rule import alarms_for, decide_for, decide_many, speed_for
-from tuning_tables.schema import table_schema
+from tuning_tables.passages.sensor_layout import DecidesOn, PlausibleMotion, SensorLayout
+from tuning_tables.provenance import CutId, Generator, Predicted, RetarderId, Validated, ValidRange
+from tuning_tables.rule import Alarm, alarms_for, decide_for, decide_many, speed_for
 from tuning_tables.stage import Stage
 from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import Choice, Status, TableBook

@@ -7,11 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.approach import Approach, entrance_stage, same_approach
-from tuning_tables.decisions import Decisions, farthest
+from tuning_tables.decisions import Approach, Decisions, entrance_stage, farthest, same_approach
 from tuning_tables.estimator import Estimator
 from tuning_tables.held_table import held_table
-from tuning_tables.programs.line_table import LineTable
+from tuning_tables.programs.held import LineTable
 from tuning_tables.table import ControllerTable
 
 

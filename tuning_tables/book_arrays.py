@@ -9,16 +9,21 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy.typing as npt
 
-from tuning_tables.book_image import ATTRIBUTES, FORMAT, VERSION
-from tuning_tables.book_layout import Layout, stored_layout
+from tuning_tables.book_layout import ATTRIBUTES, FORMAT, VERSION, Layout, payload_sha256, stored_layout
 from tuning_tables.declared.columns import Column, Columns
-from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, TableError, UnknownFormat
-from tuning_tables.excerpt import excerpt
-from tuning_tables.payload import payload_sha256
-from tuning_tables.regular_file import read_regular_file
-from tuning_tables.requirement import SHA256_HEX, require_match, require_text
-from tuning_tables.seal import unsealed
-from tuning_tables.table_kinds import BOOK_KINDS
+from tuning_tables.document import BOOK_KINDS
+from tuning_tables.errors import (
+    SHA256_HEX,
+    DamagedTable,
+    InvalidTable,
+    NewerVersion,
+    TableError,
+    UnknownFormat,
+    excerpt,
+    require_match,
+    require_text,
+)
+from tuning_tables.whole_file import read_regular_file, unsealed
 
 if TYPE_CHECKING:
     import h5py

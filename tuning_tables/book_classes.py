@@ -1,4 +1,10 @@
-"""What the tables of a book have in common, and which a cut may be regulated by: its category and number of axles."""
+"""The tables of a book by what is alike: every name of a weight category has one number; which may regulate a cut,
+by category and number of axles; and which differ in nothing but target and lines, so that there is something
+between.
+
+Which tables of a book are of one family: they differ in nothing but target and lines, so there is something between. A
+controller holds the number of its family with each table, so it need not compare tables to know.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +15,63 @@ from typing import Final, Protocol, TypeVar
 
 import numpy as np
 
-from tuning_tables.book_categories import OfClass, category_numbers
-from tuning_tables.errors import InvalidTable
-from tuning_tables.line_order import LARGEST_FLOAT32
-from tuning_tables.provenance import RetarderId
-from tuning_tables.requirement import require_kind, require_tuple
+from tuning_tables.active_table import interpolable
+from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN
+from tuning_tables.errors import InvalidTable, require_kind, require_tuple
+from tuning_tables.provenance import CutId, RetarderId
+from tuning_tables.stage import LARGEST_FLOAT32
+from tuning_tables.table import ControllerTable
+
+
+class OfClass(Protocol):
+    """A table of either kind: it has a name and is for a class of cuts."""
+
+    @property
+    def id(self) -> str:
+        """Name of the table."""
+        ...
+
+    @property
+    def cut(self) -> CutId:
+        """The class of cuts."""
+        ...
+
+
+def exported_number(table: OfClass) -> int:
+    """What stands for the table's category in C and Structured Text; `InvalidTable` for one without number."""
+    if table.cut.number is None:
+        raise InvalidTable(
+            f"{table.id} is for the category {table.cut.category}, which has no number, but controller code chooses by "
+            f"number: give the table a cut.category_number in [{LEAST_OWN}, {LARGEST_OWN}] (CutId of tuning_tables), "
+            "then export it."
+        )
+    return table.cut.number
+
+
+def category_numbers(tables: Sequence[OfClass]) -> Mapping[str, int | None]:
+    """The number of every category, None for one without, in order of first appearance.
+
+    Raises `InvalidTable` where a category has two numbers, or a number two categories.
+    """
+    of_name: dict[str, tuple[str, int | None]] = {}
+    of_number: dict[int, tuple[str, str]] = {}
+    for table in tables:
+        name, number = table.cut.category, table.cut.number
+        first, known = of_name.setdefault(name, (table.id, number))
+        if known != number:
+            raise InvalidTable(
+                f"the category {name} has the number {known} in {first}, but {number} in {table.id}; in one book it "
+                "must have one: give both tables the same cut.category_number."
+            )
+        if number is not None:
+            first, other = of_number.setdefault(number, (table.id, name))
+            if other != name:
+                raise InvalidTable(
+                    f"the number {number} stands for the category {other} in {first}, but for {name} in {table.id}; "
+                    "in one book it must stand for one: give one of them another cut.category_number."
+                )
+    return MappingProxyType({name: number for name, (_, number) in of_name.items()})
+
 
 LEAST_FLOAT32: Final = float(np.finfo(np.float32).smallest_normal)
 
@@ -82,3 +140,22 @@ def _heaviest_by_target(tables: Sequence[ForTarget], numbers: Sequence[int]) -> 
         if np.float32(tables[number].cut.mass_t) == heaviest:
             by_target.setdefault(float(np.float32(tables[number].target_speed_m_s)), number)
     return tuple(by_target[target] for target in sorted(by_target))
+
+
+def families_of(tables: Sequence[ControllerTable]) -> tuple[int, ...]:
+    """Of each table its family: the number of the first table, from 0, that is for the same cut and `interpolable`."""
+    found: list[int] = []
+    for number, table in enumerate(tables):
+        first = (each for each in dict.fromkeys(found) if is_family(tables[each], table))
+        found.append(next(first, number))
+    return tuple(found)
+
+
+def is_family(one: ControllerTable, other: ControllerTable) -> bool:
+    """Whether the two are for the same cut, as a controller knows it, and what lies between has a meaning."""
+    return for_cut(one) == for_cut(other) and interpolable(one, other)
+
+
+def for_cut(table: ControllerTable) -> tuple[str, int, np.float32]:
+    """What a controller knows of the cut of a table: category, axles, mass in t."""
+    return table.cut.category, len(table.cut.axle_offsets_m), np.float32(table.cut.mass_t)

@@ -1,4 +1,13 @@
-"""A table as CSV (RFC 4180), for spreadsheets and for controllers that read nothing else. Export only.
+"""A table as CSV (RFC 4180), for spreadsheets and for controllers that read nothing else: rows of key and value,
+the nodes of an aim table, and the one rule on texts that a spreadsheet would compute. Export only.
+
+CSV sheets for people, and the one rule on texts that a spreadsheet would compute. A spreadsheet takes a cell that
+begins with one of `FORMULA_MARKS` for a formula, and a formula can run a program or send what it finds to another
+machine. Names of cuts, cars and tables come from users and from logs. So in a sheet for people such a text gets an
+apostrophe before it, which a spreadsheet shows as text. Files that programs read back keep every text as it is (logs,
+events, sorting lists), or refuse such a text (`csv_rows`).
+
+A table as CSV (RFC 4180), for spreadsheets and for controllers that read nothing else. Export only.
 
     record,key,value0,value1,value2,value3
     text,format,retarder-table,,,
@@ -23,15 +32,102 @@ from __future__ import annotations
 import csv
 import io
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, Final
 
-from tuning_tables.aim.aim_table import AimTable
-from tuning_tables.aim.node_rows import node_rows
-from tuning_tables.atomic_file import write_atomically
-from tuning_tables.canonical import CHECKSUM_KEY
-from tuning_tables.declared.key_rows import key_rows, text_row
-from tuning_tables.document import HEAD, to_document
-from tuning_tables.table_kinds import AnyTable
+import numpy as np
+
+from tuning_tables.aim.aim_tables import AimTable
+from tuning_tables.aim.nodes import FIGURES
+from tuning_tables.declared.members import LeafMember, SectionMember, members_of
+from tuning_tables.document import HEAD, AnyTable, to_document
+from tuning_tables.errors import InvalidTable, excerpt
+from tuning_tables.json_text import CHECKSUM_KEY
+from tuning_tables.whole_file import write_atomically
+
+FORMULA_MARKS: Final = ("=", "+", "-", "@", "\t", "\r", "\n")
+
+
+def is_formula(text: str) -> bool:
+    """Whether a spreadsheet may take `text` for a formula. A written number is none."""
+    if not text.startswith(FORMULA_MARKS):
+        return False
+    try:
+        float(text)
+    except ValueError:
+        return True
+    return False
+
+
+def sheet(head: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes:
+    """The rows under the names `head` as CSV of RFC 4180 in UTF-8; no cell is a formula, and numbers stay numbers."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\r\n")
+    writer.writerows([_shown(cell) for cell in row] for row in (head, *rows))
+    return text.getvalue().encode()
+
+
+def _shown(cell: object) -> object:
+    return f"'{cell}" if isinstance(cell, str) and is_formula(cell) else cell
+
+
+def key_rows(value: Any, key: str) -> Iterator[list[str]]:
+    """A row for each text, number or row of numbers of the declared `value` found at `key`; none for what is None.
+
+    Numbers at the nodes of a table have none: they lie along no axis of their own. Raises as `text_row`.
+    """
+    for name, member in members_of(type(value)).items():
+        found, at = getattr(value, name), f"{key}.{name}" if key else name
+        if found is None:
+            continue
+        match member:
+            case LeafMember():
+                leaf = member.leaf
+                if leaf.dtype == "S":
+                    yield text_row(at, str(leaf.written(found)))
+                elif leaf.axes is not None:
+                    yield from _number_rows(leaf.cells(found), at)
+            case SectionMember():
+                yield from key_rows(found, at)
+            case _:
+                for index, each in enumerate(found):
+                    yield from key_rows(each, f"{at}.{index}")
+
+
+def text_row(key: str, text: str) -> list[str]:
+    """The row of a text; `InvalidTable` for one that a spreadsheet would take for a formula and compute."""
+    if text.startswith(FORMULA_MARKS):
+        raise InvalidTable(
+            f"{key} is {excerpt(text)!r}, which a spreadsheet would compute; give it a name that does not begin "
+            f"with {text[0]!r}, or export another form."
+        )
+    return ["text", key, text]
+
+
+def _number_rows(cells: Any, key: str) -> Iterator[list[str]]:
+    """One row of a number or a row of numbers, else a row for each of what it holds."""
+    if not isinstance(cells, list | tuple):
+        yield ["number", key, repr(cells)]
+    elif isinstance(cells[0], list | tuple):
+        for index, row in enumerate(cells):
+            yield from _number_rows(row, f"{key}.{index}")
+    else:
+        yield ["number", key, *map(repr, cells)]
+
+
+COLUMNS: Final = ("cars", "free_distance_m", "resistance_n_per_kn", "exit_speed_m_s", *FIGURES)
+
+
+def node_rows(table: AimTable) -> Iterator[list[str]]:
+    """A row of names, then a row a node, numbered from 0; a cell is empty where there is no number."""
+    yield ["names", "node", *COLUMNS]
+    axes, reported = table.axes, table.reported
+    values = [table.exit_speed_m_s, *(getattr(reported, name) for name in FIGURES)]
+    for number, place in enumerate(np.ndindex(axes.shape)):
+        resistance = "" if axes.resistance_n_per_kn is None else repr(float(axes.resistance_n_per_kn[place[2]]))
+        told = ["" if np.isnan(each[place]) else repr(float(each[place])) for each in values]
+        distance = repr(float(axes.free_distance_m[place[1]]))
+        yield ["node", str(number), str(int(axes.cars[place[0]])), distance, resistance, *told]
 
 
 def to_csv(table: AnyTable) -> bytes:

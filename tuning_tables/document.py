@@ -1,23 +1,134 @@
-"""A table of any kind as a JSON document (dicts, lists, numbers, strings), and back, without the text around it.
+"""A table of any kind as a JSON document (dicts, lists, numbers, strings), and back, without the text around it;
+and the JSON Schema (draft 2020-12) of a table, for editors and for readers in other languages.
 
-A document has a head, the members that the class of its kind declares, and a checksum:
+A table of any kind as a JSON document (dicts, lists, numbers, strings), and back, without the text around it. A
+document has a head, the members that the class of its kind declares, and a checksum:
 
     {"format": "retarder-table", "version": 1, "kind": "lines", "exported_by": "retarder-synth 0.1.0", ...,
      "crc32": "0f1e2d3c"}
+
+The JSON Schema (draft 2020-12) of a table, for editors and for readers in other languages. A schema states keys, types
+and ranges. What it cannot state, the reader checks beyond it: the checksum, the order of stages, lines, passages and
+axes, that numbers belong together, what float32 can hold, and that no key is given twice.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Final, TypeAlias, TypeVar
 
-from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
-from tuning_tables.declared.json_form import _T, read, written
-from tuning_tables.declared.place import Place
+from tuning_tables.aim.aim_tables import AimTable
+from tuning_tables.declared.members import DeclaredMember, Json, LeafMember, Place, SectionMember, members_of
 from tuning_tables.declared.texts import Text
-from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OtherKind, UnknownFormat
-from tuning_tables.excerpt import excerpt
-from tuning_tables.exporter import exporter
-from tuning_tables.table_kinds import KINDS, MEANINGS, AnyTable, kind_of
+from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OtherKind, UnknownFormat, excerpt
+from tuning_tables.export_names import exporter
+from tuning_tables.json_text import CHECKSUM_KEY, document_checksum
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.table import ControllerTable
+
+StageTable: TypeAlias = ControllerTable | PassageTable
+"""A table from which a controller takes stages."""
+AnyTable: TypeAlias = StageTable | AimTable
+
+KINDS: Final[Mapping[str, type[AnyTable]]] = MappingProxyType(
+    {"lines": ControllerTable, "passages": PassageTable, "aim": AimTable}
+)
+"""By the word at "kind"."""
+MEANINGS: Final[Mapping[str, str]] = MappingProxyType({
+    "lines": "switching lines over the path",
+    "passages": "switching speeds at passages over point sensors",
+    "aim": "exit speeds by cars and free distance",
+})  # fmt: skip
+"""What a table of each kind has."""
+BOOK_KINDS: Final = ("lines", "passages")
+"""The kinds of which there are books."""
+
+
+def kind_of(table: type[object]) -> str:
+    """The word of a class of tables."""
+    return next(kind for kind, each in KINDS.items() if each is table)
+
+
+_T = TypeVar("_T")
+
+
+def written(value: Any) -> dict[str, object]:
+    """The object of `value`, whose class declares its members: its keys are their names, in their order."""
+    return {name: _written(getattr(value, name), member) for name, member in members_of(type(value)).items()}
+
+
+def read(declared: type[_T], value: object, place: Place) -> _T:
+    """What the JSON object `value` at `place` is; it must have exactly the keys that `declared` declares.
+
+    Raises `DamagedTable` for other keys and types, `InvalidTable` for values that `declared` refuses.
+    """
+    members = members_of(declared)
+    found = place.members(value, tuple(members))
+    return declared(**{name: _read(member, found[name], place.key(name)) for name, member in members.items()})
+
+
+def _written(value: Any, member: DeclaredMember) -> object:
+    if value is None:
+        return None
+    match member:
+        case LeafMember():
+            return member.leaf.written(value)
+        case SectionMember():
+            return written(value)
+        case _:
+            return [written(each) for each in value]
+
+
+def _read(member: DeclaredMember, value: object, place: Place) -> Any:
+    match member:
+        case LeafMember():
+            return None if value is None and member.is_optional else member.leaf.read(value, place)
+        case SectionMember():
+            return None if value is None and member.is_optional else read(member.section, value, place)
+        case _:
+            items = enumerate(place.array(value))
+            return tuple(read(member.section, each, place.item(index)) for index, each in items)
+
+
+DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
+
+
+def schema_of(declared: type) -> Json:
+    """An object with exactly the declared members, all of them required.
+
+    A class may state more of them in `SCHEMA`, a schema that must hold, too.
+    """
+    whole = object_of({name: _schema(member) for name, member in members_of(declared).items()})
+    further = getattr(declared, "SCHEMA", None)
+    return whole if further is None else {**whole, "allOf": [further]}
+
+
+def object_of(properties: Json) -> Json:
+    """An object with exactly these members."""
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": list(properties),
+        "additionalProperties": False,
+    }
+
+
+def _schema(member: DeclaredMember) -> Any:
+    match member:
+        case LeafMember():
+            return _or_null(member.leaf.schema(), member.is_optional)
+        case SectionMember():
+            return _or_null(schema_of(member.section), member.is_optional)
+        case _:
+            several = member.several
+            items = schema_of(member.section)
+            return {"type": "array", "items": items, "minItems": several.fewest, "maxItems": several.most}
+
+
+def _or_null(schema: Json, is_optional: bool) -> Json:
+    return {"anyOf": [{"type": "null"}, schema]} if is_optional else schema
+
 
 FORMAT: Final = "retarder-table"
 VERSION: Final = 1
@@ -97,3 +208,35 @@ def _require_checksum(members: dict[str, object], source: str) -> None:
             f"{source}: crc32 is {stored!r:.60}, but the content gives {computed!r}: "
             "it was changed after the export; export the table again."
         )
+
+
+def table_schema(kind: str) -> Json:
+    """The JSON Schema (draft 2020-12) of the tables of a kind.
+
+    Parameters
+    ----------
+    kind
+        "lines", "passages" or "aim".
+
+    Returns
+    -------
+    dict
+        A new schema.
+
+    Raises
+    ------
+    KeyError
+        There is no such kind.
+
+    Examples
+    --------
+    >>> from tuning_tables import table_schema
+    >>> table_schema("lines")["title"]
+    'retarder-table 1, lines'
+    """
+    members = schema_of(KINDS[kind])
+    const = {"format": FORMAT, "version": VERSION, "kind": kind}
+    head = {**{key: {"const": value} for key, value in const.items()}, "exported_by": EXPORTED_BY.schema()}
+    checksum = {CHECKSUM_KEY: {"type": "string", "pattern": "^[0-9a-f]{8}$"}}
+    whole = object_of({**head, **members["properties"], **checksum})
+    return {"$schema": DIALECT, "title": f"{FORMAT} {VERSION}, {kind}", **members, **whole}

@@ -13,11 +13,10 @@ import numpy.typing as npt
 
 from tuning_tables.declared.members import require_declared
 from tuning_tables.declared.numbers import Count, Number, Row
-from tuning_tables.errors import InvalidTable
-from tuning_tables.programs.estimate import ESTIMATE, UNSEEN
+from tuning_tables.errors import InvalidTable, require_tuple
+from tuning_tables.programs.held import ESTIMATE, UNSEEN
 from tuning_tables.programs.motion_filter import LEAST_STEP_M
 from tuning_tables.programs.observe import GATE, LARGEST_OVERPRESSURE_KPA
-from tuning_tables.requirement import require_tuple
 
 Floats = npt.NDArray[np.float32]
 

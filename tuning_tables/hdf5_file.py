@@ -23,19 +23,15 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from tuning_tables.atomic_file import replacing
 from tuning_tables.book_arrays import LONGEST_REASON, stored_arrays
-from tuning_tables.book_image import FORMAT, VERSION, image_of
-from tuning_tables.book_layout import book_layout, stored_tables
+from tuning_tables.book_layout import FORMAT, VERSION, book_layout, image_of, payload_sha256, stored_tables
 from tuning_tables.declared.columns import Columns
-from tuning_tables.errors import DamagedTable, InvalidTable, OtherKind, TableError
-from tuning_tables.excerpt import excerpt
-from tuning_tables.exporter import exporter
-from tuning_tables.payload import payload_sha256
+from tuning_tables.document import MEANINGS, StageTable, kind_of
+from tuning_tables.errors import DamagedTable, InvalidTable, OtherKind, TableError, excerpt
+from tuning_tables.export_names import exporter
 from tuning_tables.provenance import Generator
-from tuning_tables.seal import seal_of
 from tuning_tables.table import ControllerTable
-from tuning_tables.table_kinds import MEANINGS, StageTable, kind_of
+from tuning_tables.whole_file import replacing, seal_of
 
 
 def write_book(tables: Sequence[StageTable], path: str | os.PathLike[str], generator: Generator | None = None) -> None:

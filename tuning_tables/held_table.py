@@ -7,10 +7,9 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.approach import Approach, entrance_stage
-from tuning_tables.decisions import Decisions
+from tuning_tables.decisions import Approach, Decisions, entrance_stage
 from tuning_tables.estimator import Estimator
-from tuning_tables.programs.line_table import LineTable
+from tuning_tables.programs.held import LineTable
 
 
 class TableParts(Protocol):

@@ -10,12 +10,10 @@ from __future__ import annotations
 import os
 from typing import Any, TypeVar, overload
 
-from tuning_tables.atomic_file import write_atomically
-from tuning_tables.document import from_document, to_document
+from tuning_tables.document import KINDS, AnyTable, from_document, to_document
 from tuning_tables.json_text import LARGEST_FILE_BYTES, laid_out, read_json_text, require_layout
-from tuning_tables.regular_file import read_regular_file
 from tuning_tables.table import ControllerTable
-from tuning_tables.table_kinds import KINDS, AnyTable
+from tuning_tables.whole_file import read_regular_file, write_atomically
 
 _T = TypeVar("_T")
 

@@ -1,19 +1,35 @@
-"""The decision rule as Python asks it: for one reading, or for whole arrays; the rule itself is `programs.decide`."""
+"""The decision rule as Python asks it, for one reading or for whole arrays, and the alarm word of a cut; the rules
+themselves are `programs.decide` and `programs.alarms`.
+"""
 
 from __future__ import annotations
 
 import math
+from enum import IntFlag
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.active_table import ActiveTable
-from tuning_tables.alarm import Alarm
-from tuning_tables.programs.alarms import alarms
-from tuning_tables.programs.decide import decide
+from tuning_tables.programs.decide import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM, alarms, decide
 from tuning_tables.programs.observe import observe
 from tuning_tables.table import ControllerTable
+
+
+class Alarm(IntFlag):
+    """What is wrong with a cut, or with what is known of it; the values are those of C and Structured Text.
+
+    `LOST`: the standard deviation of the speed is beyond its limit, answers are cautious. `SENSOR`: readings are
+    doubted, or one repeats itself. `LIGHTER`, `HEAVIER`: the brake works more, or less, on this cut than on any of the
+    category of the table; its weight may be wrong.
+    """
+
+    LOST = LOST_ALARM
+    SENSOR = SENSOR_ALARM
+    LIGHTER = LIGHTER_ALARM
+    HEAVIER = HEAVIER_ALARM
+
 
 NO_GAUGE: Final = math.nan
 """The pressure, kPa, of a controller without gauge, or whose gauge is out of order."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.aim.aim_tables import AimTable
 from tuning_tables.aim.golden_aims import GoldenAims, few_golden_aims, golden_aims
 from tuning_tables.golden_vectors import GoldenVectors, few_golden_vectors, golden_vectors
 from tuning_tables.passages.golden_passages import GoldenPassages, few_golden_passages, golden_passages

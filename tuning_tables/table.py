@@ -9,22 +9,35 @@ from typing import Annotated
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.approach import Approach, entrance_stage
-from tuning_tables.clock import RegulatorClock
-from tuning_tables.decisions import Decisions, farthest
+from tuning_tables.decisions import Approach, Decisions, RegulatorClock, entrance_stage, farthest
 from tuning_tables.declared.members import Several, require_declared
 from tuning_tables.declared.numbers import Count, Number
 from tuning_tables.declared.texts import Word
-from tuning_tables.errors import InvalidTable
+from tuning_tables.errors import InvalidTable, require_count
 from tuning_tables.estimator import Estimator
-from tuning_tables.figures import Predicted, Validated, ValidRange, rms_in_words
 from tuning_tables.held_table import held_table
-from tuning_tables.line_order import LARGEST_FLOAT32
-from tuning_tables.programs.line_table import LineTable
-from tuning_tables.provenance import CREATED, TABLE_NAME, CutId, Generator, RetarderId
-from tuning_tables.requirement import require_count
-from tuning_tables.stage import HIGHEST_DEGREE, MOST_STAGES, SIDES, Stage
-from tuning_tables.surface_order import NO_PRESSURE, range_above, require_stage
+from tuning_tables.programs.held import LineTable
+from tuning_tables.provenance import (
+    CREATED,
+    TABLE_NAME,
+    CutId,
+    Generator,
+    Predicted,
+    RetarderId,
+    Validated,
+    ValidRange,
+    rms_in_words,
+)
+from tuning_tables.stage import (
+    HIGHEST_DEGREE,
+    LARGEST_FLOAT32,
+    MOST_STAGES,
+    NO_PRESSURE,
+    SIDES,
+    Stage,
+    range_above,
+    require_stage,
+)
 
 
 @dataclass(frozen=True)

@@ -30,14 +30,10 @@ from itertools import pairwise
 import numpy as np
 
 from tuning_tables.active_table import ActiveTable, active, between
-from tuning_tables.book_categories import category_numbers, exported_number
-from tuning_tables.book_classes import require_book, tables_by_class
-from tuning_tables.book_families import families_of
+from tuning_tables.book_classes import category_numbers, exported_number, families_of, require_book, tables_by_class
 from tuning_tables.errors import InvalidTable
-from tuning_tables.line_order import UNIT_ROUNDOFF
 from tuning_tables.programs import choose
-from tuning_tables.stage import Stage
-from tuning_tables.surface_order import NO_PRESSURE, range_above, reach_kpa, stage_gap, surface_bound
+from tuning_tables.stage import NO_PRESSURE, UNIT_ROUNDOFF, Stage, range_above, reach_kpa, stage_gap, surface_bound
 from tuning_tables.table import ControllerTable
 
 

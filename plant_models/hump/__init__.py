@@ -1,7 +1,9 @@
 """The hump: its elements, the graph that they form, and the routes of it; metres, per mille, degrees, seconds."""
 
 from plant_models.hump.edge import Curve, Edge, PointSensor, Radar
-from plant_models.hump.element_number import (
+from plant_models.hump.elements import LEFT, RIGHT, Branch, Retarder, Signal, Switch, TrackSection
+from plant_models.hump.hump_graph import HumpGraph
+from plant_models.hump.ranges import (
     GROUPS,
     RETARDERS,
     SECTIONS,
@@ -12,12 +14,7 @@ from plant_models.hump.element_number import (
     NumberGroup,
     element_name,
 )
-from plant_models.hump.hump_graph import HumpGraph
-from plant_models.hump.retarder import Retarder
 from plant_models.hump.route import Route, RouteElement, Vertex
-from plant_models.hump.signal import Signal
-from plant_models.hump.switch import LEFT, RIGHT, Branch, Switch
-from plant_models.hump.track_section import TrackSection
 
 __all__ = [
     "GROUPS",

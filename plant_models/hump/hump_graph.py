@@ -7,13 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
-from plant_models.hump.element_number import HumpError, element_name, in_brackets
-from plant_models.hump.retarder import Retarder
+from plant_models.hump.elements import LEFT, RIGHT, Retarder, Signal, Switch, TrackSection
+from plant_models.hump.ranges import HumpError, element_name, in_brackets
 from plant_models.hump.route import Route, Vertex, route_through
-from plant_models.hump.signal import Signal
 from plant_models.hump.structure import require_hump, tracks_behind
-from plant_models.hump.switch import LEFT, RIGHT, Switch
-from plant_models.hump.track_section import TrackSection
 
 if TYPE_CHECKING:
     import networkx as nx

@@ -7,10 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from plant_models.hump.edge import Edge
-from plant_models.hump.retarder import Retarder
-from plant_models.hump.signal import Signal
-from plant_models.hump.switch import Switch
-from plant_models.hump.track_section import TrackSection
+from plant_models.hump.elements import Retarder, Signal, Switch, TrackSection
 from plant_models.rolling.roll_track import Bend, RollTrack
 from plant_models.track_profile import TrackProfile
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from plant_models.hump.element_number import SIGNALS, HumpError, HumpErrors, NumberGroup, element_name, fault_of
+from plant_models.hump.elements import Switch, TrackSection
+from plant_models.hump.ranges import SIGNALS, HumpError, HumpErrors, NumberGroup, element_name, fault_of
 from plant_models.hump.route import Vertex
-from plant_models.hump.switch import Switch
-from plant_models.hump.track_section import TrackSection
 from plant_models.rolling.roll_track import LONGEST_TRACK_M
 
 if TYPE_CHECKING:

@@ -12,14 +12,8 @@ from plant_models.library.catalogue import (
     position_names,
 )
 from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
-from plant_models.library.library import BUILT_IN, Library
-from plant_models.library.position_entry import PositionEntry
-from plant_models.library.retarder_entry import RetarderEntry
-from plant_models.library.sensor_entry import SensorEntry
-from plant_models.library.source import Source, sources, sources_cited_in
-from plant_models.library.sourced_value import SourcedValue, Value
-from plant_models.library.track_entry import TrackEntry
-from plant_models.library.type_file import (
+from plant_models.library.library import (
+    BUILT_IN,
     CAR_MIXES,
     CARS,
     KINDS,
@@ -30,11 +24,17 @@ from plant_models.library.type_file import (
     WEIGHT_CATEGORIES,
     WHEEL_SENSORS,
     Kind,
+    Library,
     TypeFile,
     TypeFileError,
 )
+from plant_models.library.position_entry import PositionEntry
+from plant_models.library.retarder_entry import RetarderEntry
+from plant_models.library.sensor_entry import SensorEntry, WheelSensorEntry
+from plant_models.library.source import Source, sources, sources_cited_in
+from plant_models.library.sourced_value import SourcedValue, Value
+from plant_models.library.track_entry import TrackEntry
 from plant_models.library.weight_category import WeightCategories, WeightCategory
-from plant_models.library.wheel_sensor_entry import WheelSensorEntry
 
 __all__ = [
     "BUILT_IN",

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from plant_models.library.car_entry import CarEntry, car_from
-from plant_models.library.library import BUILT_IN, Library
-from plant_models.library.position_entry import PositionEntry, position_with_types
-from plant_models.library.track_entry import TrackEntry, track_from
-from plant_models.library.type_file import (
+from plant_models.library.library import (
+    BUILT_IN,
     CARS,
     POSITIONS,
     TRACKS,
     WEIGHT_CATEGORIES,
     WHEEL_SENSORS,
+    Library,
 )
+from plant_models.library.position_entry import PositionEntry, position_with_types
+from plant_models.library.sensor_entry import WheelSensorEntry, wheel_sensor_from
+from plant_models.library.track_entry import TrackEntry, track_from
 from plant_models.library.weight_category import WeightCategories, categories_from
-from plant_models.library.wheel_sensor_entry import WheelSensorEntry, wheel_sensor_from
 
 YARD_CATEGORIES = "hump-norm"
 """The set of weight categories that counts where none is named."""

@@ -1,4 +1,5 @@
-"""Strict reading of one library file: TOML whose every number is an inline table with its origin.
+"""Strict reading of one library file: TOML whose every number is an inline table with its origin; and what a value
+of each form may be, as JSON Schema.
 
     brake_delay_s = { value = 0.10, range = [0.05, 0.20], source = "engineering judgement", confidence = "L" }
 
@@ -16,11 +17,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Final
 
-from plant_models.errors import Faults, PlantError, require
-from plant_models.library.near_miss import near_miss
+from plant_models.errors import Faults, PlantError, near_miss, require
+from plant_models.library.library import TypeFileError
 from plant_models.library.sourced_value import CONFIDENCES, SourcedTable, SourcedValue, Value
 from plant_models.library.toml_lines import line_around
-from plant_models.library.type_file import TypeFileError
 
 Form = Callable[[object], Value | None]
 
@@ -238,3 +238,22 @@ def shown_key(key: str) -> str:
     """A key in a message: as it is, or in quotes where it would break the line, cut off if long."""
     text = key if key.isprintable() else repr(key)
     return text if len(text) <= SHOWN else f"{text[: SHOWN - 1]}…"
+
+
+Json = dict[str, Any]
+
+NUMBER: Final[Json] = {"type": "number"}
+
+
+def rows_of(count: int, fewest: int = 0) -> Json:
+    """A list of rows of so many numbers."""
+    row = {"type": "array", "items": NUMBER, "minItems": count, "maxItems": count}
+    return {"type": "array", "items": row, "minItems": fewest}
+
+
+FORMS: Final[Mapping[Form, Json]] = {
+    number: NUMBER,
+    numbers: {"type": "array", "items": NUMBER, "minItems": 1},
+    number_or_pairs: {"anyOf": [NUMBER, rows_of(2, 1)]},
+    pairs: rows_of(2, 1),
+}

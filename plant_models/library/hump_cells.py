@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
+from plant_models.errors import close_name, near_miss
 from plant_models.hump.ranges import (
     ENTRY_JOINT_M,
     EXIT_STD_M_S,
@@ -21,12 +22,22 @@ from plant_models.hump.ranges import (
     Range,
 )
 from plant_models.library.data_file import form_name, number, number_or_pairs, pairs, shown, shown_key
-from plant_models.library.hump_faults import FoundFaults, HumpFileFault
-from plant_models.library.hump_forms import short_text, some_numbers, some_pairs, text, texts, triples, truth, whole
-from plant_models.library.near_miss import close_name, near_miss
+from plant_models.library.hump_forms import (
+    FoundFaults,
+    HumpFileFault,
+    in_unit,
+    short_text,
+    some_numbers,
+    some_pairs,
+    text,
+    texts,
+    triples,
+    truth,
+    whole,
+    words_for,
+)
 from plant_models.library.sourced_value import CONFIDENCES
 from plant_models.library.toml_lines import Place
-from plant_models.library.written_units import in_unit, words_for
 
 SOURCED: Final = ("value", "source", "confidence")
 """Keys of a number that tells where it is from."""

@@ -23,7 +23,7 @@ from plant_models.hump import (
 )
 from plant_models.library.data_file import keyed
 from plant_models.library.hump_cells import Cell, Cells
-from plant_models.library.hump_faults import FoundFaults
+from plant_models.library.hump_forms import FoundFaults
 from plant_models.library.library import BUILT_IN
 from plant_models.library.position_entry import position_with_types
 from plant_models.library.toml_lines import Place

@@ -6,20 +6,16 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from plant_models.errors import PlantError
+from plant_models.errors import PlantError, near_miss
 from plant_models.hump import HumpGraph
-from plant_models.hump.element_number import in_brackets
+from plant_models.hump.ranges import in_brackets
 from plant_models.library.data_file import parse_toml, shown, shown_key
-from plant_models.library.hump_cars import ForCars, for_cars
 from plant_models.library.hump_cells import SOURCED, Cell, Cells, Origin, TypeTables, origin_of
-from plant_models.library.hump_faults import FoundFaults
-from plant_models.library.hump_forms import short_text, text, texts
+from plant_models.library.hump_forms import ForCars, FoundFaults, for_cars, short_text, text, texts
 from plant_models.library.hump_rows import HumpRows
-from plant_models.library.library import BUILT_IN, Library
-from plant_models.library.near_miss import near_miss
+from plant_models.library.library import BUILT_IN, HUMPS, Library, TypeFileError
 from plant_models.library.sourced_value import SourcedValue, Value
 from plant_models.library.toml_lines import Place, line_among, places_of
-from plant_models.library.type_file import HUMPS, TypeFileError
 
 FORMAT: Final = "hump"
 VERSION: Final = 1

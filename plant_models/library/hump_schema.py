@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from plant_models.hump import GROUPS
-from plant_models.library.data_file import number, number_or_pairs
-from plant_models.library.form_schema import FORMS, NUMBER, Json, rows_of
+from plant_models.library.data_file import FORMS, NUMBER, Json, number, number_or_pairs, rows_of
 from plant_models.library.hump_cells import CONTROLLERS, ELEMENTS, PROFILE, Key, Schema
 from plant_models.library.hump_entry import FORMAT, VERSION
 from plant_models.library.hump_forms import (
@@ -19,10 +18,10 @@ from plant_models.library.hump_forms import (
     texts,
     triples,
     truth,
+    unit_schema,
     whole,
 )
 from plant_models.library.sourced_value import CONFIDENCES
-from plant_models.library.written_units import unit_schema
 
 PRINTABLE: Final[Json] = {"type": "string", "minLength": 1}
 ORIGIN: Final[Json] = {"source": PRINTABLE, "confidence": {"enum": list(CONFIDENCES)}}

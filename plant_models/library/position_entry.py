@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
-from plant_models.approach import Approach
 from plant_models.entry_speed import EntryLaw
-from plant_models.errors import require
+from plant_models.errors import near_miss, require
 from plant_models.friction import Friction
 from plant_models.library.data_file import (
     Quantity,
@@ -23,15 +22,13 @@ from plant_models.library.data_file import (
     telling,
 )
 from plant_models.library.entry_values import ENTRY, entry_law, entry_schema, with_entry
-from plant_models.library.library import Library
-from plant_models.library.near_miss import near_miss
+from plant_models.library.library import POSITIONS, RETARDERS, SENSORS, Library, TypeFile
 from plant_models.library.retarder_entry import RetarderEntry, position_of, retarder_from
 from plant_models.library.sensor_entry import sensor_from, sensor_of
 from plant_models.library.sourced_value import SourcedTable, SourcedValue, Value
-from plant_models.library.type_file import POSITIONS, RETARDERS, SENSORS, TypeFile
 from plant_models.retarder import RetarderPosition
 from plant_models.speed_sensor import DopplerSensor
-from plant_models.track_profile import TrackProfile
+from plant_models.track_profile import Approach, TrackProfile
 
 RETARDER, SENSOR = "retarder.", "sensor."
 ZONES = RETARDER + "zones_m"

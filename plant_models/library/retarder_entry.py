@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-from plant_models.errors import require
+from plant_models.errors import near_miss, require
 from plant_models.library.data_file import (
     Quantity,
     number,
@@ -18,9 +18,8 @@ from plant_models.library.data_file import (
     take_strings,
     telling,
 )
-from plant_models.library.near_miss import near_miss
+from plant_models.library.library import TypeFile
 from plant_models.library.sourced_value import SourcedTable, SourcedValue
-from plant_models.library.type_file import TypeFile
 from plant_models.pneumatics import Pneumatics
 from plant_models.retarder import ForceLaw, PressingForce, RetarderPosition, WeightForce
 

@@ -18,8 +18,8 @@ from plant_models.library.data_file import (
     take_strings,
     telling,
 )
+from plant_models.library.library import TypeFile
 from plant_models.library.sourced_value import SourcedTable, SourcedValue, Value
-from plant_models.library.type_file import TypeFile
 from plant_models.rolling.roll_track import Bend, RollTrack
 from plant_models.track_profile import TrackProfile
 

@@ -11,26 +11,11 @@ from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Any, Final
 
-from plant_models.library.car_entry import SHARED_BOGIES, STATED_AXLES, TWO_BOGIES
-from plant_models.library.car_mix_entry import OF_A_CAR, OF_ALL
-from plant_models.library.data_file import Quantity, number
+from plant_models.library.car_entry import OF_A_CAR, OF_ALL, SHARED_BOGIES, STATED_AXLES, TWO_BOGIES
+from plant_models.library.data_file import FORMS, Json, Quantity, number
 from plant_models.library.entry_values import ENTRY, HISTOGRAM, NORMAL, UNIFORM
-from plant_models.library.form_schema import FORMS, Json
 from plant_models.library.hump_schema import PRINTABLE
-from plant_models.library.position_entry import (
-    FRICTION,
-    NOT_STATED,
-    PLACES,
-    REGULATOR,
-    TARGETS,
-    TRACK,
-    ZONES_STATED,
-)
-from plant_models.library.retarder_entry import FORCE_LAWS, LENGTH, drive_schema
-from plant_models.library.sensor_entry import SENSOR_SCHEMA
-from plant_models.library.sourced_value import CONFIDENCES
-from plant_models.library.track_entry import BENDS, POSITION, PROFILE, STRETCH
-from plant_models.library.type_file import (
+from plant_models.library.library import (
     CAR_MIXES,
     CARS,
     POSITIONS,
@@ -41,6 +26,19 @@ from plant_models.library.type_file import (
     WHEEL_SENSORS,
     Kind,
 )
+from plant_models.library.position_entry import (
+    FRICTION,
+    NOT_STATED,
+    PLACES,
+    REGULATOR,
+    TARGETS,
+    TRACK,
+    ZONES_STATED,
+)
+from plant_models.library.retarder_entry import FORCE_LAWS, LENGTH, drive_schema
+from plant_models.library.sensor_entry import SENSOR_SCHEMA, WHEEL_SENSOR_SCHEMA
+from plant_models.library.sourced_value import CONFIDENCES
+from plant_models.library.track_entry import BENDS, POSITION, PROFILE, STRETCH
 from plant_models.library.weight_category import (
     BRAKING_STAGES,
     BY_AXLE_LOAD,
@@ -50,7 +48,6 @@ from plant_models.library.weight_category import (
     LATIN,
     OWN_NUMBERS,
 )
-from plant_models.library.wheel_sensor_entry import WHEEL_SENSOR_SCHEMA
 
 Keys = Mapping[str, Quantity]
 

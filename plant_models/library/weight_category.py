@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Final
 
-from plant_models.errors import PlantError, require
+from plant_models.errors import PlantError, near_miss, require
 from plant_models.library.data_file import (
     Quantity,
     number,
@@ -18,9 +18,8 @@ from plant_models.library.data_file import (
     take_string,
     telling,
 )
-from plant_models.library.near_miss import near_miss
+from plant_models.library.library import TypeFile
 from plant_models.library.sourced_value import SourcedTable, SourcedValue
-from plant_models.library.type_file import TypeFile
 from plant_models.rolling_resistance import RollingResistance
 
 OF_CATEGORY = {

@@ -16,8 +16,7 @@ from plant_models.library.weight_category import WeightCategories, WeightCategor
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY, CarMix
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
 from plant_models.rolling.resistance_law import ResistanceLaw
-from plant_models.rolling.roll_track import Bend
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Bend, Weather
 
 MOST_CARS = 60
 

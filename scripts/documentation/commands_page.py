@@ -8,10 +8,10 @@ from typing import Any
 
 import typer.main
 
-from scripts.studies.markdown_table import table
+from scripts.studies.study import table
 from synth.cli.commands import app
 from synth.cli.guide import GUIDES
-from synth.frame.command_guide import PROGRAM, CommandGuide, Shown
+from synth.frame.command_line import PROGRAM, CommandGuide, Shown
 
 
 def commands_text(to_docs: str) -> str:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from scripts.studies.markdown_table import table
-from synth.frame.known_defects import Defect, known_defects
+from scripts.studies.study import table
+from synth.frame.version import Defect, known_defects
 
 
 def defects_text() -> str:

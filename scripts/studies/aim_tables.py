@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from scripts.studies.markdown_table import MarkdownTable, around, table
-from scripts.studies.options import option
-from scripts.studies.study import Findings, Method, Tell
-from synth.aim.aim_acceptance import judge_aims
-from synth.aim.aim_book import MadeAim, aim_book
+from scripts.studies.study import Findings, MarkdownTable, Method, Tell, around, option, table
+from synth.aim.aim_book import MadeAim, aim_book, judge_aims
 from synth.aim.configuration.aim_file import parse_aim_file
 from synth.aim.resolved_aim import resolve_aim
-from synth.frame.creation_time import creation_time
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.printed_numbers import percent
 from synth.frame.settings.settings_file import BUILT_IN
+from synth.frame.version import creation_time
 from synth.simulation.replicates import Interval
 
 KNOWN = {"category": "category", "measured": "and resistance"}

@@ -8,16 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from scripts.studies.cases import of_masses
-from scripts.studies.markdown_table import MarkdownTable, around, table
-from scripts.studies.options import option
-from scripts.studies.study import Findings, Method, Tell
+from scripts.studies.study import Findings, MarkdownTable, Method, Tell, around, option, table
 from synth.frame.printed_numbers import ABSENT, few, percent
 from synth.frame.workers.engine import Teller
 from synth.retarder.acceptance import CaseVerdict, judged
-from synth.retarder.case_result import CaseResult
+from synth.retarder.asked_tune import RadarEpochs
+from synth.retarder.case_result import CaseResult, Outcome
 from synth.retarder.configuration.config_file import load_config
-from synth.retarder.off_nominal.outcome import Outcome
-from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.shown_case import ShownCase, shown_case
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
@@ -189,6 +186,6 @@ METHOD = Method(Options, Options(masses_t=(52.0,)), Results, run)
 
 def figures(found: Results) -> Mapping[str, Figure]:
     """The case that is shown, where the book has it."""
-    from synth.retarder.pictures.case_picture import case_picture
+    from synth.retarder.pictures.exits import case_picture
 
     return {} if found.shown is None else {"case": case_picture(found.shown)}

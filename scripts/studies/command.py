@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.cli.study import Wanted
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.telling import LIMITS_MISSED, OK
 
@@ -21,8 +21,7 @@ HELP = {"-h", "--help"}
 
 def study_command(name: str | None, words: list[str], wanted: Wanted, general_help: Callable[[], str]) -> int:
     """Run the study `name` with the options in `words`, or tell what is asked; the exit code."""
-    from scripts.studies.named_study import study_named
-    from scripts.studies.registry import STUDIES
+    from scripts.studies.registry import STUDIES, study_named
 
     if wanted.show_list:
         print_list(STUDIES, wanted.manner)
@@ -53,7 +52,7 @@ def print_list(studies: tuple[Study, ...], manner: Manner) -> None:
 
 def help_of(study: Study) -> str:
     """The question of a study and its options."""
-    from scripts.studies.options import parser_of
+    from scripts.studies.study import parser_of
 
     parser = parser_of(study.method.options, study.name)
     parser.description = f"{study.question} Takes {study.duration} on two cores."
@@ -63,8 +62,8 @@ def help_of(study: Study) -> str:
 def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
     """Run one study, write what it leaves, and tell it."""
     from scripts.studies.documents import documents, kept, written
-    from scripts.studies.options import options_from
     from scripts.studies.result import run_study
+    from scripts.studies.study import options_from
     from synth.frame.results_directory import results_directory
     from synth.kernels.cache import guarded
 
@@ -90,7 +89,7 @@ def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
 
 def result_files(result: Result) -> dict[str, bytes]:
     """NAME.json, NAME.md and the pictures, by name."""
-    from synth.frame.picture.figure_file import figure_files
+    from synth.frame.picture.house_style import figure_files
 
     texts = {f"{result.study.name}.json": result.json(), f"{result.study.name}.md": result.markdown()}
     files = {name: text.encode("utf-8") for name, text in texts.items()}

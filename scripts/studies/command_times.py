@@ -16,11 +16,8 @@ from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory, TemporaryFile
 
-from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
-from scripts.studies.options import option
-from scripts.studies.study import Findings, Method, Tell
-from scripts.studies.timing.machine import Machine, this_machine
-from scripts.studies.timing.turns import three_digits
+from scripts.studies.study import ABSENT, Findings, MarkdownTable, Method, Tell, option, table
+from scripts.studies.timing import Machine, this_machine, three_digits
 from synth.kernels.plain import VARIABLE
 
 PROGRAM = (sys.executable, "-c", "import sys; from synth.cli import main; sys.exit(main(sys.argv[1:]))")

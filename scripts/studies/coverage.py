@@ -14,21 +14,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from plant_models import Plant
-from scripts.studies.markdown_table import ABSENT, Interval, MarkdownTable, table
-from scripts.studies.options import option
-from scripts.studies.side_by_side import THREADS
-from scripts.studies.study import Findings, Method, Tell, silent
+from scripts.studies.cases import THREADS
+from scripts.studies.study import ABSENT, Findings, Interval, MarkdownTable, Method, Tell, option, silent, table
 from synth.checker.coarse_simulation import Passes
 from synth.checker.coarse_simulation import simulate as simulate_coarsely
 from synth.checker.plant import plant_of
 from synth.checker.statistics import figures_of
 from synth.checker.table_reading import read_table
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.workers.engine import Teller
-from synth.problem.aim import Aim
+from synth.problem.problem import Aim
+from synth.retarder.asked_tune import RadarEpochs
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.estimation.estimate_chain import estimate_chain
-from synth.retarder.radar_epochs import RadarEpochs
+from synth.retarder.estimation.estimated_lines import estimate_chain
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back, solutions
 from synth.simulation.closed_loop import LineController, TableController, simulate_many

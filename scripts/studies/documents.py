@@ -1,7 +1,8 @@
-"""The tables of the documentation, from the kept results of studies.
+"""The tables of the documentation, from the kept results of studies, and the page of docs/data/ that holds all
+tables of one study: each behind a fold, with the sentence that it tells.
 
 In a checkout docs/studies holds NAME.json, the result of a run with default options, for every study that the
-documentation shows; docs/data/NAME.md holds all its tables, folded (`data_page`). A document shows a table of few rows
+documentation shows; docs/data/NAME.md holds all its tables, folded. A document shows a table of few rows
 itself: between <!-- study NAME TABLE --> and <!-- end -->. Between <!-- studies --> and <!-- end --> stands the list of
 all studies. Pictures: `document_pictures`; keys of a configuration: `document_keys`; what crosses
 the cable of `bench`: its `wires`.
@@ -16,17 +17,41 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
-from plant_models.library.near_miss import near_miss
-from scripts.studies.data_page import data_page
-from scripts.studies.document_keys import keys_of
-from scripts.studies.document_pictures import is_stale, pictures_of, write_picture
-from scripts.studies.markdown_table import table
-from scripts.studies.named_study import study_named
-from scripts.studies.registry import STUDIES
+from plant_models.errors import near_miss
+from scripts.studies.document_parts import is_stale, keys_of, pictures_of, write_picture
+from scripts.studies.registry import STUDIES, study_named
 from scripts.studies.result import Result, read_result
-from scripts.studies.study import Study
-from synth.frame.input_error import InputError
+from scripts.studies.study import MarkdownTable, Study, table
+from synth.frame.faults import InputError
 from synth.retarder.bench.wires import COMMAND_WIRES, TOLD_WIRES
+
+
+def data_page(result: Result) -> str:
+    """The page of the kept `result`: its question, how it is run again, its tables, what is told besides."""
+    return "\n".join(parts_of(result))
+
+
+def parts_of(result: Result) -> Iterator[str]:
+    """The page, part by part."""
+    study = result.study
+    yield f"# {study.name}\n\n{study.question}\n"
+    again = f"`retarder-synth study {study.name} --document` makes this page again in {study.duration}."
+    page, _, anchor = study.page.partition("#")
+    if page:
+        link = f"../{page}#{anchor}" if anchor else f"../{page}"
+        again += f" What it means: [{page.rpartition('/')[2].removesuffix('.md').replace('-', ' ')}]({link})."
+    yield f"{again}\n"
+    for name, each in result.findings.tables().items():
+        yield folded(name, each)
+    told = (*result.findings.sentences(), *result.findings.faults())
+    if told:
+        yield "".join(f"- {sentence}\n" for sentence in told)
+
+
+def folded(name: str, each: MarkdownTable) -> str:
+    """The heading `name`, the sentence of the table, and the table behind it."""
+    return f"## {name}\n\n<details>\n<summary>{each.title}</summary>\n\n{each.markdown()}\n</details>\n"
+
 
 PAGES = Path("docs")
 KEPT = PAGES / "studies"

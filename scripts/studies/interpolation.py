@@ -13,13 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from plant_models import Plant
-from scripts.studies.cases import of_masses
-from scripts.studies.markdown_table import MarkdownTable, span, table
-from scripts.studies.options import option
-from scripts.studies.side_by_side import side_by_side
-from scripts.studies.study import Findings, Method, Tell
-from scripts.studies.tuned_table import lines_of_solution, rounded
-from synth.problem.aim import Aim
+from scripts.studies.cases import lines_of_solution, of_masses, rounded, side_by_side
+from scripts.studies.study import Findings, MarkdownTable, Method, Tell, option, span, table
+from synth.problem.problem import Aim
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import TableController, simulate

@@ -1,9 +1,13 @@
-"""All studies, in the order of their names. Listing them imports none of them."""
+"""All studies, in the order of their names, and one of them as the user writes it. Listing them imports none of
+them.
+"""
 
 from __future__ import annotations
 
+from plant_models.errors import near_miss
 from scripts.studies.study import Study
 from scripts.studies.yard_studies import YARD_STUDIES
+from synth.frame.faults import InputError
 
 POSITION_STUDIES: tuple[Study, ...] = (
     Study(
@@ -18,7 +22,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "What is gained when the regulator acts from before the entrance, and from how far?",
         150.0,
         "explanation/approach.md",
-        "scripts.studies.approach.study",
+        "scripts.studies.approach",
     ),
     Study(
         "benchmark",
@@ -61,7 +65,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "What does the on-line correction by the last exits gain on a plant that drifts, and cost on one that stays?",
         100.0,
         "explanation/correction.md#what-it-gains",
-        "scripts.studies.correction.study",
+        "scripts.studies.correction",
     ),
     Study(
         "coverage",
@@ -75,14 +79,14 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "What do other criteria than the mean square make of the tables, and what does a price on switchings buy?",
         41.0,
         "explanation/choices.md#criterion",
-        "scripts.studies.criteria.study",
+        "scripts.studies.criteria",
     ),
     Study(
         "degree",
         "Which degree do the polynomial lines need?",
         46.0,
         "explanation/choices.md#degree",
-        "scripts.studies.degree.study",
+        "scripts.studies.degree",
     ),
     Study(
         "estimator",
@@ -118,7 +122,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "How true are the numbers that measured passes tell, and do their intervals hold?",
         2400.0,
         "how-to/identify.md",
-        "scripts.studies.identification.study",
+        "scripts.studies.identification",
     ),
     Study(
         "interpolation",
@@ -132,7 +136,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "What limits the accuracy: what does each source of error or of delay cost a controller that knows of it?",
         28.0,
         "explanation/estimator.md",
-        "scripts.studies.limits.study",
+        "scripts.studies.limits",
     ),
     Study(
         "peers",
@@ -161,7 +165,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "How much of what can be recovered do tables recover that are tuned for measured passes?",
         75.0,
         "how-to/retune.md#measured",
-        "scripts.studies.retuning.study",
+        "scripts.studies.retuning",
     ),
     Study(
         "robustness",
@@ -205,15 +209,15 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "What do fewer switchings cost in accuracy, with commands at rest and at any time?",
         130.0,
         "explanation/any-time.md",
-        "scripts.studies.switching_price.study",
+        "scripts.studies.switching_price",
     ),
     Study(
         "time-price",
         "What does less time in a position cost in accuracy?",
         51.0,
         "explanation/choices.md#time",
-        "scripts.studies.time_price.study",
-        "scripts.studies.time_price.study",
+        "scripts.studies.time_price",
+        "scripts.studies.time_price",
     ),
     Study(
         "verification",
@@ -233,3 +237,11 @@ POSITION_STUDIES: tuple[Study, ...] = (
 )
 
 STUDIES: tuple[Study, ...] = tuple(sorted((*POSITION_STUDIES, *YARD_STUDIES), key=lambda study: study.name))
+
+
+def study_named(name: str) -> Study:
+    """The study called `name`. Raises `InputError` with a hint for another word."""
+    known = {study.name: study for study in STUDIES}
+    if name not in known:
+        raise InputError(f"study: there is no study {name!r}; {near_miss(name, known)} ('study --list' tells all)")
+    return known[name]

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scripts.studies.study import Findings, Study, Tell, silent
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -59,7 +59,7 @@ class Result:
 
 def run_study(study: Study, options: Any = None, tell: Tell = silent) -> Result:
     """The result with `options` (the defaults for None). Raises `InputError` for options that make no sense."""
-    from synth.solver.one_blas_thread import one_blas_thread
+    from synth.solver.descent import one_blas_thread
 
     method = study.method
     chosen = method.options() if options is None else options

@@ -9,8 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from scripts.studies.markdown_table import MarkdownTable, table
-from scripts.studies.study import Findings, Method, Tell
+from scripts.studies.study import Findings, MarkdownTable, Method, Tell, table
 
 if TYPE_CHECKING:
     import networkx as nx

@@ -16,22 +16,19 @@ from multiprocessing import get_context
 from pathlib import Path
 from random import Random
 
-from scripts.studies.cases import of_masses
-from scripts.studies.markdown_table import Interval, MarkdownTable, around, table
-from scripts.studies.options import option
-from scripts.studies.side_by_side import THREADS
-from scripts.studies.study import Findings, Method, Tell
+from scripts.studies.cases import THREADS, of_masses
+from scripts.studies.study import Findings, Interval, MarkdownTable, Method, Tell, around, option, table
 from synth.checker.claims import PredictionRatio, own_faults, simulated_faults
 from synth.checker.coarse_simulation import Passes, simulate
-from synth.checker.low_friction import GROUP
+from synth.checker.drawn_cuts import GROUP
 from synth.checker.statistics import figures_of
 from synth.checker.summary import read_summary
 from synth.checker.table_reading import Table, read_table
-from synth.frame.summary import plain, summary_head
+from synth.frame.told import plain, summary_head
 from synth.frame.workers.engine import Teller
+from synth.retarder.asked_tune import RadarEpochs
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configured import head_of
-from synth.retarder.radar_epochs import RadarEpochs
 from synth.retarder.tune import tune
 from synth.retarder.tuned_table import read_back
 from tuning_tables import write_json

@@ -7,7 +7,7 @@ import numpy as np
 from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.library.weight_category import WeightCategory
 from synth.aim.aim_table import AimOrder
-from synth.aim.limit_speed import thresholds_of
+from synth.aim.knowledge import thresholds_of
 from synth.aim.scene import AimScene
 
 CURVE_CUTS = 4000

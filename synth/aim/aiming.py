@@ -12,8 +12,7 @@ from synth.frame.exhibits import Chapter
 
 if TYPE_CHECKING:
     from plant_models.library import TrackEntry
-    from synth.aim.aim_acceptance import AimBookVerdict
-    from synth.aim.aim_book import AimBook
+    from synth.aim.aim_book import AimBook, AimBookVerdict
     from synth.aim.resolved_aim import ResolvedAim
 
 LIMITS_OF_USE = (
@@ -40,8 +39,8 @@ class FoundAim:
 def resolved(file: AimFile, track: TrackEntry | None = None) -> ResolvedAim:
     """Everything that tables depend on, for the `track`, None: that of the file; a book that does not fit is
     refused."""
-    from synth.aim.aimed_position import position_of
     from synth.aim.resolved_aim import resolve_aim
+    from synth.aim.table_position import position_of
 
     config = resolve_aim(file, track)
     position_of(config)
@@ -68,9 +67,8 @@ def steps(config: ResolvedAim) -> Steps:
 
 def compute(config: ResolvedAim, work: Work) -> FoundAim:
     """All tables, and the verdict on them."""
-    from synth.aim.aim_acceptance import judge_aims
-    from synth.aim.aim_book import aim_book
-    from synth.frame.creation_time import creation_time
+    from synth.aim.aim_book import aim_book, judge_aims
+    from synth.frame.version import creation_time
     from synth.kernels.cache import guarded
 
     book = guarded(aim_book, config, creation_time(), work.progress.done)

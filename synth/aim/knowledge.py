@@ -1,4 +1,8 @@
-"""From what is known of a cut to the exit speed that it is commanded: by category, or by a reading besides."""
+"""From what is known of a cut to the exit speed that it is commanded: by category, or by a reading besides.
+
+The highest command that keeps the probability of over-speed is a quantile of a sorted list of thresholds; a reading is
+what can be measured of a cut before its exit speed is set, and how well.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +11,108 @@ from typing import Protocol
 
 import numpy as np
 from scipy.optimize import isotonic_regression
+from scipy.special import ndtri
 
-from plant_models.frozen_arrays import Floats, frozen_arrays
-from synth.aim.limit_speed import thresholds_of
-from synth.aim.readings import Reading
+from plant_models.errors import require_between
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
+from plant_models.rolling.random_numbers import Purpose
 from synth.aim.scene import SceneCuts
+
+
+@frozen_arrays
+class Thresholds:
+    """Commands above which n cuts couple too fast at k places: `sorted_m_s` (n, k), each column sorted, and `order`
+    (n, k): whose they are. Build it with `thresholds_of`."""
+
+    sorted_m_s: Floats
+    order: Ints
+
+    def overspeed(self, commanded_m_s: Floats) -> Floats:
+        """Share of the cuts that couple too fast at place k when all are commanded `commanded_m_s` (k,)."""
+        columns = range(self.sorted_m_s.shape[1])
+        below = [np.searchsorted(self.sorted_m_s[:, k], commanded_m_s[k], side="left") for k in columns]
+        return np.array(below) / len(self.sorted_m_s)
+
+    def limit_speeds(self, p_overspeed: float, bounds_m_s: tuple[float, float]) -> Floats:
+        """The highest command for each place, (k,), that at most the share `p_overspeed` of the cuts couples too fast
+        with; at most the upper bound, and NaN where even the lower bound is too fast."""
+        return bounded(self.sorted_m_s[int(p_overspeed * len(self.sorted_m_s))], bounds_m_s)
+
+    def weighted_limit_speeds(self, weights: Floats, p_overspeed: float, bounds_m_s: tuple[float, float]) -> Floats:
+        """As `limit_speeds`, each cut counting by its weight (n,)."""
+        kept = p_overspeed * weights.sum()
+        places = [place_beyond(kept, weights, order) for order in self.order.T]
+        return bounded(self.sorted_m_s[places, np.arange(len(places))], bounds_m_s)
+
+
+def thresholds_of(thresholds_m_s: Floats) -> Thresholds:
+    """The list of `thresholds_m_s` (n, k), sorted."""
+    order = np.argsort(thresholds_m_s, axis=0, kind="stable")
+    return Thresholds(np.take_along_axis(thresholds_m_s, order, axis=0), order)
+
+
+def place_beyond(limit: float, weights: Floats, order: Ints) -> int:
+    """First place at which the weights (n,) in `order` (n,) add up to more than `limit`, or the last one.
+
+    The first quarter of the places is added up first, as it mostly is enough.
+    """
+    for count in (len(order) // 4, len(order)):
+        passed = np.cumsum(weights[order[:count]])
+        if passed.size and passed[-1] > limit:
+            break
+    return min(int(np.searchsorted(passed, limit, side="right")), len(order) - 1)
+
+
+def bounded(speeds_m_s: Floats, bounds_m_s: tuple[float, float]) -> Floats:
+    """Speeds down to the upper bound, NaN below the lower one."""
+    low, high = bounds_m_s
+    return np.where(speeds_m_s >= low, np.minimum(speeds_m_s, high), np.nan)
+
+
+MOST_N_PER_KN = 50.0
+"""Resistance that stands for a cut that stopped on the stretch."""
+
+
+@frozen_arrays
+class TrueReadings:
+    """Of n cuts: the reading of a sensor without error, and the standard deviation of its error, each (n,)."""
+
+    value: Floats
+    std: Floats
+
+    def with_error(self, cuts: SceneCuts) -> Floats:
+        """Readings as the sensor gives them for these cuts, (n,)."""
+        return self.value + self.std * ndtri(cuts.numbers(Purpose.SPEED_NOISE, 1)[:, 0])
+
+
+class Reading(Protocol):
+    """A kind of reading. The higher it is, the worse the cut rolls."""
+
+    def of(self, cuts: SceneCuts) -> TrueReadings:
+        """What it reads of these cuts."""
+
+
+@dataclass(frozen=True)
+class ResistanceByTwoSpeeds:
+    """Mean resistance on the scene's stretch from the speeds at both ends, each with an error of `speed_std_m_s`:
+    w = i − (v2² − v1²)/(2 g' L), N/kN; grade, mass and axles are known ([kozachenko-aimed] has three such points)."""
+
+    speed_std_m_s: float
+
+    def __post_init__(self) -> None:
+        require_between("measured stretch: speed_std_m_s", self.speed_std_m_s, 1e-4, 2.0)
+
+    def of(self, cuts: SceneCuts) -> TrueReadings:
+        """Resistance on the stretch, N/kN; `MOST_N_PER_KN` for a cut that stopped there."""
+        v1, v2 = cuts.measured_speeds_m_s
+        stretch, gravity = cuts.scene.stretch, cuts.rolling.cuts.reduced_gravity_m_s2
+        length = stretch.to_m - stretch.from_m
+        begin = cuts.begin_m
+        fall = cuts.rolling.fall_m(begin + length) - cuts.rolling.fall_m(begin)
+        value = 1e3 * (fall - (v2**2 - v1**2) / (2.0 * gravity)) / length
+        std = 1e3 * self.speed_std_m_s * np.hypot(v1, v2) / (gravity * length)
+        return TrueReadings(np.where(v2 > 0.0, value, MOST_N_PER_KN), std)
+
 
 NODES = 25
 """At which commands by a reading are worked out."""

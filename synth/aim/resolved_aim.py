@@ -20,29 +20,26 @@ from plant_models.library import (
     load_track,
     load_weight_categories,
 )
-from plant_models.library.car_mix_entry import CarMixEntry, load_car_mix
+from plant_models.library.car_entry import CarMixEntry, load_car_mix
 from plant_models.library.data_file import keyed
 from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
-from plant_models.rolling.weather import Weather
-from synth.aim.configuration.aim_file import AimFile
-from synth.aim.configuration.asked_cuts import members_of
-from synth.aim.configuration.parameters import aim_numbers
+from plant_models.rolling.roll_track import Weather
+from synth.aim.configuration.aim_file import AimFile, aim_numbers, members_of, track_with_settings
 from synth.aim.configuration.settings import (
     AimAcceptanceSettings,
     AimedSettings,
     AimFileSettings,
 )
 from synth.aim.configuration.simulation_settings import SimulationSettings
-from synth.aim.configuration.track_values import track_with_settings
 from synth.aim.scene import AimScene, MeasuredStretch
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.settings.numbers import range_warnings
-from synth.frame.settings.output import OutputSettings
+from synth.frame.settings.section import OutputSettings
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.plant_fault import in_file, require_held
-from synth.retarder.forms.table_file import book_in
-from tuning_tables.canonical import canonical_json
+from synth.retarder.forms.tables_at import book_in
+from tuning_tables.json_text import canonical_json
 
 BOUNDS_M_S: Final = (0.5, 7.0)
 """Exit speeds that a park position may be told."""

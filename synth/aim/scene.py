@@ -15,7 +15,7 @@ from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
 from plant_models.rolling.roll_track import RollTrack
-from synth.aim.coupling_speed import COUPLING_SPEED_M_S
+from synth.aim.configuration.shared_settings import COUPLING_SPEED_M_S
 from synth.simulation.free_roll import RollingCuts, rolling_cuts
 
 SLOWEST_M_S = 0.3

@@ -8,17 +8,16 @@ from functools import partial
 from typing import Any, Final
 
 from plant_models.library.weight_category import WeightCategory
-from synth.aim.aim_acceptance import AimBookVerdict, AimVerdict
-from synth.aim.aim_book import AimBook, MadeAim, order_of
+from synth.aim.aim_book import AimBook, AimBookVerdict, AimVerdict, MadeAim, order_of
 from synth.aim.aim_curves import aim_curves, runners
-from synth.aim.aimed_position import position_of
 from synth.aim.resolved_aim import ResolvedAim
+from synth.aim.table_position import position_of
 from synth.frame.exhibits import Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, percent
-from synth.retarder.case_names import file_stem
 from synth.retarder.forms.code_options import PLAIN
 from synth.retarder.forms.table_forms import FORMS
+from synth.retarder.tuned_case import file_stem
 
 SHOWN: Final = 4
 """Free distances of a brief row."""

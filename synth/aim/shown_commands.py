@@ -8,7 +8,7 @@ from typing import Any
 from synth.aim.aim_book import AimBook, MadeAim
 from synth.frame.exhibits import Chart, Column, Exhibit, Table
 from synth.frame.printed_numbers import decimals
-from synth.retarder.case_names import file_stem
+from synth.retarder.tuned_case import file_stem
 from tuning_tables.aim import AimTable
 
 

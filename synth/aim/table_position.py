@@ -1,19 +1,48 @@
-"""A position that runs exported tables: each cut through the closed loop, once for every target of its class."""
+"""The park position of an aim configuration as it obeys commands: with a normal error, or as its own tables make it:
+each cut through the closed loop, once for every target of its class.
+"""
 
 from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from plant_models import PlantError
 from plant_models.frozen_arrays import Floats, Ints
-from synth.aim.position_models import SampledExits
+from synth.aim.position_models import NormalPosition, PositionModel, SampledExits
+from synth.aim.resolved_aim import ResolvedAim
 from synth.aim.scene import SceneCuts
+from synth.frame.faults import InputError
 from synth.retarder.table_class import TableClass, draws, taken
 from synth.simulation.random_passes import RandomPasses, random_passes
+
+
+def position_of(config: ResolvedAim) -> PositionModel:
+    """The model that the configuration asks for; `InputError` for a book that does not fit, `TableError` if damaged."""
+    if config.book is None:
+        assert config.exit_std_m_s is not None
+        return NormalPosition(config.exit_std_m_s)
+    return tabled(config, *config.book)
+
+
+def tabled(config: ResolvedAim, book: Path, tuned_with: Path | None) -> PositionModel:
+    """The closed loops of the tables in `book`, for every category and number of cars that is asked for."""
+    from synth.retarder.table_class import book_classes, unfitting
+
+    named = f"{config.place}: aim.tables"
+    position = TablePosition(book_classes(named, book, tuned_with, config.position_name))
+    try:
+        for member in config.members:
+            for cars in config.cars:
+                position.able(config.scene.draw(member, cars, config.simulation.seed, 0, 1))
+    except PlantError as fault:
+        raise InputError(unfitting(named, book, fault)) from None
+    return position
+
 
 CHUNK = 2000
 """Cuts whose random numbers are in memory at a time, for each thread."""

@@ -8,9 +8,9 @@ from synth.aim.aim_book import aim_book
 from synth.aim.configuration.aim_file import parse_aim_file
 from synth.aim.resolved_aim import ResolvedAim, resolve_aim
 from synth.api.as_a_command import as_a_command
-from synth.frame.creation_time import creation_time
 from synth.frame.settings.settings_file import BUILT_IN
 from synth.frame.settings.toml_file import read_text
+from synth.frame.version import creation_time
 from tuning_tables.aim import AimTables
 
 

@@ -7,7 +7,7 @@ from functools import wraps
 from typing import ParamSpec, TypeVar
 
 from synth.kernels.cache import guarded
-from synth.solver.one_blas_thread import one_blas_thread
+from synth.solver.descent import one_blas_thread
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")

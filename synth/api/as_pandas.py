@@ -15,7 +15,7 @@ from synth.logs.identify import Identified
 from synth.logs.identify_shown import NUMBERS, number_row
 from synth.retarder.comparison.measured import Measured
 from synth.retarder.exit_figures import LOOP, loop_row
-from synth.retarder.shown.controllers import CONTROLLER, controller_row
+from synth.retarder.shown.results import CONTROLLER, controller_row
 from synth.simulation.exit_statistics import ExitStatistics
 from tuning_tables import ControllerTable
 from tuning_tables.aim import AimTable

@@ -11,19 +11,18 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import Floats
 from synth.api.passes import Simulated
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.logs.fitting_passes import FittingPasses
 from synth.simulation.passes import PassTrace
 from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable
 from tuning_tables.aim import AimTable
-from tuning_tables.book_image import COORDINATES
-from tuning_tables.book_layout import AXES, book_layout
+from tuning_tables.book_layout import AXES, COORDINATES, book_layout
 from tuning_tables.declared.columns import columns_of, told_sections
+from tuning_tables.document import StageTable
 from tuning_tables.pass_log import PassLog
 from tuning_tables.pass_log.pass_log import PASSES, ROWS
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.table_kinds import StageTable
 from tuning_tables.units import NO_UNIT, ending_of, unit_of
 
 if TYPE_CHECKING:

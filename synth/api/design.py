@@ -6,21 +6,20 @@ from dataclasses import dataclass
 
 from synth.api.as_a_command import as_a_command
 from synth.api.problems import Config, load_problem, problem_sha256, resolved, usual_resolution
-from synth.frame.creation_time import creation_time
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
+from synth.frame.version import creation_time
 from synth.problem.problem import Problem
-from synth.problem.requirement_found import Finding
+from synth.problem.requirement import Finding
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.retarder.checked_design import checked_design
 from synth.retarder.class_setup import class_setup, origin_of, validation_passes
 from synth.retarder.configuration.settings import FitSettings
-from synth.retarder.rounded_table import with_prediction
-from synth.retarder.tuned_table import solutions, tuned_table
+from synth.retarder.tuned_table import solutions, tuned_table, with_prediction
 from synth.solver.backward_induction import Solution
 from synth.solver.backward_induction import solve as solve_chain
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from synth.solver.descent import Descent
-from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.switching_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED
 from synth.solver.tabulate import tabulate as tabulate_lines
 from tuning_tables import ControllerTable

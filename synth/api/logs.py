@@ -5,17 +5,16 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-from plant_models.pressure_gauge import USUAL_NOISE_KPA, PressureGauge
+from plant_models.pressure_regulator import USUAL_NOISE_KPA, PressureGauge
 from synth.api.as_a_command import as_a_command
 from synth.api.problems import Config, resolved
-from synth.frame.processors import available
-from synth.logs.fitting_passes import FittingPasses
+from synth.frame.machine import available
+from synth.logs.fitting_passes import FittingPasses, loaded_passes
 from synth.logs.identify import Identified, require_enough
 from synth.logs.identify import identify as identify_passes
-from synth.logs.loaded_passes import loaded_passes
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import TableController
-from synth.simulation.logged_passes import logged_passes
+from synth.simulation.sampled_pass import logged_passes
 from tuning_tables import ControllerTable
 from tuning_tables.pass_log import PassLog
 

@@ -114,7 +114,7 @@ def figures(result: Identified | HumpedTrial | AimTables) -> dict[str, Figure]:
 
             exhibits = exhibits_of(tuple(COMMAND.show(result)))
         case AimTables():
-            from synth.aim.pictures.commands import aim_figures
+            from synth.aim.pictures import aim_figures
 
             return dict(aim_figures(result.tables))
         case _:

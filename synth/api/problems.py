@@ -9,15 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from plant_models.library.near_miss import near_miss
-from synth.frame.input_error import InputError
-from synth.problem.aim import Aim
-from synth.problem.problem import Problem
+from plant_models.errors import near_miss
+from synth.frame.faults import InputError
+from synth.problem.problem import Aim, Problem
 from synth.problem.resolution import Resolution
 from synth.retarder.configuration.config_file import load_config as load_config_file
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configuration.settings import GridSettings
-from tuning_tables.canonical import canonical_json
+from tuning_tables.json_text import canonical_json
 
 Config = ResolvedConfig | Path | str | None
 """A configuration, the file that it is in, or None for the built-in one."""
@@ -87,7 +86,7 @@ def load_problem(cut: str, target_m_s: float, config: Config = None) -> Problem:
     >>> synth.load_problem("gondola-4-52", 3.0)
     Traceback (most recent call last):
     ...
-    synth.frame.input_error.InputError: the configuration has no cut class 'gondola-4-52'; did you mean gondola-4-52t?
+    synth.frame.faults.InputError: the configuration has no cut class 'gondola-4-52'; did you mean gondola-4-52t?
     """
     known = resolved(config)
     plants = dict(known.plants())

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from synth.api.as_a_command import as_a_command
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.hump.configuration.trial_file import read_trial_file
+from synth.hump.rolling.outcomes import joined
 from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.outcomes import joined
-from synth.hump.trains.resolved_trial import ResolvedTrial, resolve_trial
-from synth.hump.trains.trial import BATCH
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.resolved_trial import ResolvedTrial, resolve_trial
+from synth.hump.trial.trial import BATCH
 
 
 def load_trial(source: Path | str | None = None, seed: int | None = None) -> ResolvedTrial:

@@ -17,10 +17,9 @@ from synth.checker.book_layout import (
     require_filled_up,
     require_stored,
 )
-from synth.checker.canonical import canonical_form
+from synth.checker.content import LARGEST_BYTES, canonical_form
 from synth.checker.document_shape import TEXT, OneOf, OrNull, Pair, Row, Single, is_a
 from synth.checker.finding import DamagedError, shown
-from synth.checker.source_file import LARGEST_BYTES
 
 SIGNATURE: Final = b"\x89HDF\r\n\x1a\n"
 SEAL: Final = b"\n# sealed, sha256 of all before this line: "

@@ -23,8 +23,8 @@ from random import Random
 from typing import Final
 
 from synth.checker.brake_drive import BrakeDrive
+from synth.checker.drawn_cuts import friction_numbers
 from synth.checker.estimator import Observer
-from synth.checker.low_friction import friction_numbers
 from synth.checker.plant import GRAVITY_M_S2, Plant
 from synth.checker.table_reading import Line, Table
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from math import prod
 from typing import Final, NamedTuple
 
-from synth.checker.canonical import crc32
+from synth.checker.content import crc32
 from synth.checker.finding import DamagedError, shown
 from synth.checker.float32 import WORD, bits, from_bits, is_float32, rounded
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from synth.checker.book_layout import SWITCHING, with_infinities
-from synth.checker.canonical import canonical_form, crc32
+from synth.checker.content import canonical_form, crc32
 from synth.checker.finding import DamagedError, shown
 
 Rows = dict[tuple[str, str], tuple[str, ...]]

@@ -1,4 +1,6 @@
-"""What JSON documents of tables must look like, and the comparison with it."""
+"""What JSON documents of tables must look like, the comparison with it, and the numbers of weight categories, as
+docs/reference/table-format.md fixes them.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from synth.checker.canonical import canonical_form, crc32, parse_json, without_checksum
+from synth.checker.content import canonical_form, crc32, parse_json, without_checksum
 from synth.checker.finding import DamagedError, shown
 
 TEXT, NUMBER, COUNT = "a string", "a number", "a whole number"
@@ -208,3 +210,21 @@ def origin_faults(document: Mapping[str, Any]) -> Iterator[str]:
         yield f"its config_sha256, {document['generator']['config_sha256'][:70]!r}, is not one"
     if re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z", document["created"], re.ASCII) is None:
         yield f"its date {document['created'][:40]!r} is not one"
+
+
+YARD: Final = {"Л": 1, "ЛС": 2, "С": 3, "СТ": 4, "Т": 5}
+OWN: Final = range(16, 256)
+
+
+def number_of(cut: dict[str, Any]) -> int | None:
+    """The number of the category of a cut: stated, or that of the yard's own; None for neither.
+
+    Raises `DamagedError` where another one is stated.
+    """
+    stated, known = cut.get("category_number"), YARD.get(cut["category"])
+    if stated is None:
+        return known
+    right = stated == known if known is not None else stated in OWN
+    wanted = str(known) if known is not None else "from 16 to 255"
+    refuse_unless(right, stated, f"cut.category_number of {cut['category']}", wanted)
+    return int(stated)

@@ -9,26 +9,30 @@ from functools import partial
 from pathlib import Path
 from typing import Final, TypeAlias, TypeVar
 
-from synth.checker.aim.csv_export import aim_differences, aim_sheet_differences
-from synth.checker.aim.numbers import due_of_aims
-from synth.checker.aim.reading import Aim
-from synth.checker.book_categories import without_number
-from synth.checker.category_constants import ascii_comment
-from synth.checker.code_export import Due, c_differences, st_differences
-from synth.checker.code_file import AIMS, FOLDERS, LINES, PASSAGES, CodeFile, CodeKind, code_files
+from synth.checker.aim.exports import aim_differences, aim_sheet_differences, due_of_aims
+from synth.checker.aim.table import Aim
+from synth.checker.code_export import (
+    AIMS,
+    FOLDERS,
+    LINES,
+    PASSAGES,
+    CodeFile,
+    CodeKind,
+    Due,
+    ascii_comment,
+    c_differences,
+    code_files,
+    st_differences,
+)
+from synth.checker.content import content_of, text_of
 from synth.checker.csv_export import read_rows, sheet_differences
-from synth.checker.export_check import Check, Differences, findings_of
-from synth.checker.finding import DamagedError, Finding, Kind
-from synth.checker.golden_export import vector_differences
-from synth.checker.line_numbers import due_of_lines
-from synth.checker.passages.golden_stages import stage_differences
-from synth.checker.passages.numbers import due_of_passages
-from synth.checker.passages.reading import PassageTable
+from synth.checker.finding import Check, DamagedError, Differences, Finding, Kind, findings_of
+from synth.checker.line_exports import due_of_lines, track_differences, vector_differences
+from synth.checker.passages.exports import due_of_passages, stage_differences
+from synth.checker.passages.table import PassageTable
 from synth.checker.plc_text import structured_text
-from synth.checker.source import Source, named
-from synth.checker.source_file import content_of, text_of
+from synth.checker.source import Source, named, without_number
 from synth.checker.table_reading import Table
-from synth.checker.track_export import track_differences
 
 PLACE: Final = re.compile(r"[/(]\*\s+(\d{1,6}): ([^*]*?) \*[/)]")
 """How all forms name a table: its number in the export, and its id in ASCII, perhaps on several lines."""

@@ -1,9 +1,11 @@
-"""What is wrong with a table or an export, in one sentence."""
+"""What is wrong with a table or an export, in one sentence, and what became of one comparison."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
 
 
 class Kind(Enum):
@@ -38,3 +40,19 @@ def shown(value: object) -> str:
     """`value` for a message, at most 60 characters of it."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+Differences = Iterator[tuple[str, str]]
+"""(about, sentence): the id of a table, "" for the export itself."""
+
+Check = Callable[[Path, Callable[[], Differences]], None]
+"""Compares the export in a file by the function, and keeps what was found."""
+
+
+def findings_of(name: str, compare: Callable[[], Differences]) -> Iterator[Finding]:
+    """What the comparison of the export called `name` finds."""
+    try:
+        for about, sentence in compare():
+            yield Finding(Kind.DISAGREES, about or name, f"{name}: {sentence}" if about else sentence)
+    except DamagedError as fault:
+        yield Finding(Kind.DAMAGED, name, str(fault))

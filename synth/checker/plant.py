@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
-from synth.checker.canonical import canonical_form
-from synth.checker.entry import Entry, entry_of
+from synth.checker.content import canonical_form
+from synth.checker.drawn_cuts import Entry, entry_of
 from synth.checker.finding import shown
 
 GRAVITY_M_S2: Final = 9.81

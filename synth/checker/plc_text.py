@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
+from synth.checker.content import text_of
 from synth.checker.finding import DamagedError
-from synth.checker.source_file import text_of
 
 PLCOPEN: Final = "{http://www.plcopen.org/xml/tc6_0201}"
 XHTML: Final = "{http://www.w3.org/1999/xhtml}"

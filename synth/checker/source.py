@@ -1,4 +1,6 @@
-"""What there is to verify at a path: tables from JSON files and from a book, and the order of the book."""
+"""What there is to verify at a path: tables from JSON files and from a book, the order of the book, and whether
+its tables agree on the numbers of their weight categories.
+"""
 
 from __future__ import annotations
 
@@ -8,21 +10,35 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, TypeAlias, TypeVar
 
-from synth.checker.aim.reading import AIM, Aim, read_aim
-from synth.checker.book_categories import contradictions
+from synth.checker.aim.table import AIM, Aim, read_aim
 from synth.checker.book_reading import SIGNATURE, read_documents
-from synth.checker.canonical import canonical_form
+from synth.checker.content import canonical_form, content_of
 from synth.checker.document_shape import LINES, LINES_SHAPE, require_shape
 from synth.checker.finding import DamagedError, Finding, Kind, NothingToVerifyError, shown
-from synth.checker.passages.reading import (
-    PASSAGES,
-    PASSAGES_SHAPE,
-    PassageTable,
-    passage_table_of,
-    read_passage_table,
-)
-from synth.checker.source_file import content_of
+from synth.checker.passages.table import PASSAGES, PASSAGES_SHAPE, PassageTable, passage_table_of, read_passage_table
 from synth.checker.table_reading import Table, read_table, table_of
+
+
+def without_number(tables: Sequence[Table | PassageTable]) -> Iterator[tuple[str, str]]:
+    """(id, sentence) for each table whose category no controller code can name."""
+    for table in tables:
+        if table.category_number is None:
+            yield table.id, f"its category {table.category} has no number, so it makes no controller code"
+
+
+def contradictions(tables: Sequence[Table | PassageTable]) -> Iterator[tuple[str, str]]:
+    """(id, sentence) where a name has two numbers, or a number two names."""
+    names: dict[str, Table | PassageTable] = {}
+    numbers: dict[int, Table | PassageTable] = {}
+    for table in tables:
+        first = names.setdefault(table.category, table)
+        if first.category_number != table.category_number:
+            yield table.id, f"its category {table.category} has another number than in {first.id}"
+        if table.category_number is not None:
+            first = numbers.setdefault(table.category_number, table)
+            if first.category != table.category:
+                yield table.id, f"the number of its category {table.category} is that of {first.category} in {first.id}"
+
 
 Kept = TypeVar("Kept", Table, Aim, PassageTable)
 Bound: TypeAlias = Table | PassageTable

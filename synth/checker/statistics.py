@@ -9,7 +9,7 @@ from statistics import NormalDist
 from typing import Final
 
 from synth.checker.coarse_simulation import Passes
-from synth.checker.low_friction import GROUP
+from synth.checker.drawn_cuts import GROUP
 
 OVERSPEED_M_S: Final = 0.3
 """An exit faster than the target by more than this is an over-speed."""

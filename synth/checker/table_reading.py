@@ -6,8 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from synth.checker.category_number import number_of
-from synth.checker.document_shape import AT_ANY_TIME, LINES, LINES_SHAPE, SLOPES, checked_document, refuse_unless
+from synth.checker.document_shape import (
+    AT_ANY_TIME,
+    LINES,
+    LINES_SHAPE,
+    SLOPES,
+    checked_document,
+    number_of,
+    refuse_unless,
+)
 from synth.checker.estimator import Estimator, estimator_of
 
 Line = tuple[float, ...]

@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from synth.checker.aim.reading import Aim
 from synth.checker.aim.sense import claim_faults
 from synth.checker.aim.sense import sense as aim_sense
-from synth.checker.canonical import require_right_crc32
+from synth.checker.aim.table import Aim
 from synth.checker.claims import own_faults, simulated_faults
 from synth.checker.coarse_simulation import NotModelledError, simulate
+from synth.checker.content import require_right_crc32
 from synth.checker.estimator_sense import estimator_faults
 from synth.checker.exports import ExportReport, check_exports
 from synth.checker.finding import DamagedError, Finding, Kind
-from synth.checker.passages.reading import PassageTable
 from synth.checker.passages.sense import sense as passage_sense
 from synth.checker.passages.simulation import simulate as simulate_passages
+from synth.checker.passages.table import PassageTable
 from synth.checker.plant import UnusableConfigError
 from synth.checker.source import Source, read_source
 from synth.checker.statistics import ExitFigures, figures_of

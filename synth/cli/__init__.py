@@ -68,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from synth.frame.terminal.interrupt import interruptible
     from synth.frame.terminal.standard_streams import standard_streams
 
-    # See `synth.solver.one_blas_thread`; before BLAS is loaded it starts no threads at all.
+    # See `synth.solver.descent`; before BLAS is loaded it starts no threads at all.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     # No other package changes what a file may say, and nobody waits while all that are installed are asked for plugins.
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
@@ -104,7 +104,7 @@ def told(call: Callable[[], int]) -> int:
         say("there is not enough memory; free some, or raise the limit of it (ulimit -v), then run the command again")
         return MACHINE_FAULT
     except ValueError as fault:
-        from synth.frame.input_error import InputError
+        from synth.frame.faults import InputError
 
         if isinstance(fault, InputError):
             say_each(fault.sentences)
@@ -129,7 +129,7 @@ def told_of_value(fault: ValueError) -> int:
 
 def told_of_system(fault: OSError) -> int:
     """Tell of what the system has refused; the exit code."""
-    from synth.frame.machine_fault import MACHINE_FAULTS
+    from synth.frame.faults import MACHINE_FAULTS
 
     if fault.errno is None:  # from a library, not from the system
         return told_of_unforeseen(fault)
@@ -141,7 +141,7 @@ def told_of_system(fault: OSError) -> int:
 
 def told_of_unforeseen(fault: Exception) -> int:
     """Tell of a fault of this program; the exit code."""
-    from synth.frame.unforeseen import unforeseen
+    from synth.frame.faults import unforeseen
 
     if os.environ.get(TRACEBACK):
         import traceback

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.manner import Manner
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from tuning_tables.table_kinds import AnyTable
+    from tuning_tables.document import AnyTable
 
 
 @dataclass(frozen=True)
@@ -29,12 +29,10 @@ class AskedCode:
 def export_command(source: Path, form: str, output: Path, asked: AskedCode, manner: Manner) -> int:
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
     from synth.frame.results_directory import results_directory
+    from synth.retarder.configured import configuration_file
     from synth.retarder.forms.code_options import CONTROLLER_NAMES, FMU_NAMES, code_options
-    from synth.retarder.forms.configuration_beside import configuration_file
-    from synth.retarder.forms.correction_form import correction_files
-    from synth.retarder.forms.table_file import files_at
-    from synth.retarder.forms.table_forms import FORMS
-    from synth.retarder.forms.tables_at import tables_at
+    from synth.retarder.forms.table_forms import FORMS, correction_files
+    from synth.retarder.forms.tables_at import files_at, tables_at
     from tuning_tables import InvalidTable
 
     if form not in FORMS:
@@ -51,8 +49,8 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, mann
         for sentence in shadows(source, tables):
             manner.warn(f"warning: {sentence}")
     if form in FMU_NAMES:
-        from synth.retarder.fmi.interfaces import INTERFACES
-        from synth.retarder.forms.position_form import position_files
+        from synth.retarder.fmi.description import INTERFACES
+        from synth.retarder.fmi.position_unit import position_files
 
         files |= position_files(source, tables, INTERFACES[form], options.prefix, manner.warn)
     with results_directory(output, "export", files_at(source)) as directory:

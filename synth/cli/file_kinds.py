@@ -12,7 +12,7 @@ from pathlib import Path
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, Final
 
-from synth.frame.completion import library_names
+from synth.frame.arguments import library_names
 
 if TYPE_CHECKING:
     from plant_models.library import Kind
@@ -48,7 +48,7 @@ def declared(word: str, title: str, model: str, text: str) -> FileKind:
 
     def made(name: str) -> str:
         if name:
-            from synth.frame.input_error import InputError
+            from synth.frame.faults import InputError
 
             raise InputError(f"init {word} {name}: there is one such file, without a name; leave {name} out")
         found: str = resolve_name(text)()
@@ -59,7 +59,7 @@ def declared(word: str, title: str, model: str, text: str) -> FileKind:
 
 def model_schema(title: str, model: str) -> Mapping[str, Any]:
     """The schema of a declared model, which is called "module:NAME"."""
-    from synth.frame.settings.schema import schema_of
+    from synth.frame.settings.numbers import schema_of
 
     return schema_of(resolve_name(model), title)
 
@@ -70,7 +70,7 @@ SETTINGS: Final = "synth.retarder.configuration.settings:Settings"
 def configuration_text(name: str) -> str:
     """The configuration of the position `name`."""
     from plant_models.library import BUILT_IN, POSITIONS
-    from synth.retarder.configuration.config_template import default_config_toml
+    from synth.retarder.configuration.config_file import default_config_toml
     from synth.retarder.configuration.plant_fault import require_held
 
     if not name:
@@ -81,7 +81,7 @@ def configuration_text(name: str) -> str:
 def point_sensors_text(name: str) -> str:
     """A configuration with point sensors, of the position `name` or as the file `name` has it."""
     from plant_models.library import BUILT_IN, POSITIONS
-    from synth.retarder.configuration.config_template import default_sensors_toml, filled_sensors_toml
+    from synth.retarder.configuration.config_file import default_sensors_toml, filled_sensors_toml
     from synth.retarder.configuration.plant_fault import require_held
 
     if name.endswith(".toml"):
@@ -93,7 +93,7 @@ def point_sensors_text(name: str) -> str:
 
 def kind_of(folder: str) -> Kind:
     """The kind of types whose files lie in `folder`."""
-    from plant_models.library.type_file import HUMPS, KINDS
+    from plant_models.library.library import HUMPS, KINDS
 
     (kind,) = (kind for kind in (*KINDS, HUMPS) if kind.folder == folder)
     return kind
@@ -120,9 +120,9 @@ def of_library(word: str, title: str, folder: str) -> FileKind:
 
 def hump_text(name: str) -> str:
     """The file of the hump `name`."""
+    from plant_models.errors import near_miss
     from plant_models.library.hump_entry import hump_names
-    from plant_models.library.near_miss import near_miss
-    from synth.frame.input_error import InputError
+    from synth.frame.faults import InputError
     from synth.hump import hump_file
 
     if name and name not in hump_names():
@@ -166,19 +166,19 @@ FILE_KINDS: Final = (
         "aim",
         "Configuration of aim tables",
         "synth.aim.configuration.settings:AimFileSettings",
-        "synth.aim.configuration.template:default_aim_toml",
+        "synth.aim.configuration.aim_file:default_aim_toml",
     ),
     declared(
         "trial",
         "Configuration of a hump trial",
         "synth.hump.configuration.settings:HumpTrialSettings",
-        "synth.hump.configuration.template:default_trial_toml",
+        "synth.hump.configuration.trial_file:default_trial_toml",
     ),
     declared(
         "computer",
         "Configuration of a control computer",
         "synth.computer.settings:ComputerSettings",
-        "synth.computer.template:default_computer_toml",
+        "synth.computer.settings:default_computer_toml",
     ),
     declared(
         "short-hump",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from synth.frame.command_guide import CommandGuide, Shown
+from synth.frame.command_line import CommandGuide, Shown
 
 TOP: Final = CommandGuide(
     "",

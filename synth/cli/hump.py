@@ -24,9 +24,8 @@ MOST_TOLD = 30
 def check_command(source: Path, manner: Manner) -> int:
     """Tell what the hump in `source` has, where everything stands, and what is likely a mistake; `InputError` with all
     faults of it."""
-    from synth.frame.summary import figures_of, plain, tables_of
-    from synth.frame.terminal.told_print import brief_exhibits
-    from synth.hump.checking.checked_hump import checked_hump
+    from synth.frame.told import brief_exhibits, figures_of, plain, tables_of
+    from synth.hump.checked_hump import checked_hump
     from synth.hump.hump_file import read_hump
     from synth.retarder.configuration.plant_fault import in_file
 
@@ -52,8 +51,7 @@ def check_command(source: Path, manner: Manner) -> int:
 
 def routes_command(source: Path, manner: Manner) -> int:
     """Print every route of the hump in `source`, and the lists of tracks of its switches."""
-    from synth.hump.control.hump_document import routes_document
-    from synth.hump.hump_file import read_hump
+    from synth.hump.hump_file import read_hump, routes_document
 
     graph = read_hump(source).entry.graph
     manner.give(partial(routes_document, graph), partial(routes_page, graph))
@@ -85,9 +83,9 @@ def draw_command(source: Path, output: Path, track: int | None, manner: Manner) 
 
     hump = read_hump(source).entry
     route = drawn_route(hump.graph, track)
-    from synth.frame.picture.figure_file import figure_files
-    from synth.hump.control.pictures.hump_picture import hump_picture
+    from synth.frame.picture.house_style import figure_files
     from synth.hump.design_runners import roll_runners
+    from synth.hump.hump_picture import hump_picture
     from synth.kernels.cache import guarded
 
     with results_directory(output, "hump draw", [source]) as directory:
@@ -101,11 +99,10 @@ def draw_command(source: Path, output: Path, track: int | None, manner: Manner) 
 
 def export_command(source: Path, form: str, output: Path, manner: Manner) -> int:
     """Write the hump in `source` as `form` into the directory `output`."""
-    from synth.frame.input_error import InputError
+    from synth.frame.faults import InputError
     from synth.frame.results_directory import results_directory
-    from synth.hump.forms.hump_csv import to_csv, to_xlsx
-    from synth.hump.forms.hump_tree import tree_toml
     from synth.hump.hump_file import read_hump
+    from synth.hump.hump_forms import to_csv, to_xlsx, tree_toml
     from synth.hump.railml.write import to_railml
 
     forms: dict[str, Callable[[HumpEntry], bytes]] = {
@@ -126,7 +123,7 @@ def export_command(source: Path, form: str, output: Path, manner: Manner) -> int
 
 def drawn_route(graph: HumpGraph, track: int | None) -> Route:
     """The route to `track` from the first crest that reaches it; without a track, to the one with the most turning."""
-    from synth.hump.route_to import route_to
+    from synth.hump.hump_file import route_to
 
     if track is None:
         routes = [route for lead in graph.leads for route in graph.routes(lead).values()]

@@ -37,8 +37,8 @@ def init_command(asked: AskedFile, manner: Manner) -> int:
 
 def kind_called(word: str) -> FileKind:
     """The kind `word`; the first one where none is typed."""
-    from plant_models.library.near_miss import near_miss
-    from synth.frame.input_error import InputError
+    from plant_models.errors import near_miss
+    from synth.frame.faults import InputError
 
     kinds = {kind.word: kind for kind in FILE_KINDS}
     if word and word not in kinds:
@@ -48,13 +48,13 @@ def kind_called(word: str) -> FileKind:
 
 def tables_command(trial: Path | None, position_number: int | None, asked: AskedFile, manner: Manner) -> int:
     """Give the configuration of the tables that a position needs in the hump `trial`."""
-    from synth.frame.input_error import InputError
+    from synth.frame.faults import InputError
 
     if trial is None:
         raise InputError("init --position-number is for --for TRIAL.toml, the trial whose position it is; add that")
     if asked.kind or asked.schema:
         raise InputError("init --for prints the configuration of tables for a trial; give neither a kind nor --schema")
-    from synth.hump.tables.tables_configuration import tables_toml
+    from synth.hump.tables_configuration import tables_toml
 
     return give_file(FILE_KINDS[0], tables_toml(trial, position_number), asked.output, manner)
 
@@ -79,8 +79,8 @@ def give(kind: FileKind, text: str, output: Path | None, manner: Manner) -> int:
     if output is None:
         told = {"kind": kind.word, "text": text}
     else:
-        from synth.frame.new_file import require_new
-        from tuning_tables.atomic_file import write_atomically
+        from synth.frame.own_files import require_new
+        from tuning_tables.whole_file import write_atomically
 
         require_new(output)
         write_atomically(output, text.encode("utf-8"))
@@ -96,7 +96,7 @@ def give(kind: FileKind, text: str, output: Path | None, manner: Manner) -> int:
 
 def print_list(manner: Manner) -> int:
     """The kinds of files, and what the library holds."""
-    from plant_models.library.type_file import HUMPS, KINDS
+    from plant_models.library.library import HUMPS, KINDS
 
     titles = {kind.folder: titles_of(kind) for kind in (*KINDS, HUMPS)}
     kinds = {kind.word: kind.title for kind in FILE_KINDS}

@@ -1,4 +1,6 @@
-"""`retarder-synth inspect`: what tables are for, what they promise, where their lines run; read without the solver."""
+"""`retarder-synth inspect`: what tables are for, what they promise, where their lines run; read without the
+solver. Controller code that lies about is recognised where `verify` finds it, not read.
+"""
 
 from __future__ import annotations
 
@@ -7,33 +9,39 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
-from synth.checker.code_file import CodeFile, code_at
-from synth.cli.inspect_aim import aim_document, aim_page
-from synth.cli.inspect_code import code_document, code_sentence
+from synth.checker.code_export import AIMS, LINES, PASSAGES, CodeFile, code_at
 from synth.cli.inspect_drawn import AskedDrawing, draw
-from synth.cli.inspect_passages import passage_document, passage_page
-from synth.cli.inspect_table import table_words, told_document
+from synth.cli.inspect_table import aim_document, aim_page, passage_document, passage_page, table_words, told_document
 from synth.frame.command import Limit, Verdict
 from synth.frame.exhibits import Column, Table
-from synth.frame.known_defects import Concerned, concerned
 from synth.frame.printed_numbers import counted, decimals
 from synth.frame.terminal.manner import Manner
-from synth.frame.terminal.printed_page import Printed
-from synth.frame.terminal.printed_table import IN_JSON, PrintedTable
-from synth.frame.terminal.printed_words import NO_BREAK
+from synth.frame.terminal.printed_page import IN_JSON, NO_BREAK, Printed, PrintedTable
 from synth.frame.terminal.telling import OK
-from synth.retarder.forms.exporters import exporters_at
-from synth.retarder.forms.table_file import TableFile, summary_beside
-from synth.retarder.forms.tables_at import TablesAt, tables_at
+from synth.frame.version import Concerned, concerned
+from synth.retarder.forms.tables_at import TableFile, TablesAt, exporters_at, summary_beside, tables_at
 from tuning_tables import DamagedTable
-from tuning_tables.approach import Approach
-from tuning_tables.decisions import Decisions
+from tuning_tables.decisions import Approach, Decisions
 from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
+
+CONTENTS: Final = {LINES: "tables", AIMS: "aim tables", PASSAGES: "tables for point sensors"}
+
+
+def code_document(code: CodeFile) -> dict[str, Any]:
+    """An export for programs."""
+    return {"path": str(code.path), "language": code.language, "exported_by": code.exported_by}
+
+
+def code_sentence(code: CodeFile) -> str:
+    """An export in words."""
+    told = f"{CONTENTS[code.kind]} in {code.language}, exported by {code.exported_by or 'an unknown program'}"
+    return f"{code.path}: {told}; verify compares them with those they were made of"
+
 
 SHOWN_POINTS = 5
 

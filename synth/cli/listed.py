@@ -14,7 +14,7 @@ COMMANDS: Final = (
     Listed(
         "tune",
         "synth.retarder.tune_command:COMMAND",
-        "synth.retarder.tune_options:TuneOptions",
+        "synth.retarder.options:TuneOptions",
         "init",
         "Make a book of tables, its pictures and report.\n\n"
         "For a radar, or for point sensors where the configuration has some. Exit code 1 if the table of a feasible "
@@ -24,7 +24,7 @@ COMMANDS: Final = (
     Listed(
         "sensors",
         "synth.retarder.sensors.plan_command:COMMAND",
-        "synth.retarder.sensors.plan_options:PlanOptions",
+        "synth.retarder.options:PlanOptions",
         "init",
         "Plan where point sensors stand: the least rms for each number, and the fewest for a wanted rms.\n\n"
         "Compared with equal sections, with the rule that each change of stage ends inside its section, and with the "
@@ -32,8 +32,8 @@ COMMANDS: Final = (
     ),
     Listed(
         "aim",
-        "synth.hump.aiming.command:COMMAND",
-        "synth.hump.aiming.options:AimOptions",
+        "synth.hump.aiming:COMMAND",
+        "synth.hump.options:AimOptions",
         "init aim",
         "Make aim tables: the exit speeds at which a park position lets cuts go.\n\n"
         "Random cuts roll to the standing cars; the tables keep a required probability of coupling too fast. Exit code "
@@ -60,7 +60,7 @@ COMMANDS: Final = (
     Listed(
         "loop",
         "synth.retarder.loops.command:COMMAND",
-        "synth.retarder.tables_options:TablesOptions",
+        "synth.retarder.options:TablesOptions",
         "init",
         "Show exported tables as control loops.\n\n"
         "Nominal response by python-control beside the simulator's, phase portrait with the lines, predicted limit "
@@ -78,7 +78,7 @@ COMMANDS: Final = (
     Listed(
         "explore",
         "synth.retarder.explore.command:COMMAND",
-        "synth.retarder.tables_options:TablesOptions",
+        "synth.retarder.options:TablesOptions",
         "init",
         "Make one page on which tables brake cuts in the browser.\n\n"
         "Sliders set the cut and the plant; the page tells the exit error at once, why each command is given, and what "
@@ -87,7 +87,7 @@ COMMANDS: Final = (
     Listed(
         "sensitivity",
         "synth.retarder.sensitivity.command:COMMAND",
-        "synth.retarder.sensitivity.options:SensitivityOptions",
+        "synth.retarder.options:SensitivityOptions",
         "init",
         "Tell which number of a configuration to measure first.\n\n"
         "The table stays; the numbers vary over their ranges. Shares of the variance of rms, mean and over-speed by "
@@ -96,7 +96,7 @@ COMMANDS: Final = (
     Listed(
         "hardware",
         "synth.retarder.permissions.command:COMMAND",
-        "synth.retarder.permissions.options:PermissionsOptions",
+        "synth.retarder.options:PermissionsOptions",
         "init",
         "Tell what to ask of the hardware: what each permission would give in every case.\n\n"
         "Commands during a change of stage, with and without a pressure gauge; an estimator; the approach. Simulated "
@@ -113,7 +113,7 @@ COMMANDS: Final = (
     Listed(
         "watch",
         "synth.logs.drift.command:COMMAND",
-        "synth.logs.drift.options:WatchOptions",
+        "synth.logs.log_options:WatchOptions",
         "init",
         "Watch measured passes of a position for drifts.\n\n"
         "What drifted, since when, what it costs, whether to retune or to repair. Exit code 1 if something drifted.",
@@ -129,7 +129,7 @@ COMMANDS: Final = (
     Listed(
         "replay",
         "synth.logs.replay.command:COMMAND",
-        "synth.logs.replay.options:ReplayOptions",
+        "synth.logs.log_options:ReplayOptions",
         "init",
         "Tell what other tables would have commanded in measured passes, and how the cuts would have left.\n\n"
         "Exit code 1 if the measured exits are not those that the configuration predicts for the tables of the log.",
@@ -137,7 +137,7 @@ COMMANDS: Final = (
     Listed(
         "retune",
         "synth.logs.retune.command:COMMAND",
-        "synth.logs.retune.options:RetuneOptions",
+        "synth.logs.log_options:RetuneOptions",
         "init",
         "Make new tables for what measured passes say of the plant, and tell what they gain.\n\n"
         "Exit code 1, and no book, if the gain is within noise in every case; also 1 if a case has no new table.",
@@ -149,7 +149,7 @@ SWEEP: Final = (
     Listed(
         "sweep run",
         "synth.retarder.sweep.command:COMMAND",
-        "synth.retarder.sweep.options:SweepOptions",
+        "synth.retarder.options:SweepOptions",
         "init sweep",
         "Make books over a grid of cut classes, targets and conditions; resumable.\n\n"
         "The table [sweep] of CONFIG.toml says what is swept. The same command goes on after an end of any kind. Exit "
@@ -164,14 +164,14 @@ HUMP: Final = (
     Listed(
         "hump make",
         "synth.hump.making.make_command:COMMAND",
-        "synth.hump.making.make_options:MakeOptions",
+        "synth.hump.options:MakeOptions",
         "init short-hump",
         "Make a hump file, and its picture, from a short file: tracks, profile, places of switches and positions.",
     ),
     Listed(
         "hump simulate",
         "synth.hump.trains.simulate_command:COMMAND",
-        "synth.hump.trains.trial_options:SimulateOptions",
+        "synth.hump.options:SimulateOptions",
         "init trial",
         "Hump whole trains: catch-ups, couplings, gaps and cars an hour, with intervals; resumable.\n\n"
         "The same command goes on after an end of any kind. Exit code 1 if a limit of the configuration is missed.",
@@ -179,7 +179,7 @@ HUMP: Final = (
     Listed(
         "hump capacity",
         "synth.hump.capacity.command:COMMAND",
-        "synth.hump.capacity.options:CapacityOptions",
+        "synth.hump.options:CapacityOptions",
         "init trial",
         "Tell how many cars an hour a hump can hump at an allowed share of catch-ups.\n\n"
         "A curve for the trial as it is, or one for each accuracy of the positions and each value of a key; all hump "
@@ -195,8 +195,8 @@ HUMP: Final = (
     ),
     Listed(
         "hump compare",
-        "synth.hump.comparison.command:COMMAND",
-        "synth.hump.comparison.options:CompareOptions",
+        "synth.hump.compare_command:COMMAND",
+        "synth.hump.options:CompareOptions",
         "init trial",
         "Compare runs of 'hump simulate' on the same trains: every figure, and by how much it differs.\n\n"
         "Differences from the first run are paired by train, so they are known better than the figures themselves.",
@@ -204,7 +204,7 @@ HUMP: Final = (
     Listed(
         "hump watch",
         "synth.hump.watching.command:COMMAND",
-        "synth.hump.watching.options:YardWatchOptions",
+        "synth.hump.options:YardWatchOptions",
         "init yard",
         "Watch all positions of a yard, night by night: what to repair first, and what it costs.\n\n"
         "Goes on from the run before, so a timer can start it. Exit code 1 if a position has drifted, or has no new "
@@ -212,8 +212,8 @@ HUMP: Final = (
     ),
     Listed(
         "hump speed",
-        "synth.hump.trains.speed_command:COMMAND",
-        "synth.hump.trains.trial_options:SpeedOptions",
+        "synth.hump.trains.speed_program:COMMAND",
+        "synth.hump.options:SpeedOptions",
         "init trial",
         "Plan one train: hump speeds for the locomotive, and the uncoupler's sheet.",
     ),

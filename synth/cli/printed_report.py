@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from synth.frame.creation_time import creation_time, require_date
 from synth.frame.page.document import Stamp
-from synth.frame.page.printed_document import printed_document
+from synth.frame.page.told_page import printed_document
 from synth.frame.perform import PAGE
 from synth.frame.results_directory import require_own, results_directory
 from synth.frame.terminal.printed_page import Printed
+from synth.frame.version import creation_time, require_date
 
 
 def require_place(command: str, output: Path) -> None:
@@ -25,7 +25,7 @@ def write_report(
     command: str, title: str, page: Sequence[Printed], source: Path, output: Path, steps: Sequence[str] = ()
 ) -> None:
     """Write `page` of `command` about `source` into `output`; `InputError` where that is not its own directory."""
-    from synth.retarder.forms.table_file import files_at
+    from synth.retarder.forms.tables_at import files_at
 
     with results_directory(output, command, files_at(source)) as directory:
         directory.write(PAGE, report_of(title, page, steps))

@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.terminal.manner import Manner
 
 LABORATORY = "scripts.studies.command"

@@ -19,7 +19,7 @@ from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.telling import OK
 
 if TYPE_CHECKING:
-    from synth.retarder.sweep.status import Status
+    from synth.retarder.sweep.sweep_directory import Status
 
 app = typer.Typer(
     cls=listed_group(SWEEP, GUIDES["sweep"]),
@@ -36,7 +36,7 @@ add_listed(app, SWEEP)
 @in_its_manner
 def status(path: Swept, manner: Manner) -> int:
     """Tell how far a sweep is, while it runs or later."""
-    from synth.retarder.sweep.status import status_of
+    from synth.retarder.sweep.sweep_directory import status_of
 
     found = status_of(path)
     manner.give(lambda: {**asdict(found), "path": str(path)}, partial(status_page, found))
@@ -63,7 +63,7 @@ def status_page(status: "Status") -> Iterator[str]:
 @in_its_manner
 def failed(path: Swept, manner: Manner) -> int:
     """Tell which units of a sweep have failed, which targets have no table, and why."""
-    from synth.retarder.sweep.status import failed_units
+    from synth.retarder.sweep.sweep_directory import failed_units
 
     found = failed_units(path)
     words = [f"{unit.name}: {unit.reason}" for unit in found] or [f"{path}: no unit has failed"]

@@ -18,12 +18,11 @@ from plant_models.library import (
     YARD_CATEGORIES,
     Kind,
 )
-from synth.aim.configuration.mix_settings import DEFAULT_MIX
-from synth.aim.configuration.track_settings import DEFAULT_TRACK
+from synth.aim.configuration.settings import DEFAULT_TRACK
+from synth.aim.configuration.shared_settings import DEFAULT_MIX
 from synth.frame.settings.template import source_lines
 from synth.retarder.configuration.plant_fault import require_held
-from synth.retarder.configuration.plant_settings import DEFAULT_POSITION
-from synth.retarder.configuration.point_sensors.settings import DEFAULT_WHEEL_SENSOR
+from synth.retarder.configuration.plant_settings import DEFAULT_POSITION, DEFAULT_WHEEL_SENSOR
 
 START_FROM: Final = {
     CARS: "gondola-4",

@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.frame.known_defects import Concerned, concerned
 from synth.frame.printed_numbers import counted
 from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.printed_page import Printed, PrintedVerdict
 from synth.frame.terminal.telling import INPUT_FAULT, LIMITS_MISSED, say
+from synth.frame.version import Concerned, concerned
 
 if TYPE_CHECKING:
-    from synth.checker.aim.reading import Aim
+    from synth.checker.aim.table import Aim
     from synth.checker.finding import Finding
-    from synth.checker.passages.reading import PassageTable
+    from synth.checker.passages.table import PassageTable
     from synth.checker.statistics import ExitFigures
     from synth.checker.table_reading import Table
     from synth.checker.verdict import AimVerdict, PassageVerdict, TableVerdict, Verdict
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def verify_command(source: Path, passes: int, seed: int, output: Path | None, manner: Manner) -> int:
     """Check what is at `source` and print it, a line a table, and on a page in `output`; the exit code."""
-    from synth.checker.code_file import code_at
+    from synth.checker.code_export import code_at
     from synth.checker.finding import NothingToVerifyError
     from synth.checker.verdict import verify
 

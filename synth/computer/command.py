@@ -12,8 +12,7 @@ from synth.computer.settings import ComputerSettings
 from synth.computer.uncertainty import ComputerOptions
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.frame.settings.changed import changed
-from synth.frame.settings.settings_file import parse_settings
+from synth.frame.settings.settings_file import changed, parse_settings
 
 if TYPE_CHECKING:
     from synth.computer.computer_results import ComputerResults
@@ -64,15 +63,14 @@ def compute(config: ResolvedComputer, work: Work) -> ComputerResults:
 
 def limits(found: ComputerResults) -> Iterator[Limit]:
     """The limits of the configuration."""
-    from synth.computer.computer_limits import computer_limits
+    from synth.computer.computer_results import computer_limits
 
     return computer_limits(found)
 
 
 def show(found: ComputerResults) -> Iterator[Chapter]:
     """What is shown of it."""
-    from synth.computer.shown_first import first_screen
-    from synth.computer.shown_money import money
+    from synth.computer.shown_money import first_screen, money
     from synth.computer.shown_sizing import reliability, sizing
 
     yield Chapter("What it pays", (*first_screen(found), *money(found)))

@@ -1,4 +1,6 @@
-"""The configuration of a control computer with every default filled in, and the origin of each number."""
+"""The configuration of a control computer with every default filled in, the origin of each number, and how long
+the work will take: told before it begins, where it is long.
+"""
 
 from __future__ import annotations
 
@@ -6,26 +8,49 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 from plant_models.hump import HumpGraph, Retarder
 from plant_models.library import SourcedValue
 from plant_models.library.hump_entry import HumpEntry
-from synth.computer.asked_money import HumpFigures, asked_case, asked_ranges, figure_sources
-from synth.computer.asked_tasks import asked_mix
+from synth.computer.asked import HumpFigures, asked_case, asked_mix, asked_ranges, figure_sources
 from synth.computer.economics.economic_case import EconomicCase
-from synth.computer.economics.uncertainty.ranges import Range
-from synth.computer.long_work import long_work
-from synth.computer.settings import ComputerSettings
+from synth.computer.economics.ranges import Constant, Range
+from synth.computer.settings import ComputerSettings, unpriced
 from synth.computer.sizing.task import TaskMix
-from synth.computer.unpriced import unpriced
 from synth.frame.command import Head
-from synth.frame.input_error import InputError
-from synth.frame.settings.file_fault import in_file
+from synth.frame.faults import InputError
 from synth.frame.settings.numbers import numbers_of, range_warnings
+from synth.frame.settings.settings_file import in_file
 from synth.hump.configuration.trial_file import hump_source
 from synth.hump.hump_file import read_graph
 from synth.hump.railml.write import to_railml
-from tuning_tables.canonical import canonical_json
+from tuning_tables.json_text import canonical_json
+
+LONG_S: Final = 60.0
+"""Work that takes longer than this is told."""
+
+REQUEST_S: Final = 8e-6
+MODEL_S: Final = 2e-4
+"""Seconds for a simulated request, and for the money of one draw, measured on one core; only the order counts."""
+
+
+def long_work(settings: ComputerSettings, ranges: Mapping[str, Range]) -> Iterator[str]:
+    """A sentence on each number of `settings` that alone takes longer than `LONG_S`; `ranges` of the inputs."""
+    asked, uncertain = settings.uncertainty, sum(not isinstance(each, Constant) for each in ranges.values())
+    expected_s = {
+        ("service.simulated_requests", settings.service.simulated_requests): REQUEST_S,
+        ("uncertainty.draws", asked.draws): MODEL_S if uncertain else 0.0,
+        ("uncertainty.sobol_points", asked.sobol_points): MODEL_S * (uncertain + 2) if uncertain else 0.0,
+    }
+    for (key, number), each_s in expected_s.items():
+        takes_s = number * each_s
+        if takes_s > LONG_S:
+            yield (
+                f"{key} is {number}; that takes about {takes_s / 60.0:.0f} min; a number up to "
+                f"{int(LONG_S / each_s)} takes a minute at most"
+            )
+
 
 SIMULATED = "trials of 'hump simulate'"
 

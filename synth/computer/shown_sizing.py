@@ -7,8 +7,7 @@ from typing import Any
 
 from synth.computer.computer_results import ComputerResults
 from synth.computer.sized_computer import ControllerRow, SizedComputer, TaskWait
-from synth.computer.sizing.inputs_outputs import source_channels, total_channels
-from synth.computer.sizing.memory_need import Memory
+from synth.computer.sizing.counted_needs import Memory, source_channels, total_channels
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import amount, per_cent, six_figures, whole

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from plant_models.library import SourcedValue
 from synth.frame.exhibits import Chapter, Chart
 from synth.frame.settings.options import Options
-from synth.frame.settings.output import OutputSettings
+from synth.frame.settings.section import OutputSettings
 from synth.frame.settings.toml_file import read_text
 
 if TYPE_CHECKING:

@@ -1,16 +1,16 @@
-"""Commands on the command line: the Typer function of each follows from its declaration.
+"""Commands on the command line: the Typer function of each, and what its help shows, follow from its declaration.
 
 Only the command that is asked for is loaded; of the others the list shows name and help.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from inspect import Parameter
 from pathlib import Path
 from pkgutil import resolve_name
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 from typer.core import TyperArgument, TyperGroup
@@ -19,9 +19,35 @@ if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
     from synth.frame.command import Command
-    from synth.frame.command_guide import CommandGuide
     from synth.frame.settings.options import Options, Words
     from synth.frame.terminal.manner import Manner
+
+PROGRAM: Final = "retarder-synth"
+PAGES: Final = "docs"
+"""Where pages are in a checkout."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """`example`: as it is typed behind the name of the program; `page`: of the documentation."""
+
+    example: str
+    page: str
+
+    @property
+    def epilog(self) -> str:
+        """What stands at the end of the help."""
+        return f"Example: {PROGRAM} {self.example}\n\nMore: {PAGES}/{self.page}"
+
+
+@dataclass(frozen=True)
+class CommandGuide:
+    """Of the group that is typed `words` ("" for the program): its commands by `sections`, and what is `shown` of each;
+    nothing of a group within it, which has a guide of its own."""
+
+    words: str
+    sections: Mapping[str, tuple[str, ...]]
+    shown: Mapping[str, Shown]
 
 
 @dataclass(frozen=True)
@@ -148,8 +174,7 @@ def function(listed: Listed, options: tuple[Parameter, ...]) -> Callable[..., in
         from synth.frame.settings.options import read_options
 
         typed = read_options(listed.options(), words)
-        from synth.frame.asked_file import asked_of
-        from synth.frame.perform import perform
+        from synth.frame.perform import asked_of, perform
 
         command = listed.load()
         asked = asked_of(command, typed, listed.init)

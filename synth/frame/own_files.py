@@ -1,12 +1,19 @@
-"""The marker of a directory of results: which command writes there, and which files it wrote.
+"""What is in the hand of a command: a directory that one run at a time holds; its marker, which tells who writes
+there and which files it wrote; and a single new file that is asked for by name.
 
-A line of JSON each: first the command, and the number of its run; then a name when its file is begun, and the name
-with the SHA-256 of the content before the file takes that name. So whatever a killed command has left is known. A line
-that was torn is passed over: its file has not got its name.
+One run at a time holds a directory. The lock is that of the system on a file in the directory, so it ends with the
+process, however that ends. The file goes with the run; one that a killed run has left holds nobody back, and neither
+does a file system without locks.
+
+The marker of a directory of results: which command writes there, and which files it wrote. A line of JSON each: first
+the command; then a name when its file is begun, and the name with the SHA-256 of the content before the file takes that
+name. So whatever a killed command has left is known. A line that was torn is passed over: its file has not got its
+name.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -15,7 +22,58 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
-from tuning_tables.atomic_file import faults_naming, write_atomically
+from filelock import FileLock, Timeout
+
+from synth.frame.faults import InputError
+from tuning_tables.whole_file import faults_naming, write_atomically
+
+LOCK: Final = ".retarder-synth.lock"
+"""Name of the file."""
+
+PATIENCE_S: Final = 0.5
+"""The lock is asked for so long: `is_held` takes it for a moment to see whether it is free."""
+
+
+@contextlib.contextmanager
+def held(path: Path) -> Iterator[bool]:
+    """Hold the directory `path` within; False where another run holds it."""
+    lock = FileLock(path / LOCK, timeout=PATIENCE_S, thread_local=False)
+    try:
+        lock.acquire()
+    except Timeout:
+        yield False
+        return
+    except OSError:  # a file system without locks
+        yield True
+        return
+    try:
+        yield True
+    finally:
+        with contextlib.suppress(OSError):  # Windows removes it after the release, not before
+            (path / LOCK).unlink()
+        lock.release()
+
+
+def is_held(path: Path) -> bool:
+    """Whether a run holds the directory `path` now; False where the system does not let us ask."""
+    if not (path / LOCK).exists():
+        return False
+    lock = FileLock(path / LOCK, timeout=0.0, thread_local=False)
+    try:
+        lock.acquire()
+    except Timeout:
+        return True
+    except OSError:
+        return False
+    lock.release()
+    return False
+
+
+def require_new(path: Path) -> None:
+    """`InputError` if there is something at `path`: no command overwrites what it did not write."""
+    if os.path.lexists(path):
+        raise InputError(f"{path}: it is there already, and is not overwritten; give another name, or move it away")
+
 
 MARKER: Final = ".retarder-synth"
 FORMAT: Final = "retarder-synth-results"

@@ -1,4 +1,6 @@
-"""The run of a command: refuse what can be refused, compute, judge, write, tell; the only skeleton of that."""
+"""The run of a command: what a user asks; refuse what can be refused, compute, judge, write, tell; the only
+skeleton of that.
+"""
 
 from __future__ import annotations
 
@@ -9,19 +11,31 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Head, O, P, R, S, Unfinished, Verdict, Work
-from synth.frame.creation_time import creation_time, require_date
 from synth.frame.exhibits import Chapter, Chart, File, Table
 from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.printed_numbers import counted
 from synth.frame.results_directory import SUMMARY, ResultsDirectory, results_directory
+from synth.frame.settings.settings_file import BUILT_IN
 from synth.frame.settings.toml_file import read_text
 from synth.frame.terminal.interrupt import interruptible
 from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 from synth.frame.told import Told
+from synth.frame.version import creation_time, require_date
 
 if TYPE_CHECKING:
     from synth.frame.picture.studio import Studio
+
+
+def asked_of(command: Command[S, O, P, R], options: O, init: str) -> Asked[S, O]:
+    """The `options` that were typed, with the settings of their configuration, the defaults without one; `InputError`.
+
+    `init`: the command that prints such a file.
+    """
+    path = options.config
+    text, place = ("", BUILT_IN) if path is None else (command.text(path, init), str(path))
+    return Asked(command.read(text, place), options, place, Path(place).parent, text)
+
 
 PAGE, WORKBOOK = "report.html", "sheets.xlsx"
 
@@ -48,7 +62,7 @@ def perform(command: Command[S, O, P, R], asked: Asked[S, O], output: Path, mann
     if manner.as_json:
         sys.stdout.write((output / SUMMARY).read_text(encoding="utf-8"))
     else:
-        from synth.frame.terminal.told_print import page_of_run
+        from synth.frame.told import page_of_run
 
         manner.give(dict, lambda: page_of_run(told, output, names))
     return OK if told.verdict.accepted else LIMITS_MISSED
@@ -104,8 +118,7 @@ def write_data(chapter: Chapter, directory: ResultsDirectory) -> None:
 
 def workbook_of(chapters: Sequence[Chapter]) -> bytes:
     """All tables, a sheet each."""
-    from synth.frame.sheet import sheet_rows
-    from synth.frame.workbook import to_workbook
+    from synth.frame.sheet import sheet_rows, to_workbook
 
     tables = [each for chapter in chapters for each in chapter.exhibits if isinstance(each, Table)]
     return to_workbook({each.name: sheet_rows(each) for each in tables})
@@ -113,7 +126,7 @@ def workbook_of(chapters: Sequence[Chapter]) -> bytes:
 
 def write_shown(told: Told, directory: ResultsDirectory, studio: Studio, tell: Callable[[str], None]) -> None:
     """Write pictures and page, and last of all the summary."""
-    from synth.frame.summary import summary_of
+    from synth.frame.told import summary_of
 
     output = told.head.output
     pictures = drawn(told, studio, tell) if output.plots or output.report else {}

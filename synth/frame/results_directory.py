@@ -19,11 +19,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
-from synth.frame.held_directory import LOCK, held
-from synth.frame.input_error import InputError
-from synth.frame.machine_fault import MACHINE_FAULTS
-from synth.frame.own_files import CHANGING, MARKER, OwnFiles, command_of, sha256_of
-from tuning_tables.atomic_file import replacing
+from synth.frame.faults import MACHINE_FAULTS, InputError
+from synth.frame.own_files import CHANGING, LOCK, MARKER, OwnFiles, command_of, held, sha256_of
+from tuning_tables.whole_file import replacing
 
 SUMMARY: Final = "summary.json"
 CONFIGURATION: Final = "configuration.toml"

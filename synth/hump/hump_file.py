@@ -1,24 +1,65 @@
-"""A hump from a user's file or from the library: TOML, railML, CSV or workbook → `ReadHump`, each fault a sentence."""
+"""A hump from a user's file or from the library: TOML, railML, CSV or workbook → `ReadHump`, each fault a sentence.
+
+People give a file to the command that reads another kind; which kind it is, is told here, too. So are the route to one
+track of a hump, and all its routes for programs.
+"""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
+from plant_models.errors import near_miss
+from plant_models.hump import HumpGraph, Route, Switch
 from plant_models.library import BUILT_IN
-from plant_models.library.hump_entry import HumpEntry, hump_from, hump_names
+from plant_models.library.hump_entry import FORMAT, HumpEntry, hump_from, hump_names
 from plant_models.library.hump_entry import load_hump as load_of_library
-from plant_models.library.near_miss import near_miss
-from plant_models.library.type_file import HUMPS
-from synth.frame.input_error import InputError
+from plant_models.library.library import HUMPS
+from synth.frame.faults import InputError
+from synth.frame.printed_numbers import ranges
 from synth.frame.settings.toml_file import read_content, read_text, read_toml
-from synth.frame.workbook import first_sheet_csv
-from synth.hump.file_kind import FileKind, require_kind
-from synth.hump.forms.hump_csv import from_csv
+from synth.frame.sheet import first_sheet_csv
+from synth.hump.configuration.settings import HumpTrialSettings
+from synth.hump.hump_forms import from_csv
+from synth.hump.making.short_hump import ShortHump
 from synth.hump.railml.read import from_railml
 from synth.retarder.configuration.plant_fault import in_file
+
+
+class FileKind(Enum):
+    """What messages call it."""
+
+    HUMP = "hump file"
+    TRIAL = "hump trial"
+    SHORT = "short hump file"
+
+
+READ_BY = {FileKind.HUMP: "check", FileKind.TRIAL: "simulate", FileKind.SHORT: "make"}
+"""The command behind `hump` that reads each kind."""
+
+
+def require_kind(tree: Mapping[str, Any], file: str, wanted: FileKind) -> None:
+    """`InputError` where the tables `tree` of `file` are of another kind, which tells the command that reads it."""
+    found = kind_of(tree)
+    if found not in (None, wanted):
+        raise InputError(
+            f"{file}: this is a {found.value}, not a {wanted.value}; use 'retarder-synth hump {READ_BY[found]} {file}'"
+        )
+
+
+def kind_of(tree: Mapping[str, Any]) -> FileKind | None:
+    """By the keys at the top; None where they tell nothing."""
+    if tree.get("format") == FORMAT or isinstance(tree.get("hump"), dict):
+        return FileKind.HUMP
+    trial, short = set(HumpTrialSettings.model_fields), set(ShortHump.model_fields)
+    if tree.keys() & (short - trial):
+        return FileKind.SHORT
+    return FileKind.TRIAL if tree.keys() & (trial - short) else None
+
 
 RAILML_SUFFIXES: Final = (".railml", ".xml")
 CSV_SUFFIX: Final = ".csv"
@@ -129,3 +170,48 @@ def require_files(hump: HumpEntry, source: Path) -> None:
                 )
     if missing:
         raise InputError(*missing)
+
+
+def route_to(graph: HumpGraph, track: int) -> Route:
+    """The route to `track` from the first crest that reaches it; `InputError` where there is no such track."""
+    for lead in graph.leads:
+        routes = graph.routes(lead)
+        if track in routes:
+            return routes[track]
+    raise InputError(f"--track is {track}; the hump has the tracks {ranges(graph.tracks)}")
+
+
+def routes_document(graph: HumpGraph) -> dict[str, Any]:
+    """Every route, and the lists of tracks of every switch."""
+    return {
+        "routes": [route_document(route, graph) for lead in graph.leads for route in graph.routes(lead).values()],
+        "switches": [
+            {
+                "number": switch.number,
+                "name": switch.name,
+                "left_tracks": list(graph.left_tracks(switch.number)),
+                "right_tracks": list(graph.right_tracks(switch.number)),
+            }
+            for switch in graph.switches
+        ],
+    }
+
+
+def route_document(route: Route, graph: HumpGraph) -> dict[str, Any]:
+    """A route of `graph` with its elements in order, metres from the crest."""
+    elements: list[dict[str, Any]] = []
+    for element in route.elements:
+        told: dict[str, Any] = {"number": element.number, "name": graph.names.get(element.number)}
+        told |= {"at_m": round(element.at_m, 6), "section_m": [round(element.from_m, 6), round(element.to_m, 6)]}
+        if isinstance(element.vertex, Switch):
+            told |= {"position": element.position, "fouling_m": round(route.fouling_m(element.number), 6)}
+        elements.append(told)
+    return {
+        "lead": route.lead,
+        "track": route.track,
+        "track_name": graph.track_names.get(route.track),
+        "code": route.code,
+        "length_m": round(route.length_m, 6),
+        "free_to_m": round(route.free_to_m, 6),
+        "elements": elements,
+    }

@@ -7,8 +7,7 @@ import numpy.typing as npt
 
 from synth.kernels.compiled_rules import compiled_rule
 from synth.kernels.compiling import raising
-from tuning_tables.programs.aim_speed import exit_speed
-from tuning_tables.programs.aim_table import AimGrid
+from tuning_tables.programs.aim_speed import AimGrid, exit_speed
 
 speed_by_table = compiled_rule(exit_speed)
 

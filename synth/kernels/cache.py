@@ -42,12 +42,9 @@ _KERNEL_SOURCES = (
     "tuning_tables/programs/aim_speed.py",
     "tuning_tables/programs/at_pulse.py",
     "tuning_tables/programs/decide.py",
-    "tuning_tables/programs/estimate.py",
-    "tuning_tables/programs/line_table.py",
+    "tuning_tables/programs/held.py",
     "tuning_tables/programs/motion_filter.py",
-    "tuning_tables/programs/numbers.py",
     "tuning_tables/programs/observe.py",
-    "tuning_tables/programs/passage_table.py",
     "tuning_tables/programs/tracker.py",
 )
 """Patterns of the files that kernels are compiled from; tests/architecture finds these by itself and compares.

@@ -12,7 +12,7 @@ from synth.logs.log_options import LogOptions
 from synth.retarder.configuration.config_file import ConfigSource, source_of_text
 
 if TYPE_CHECKING:
-    from synth.logs.asked_passes import AskedPasses
+    from synth.logs.fitting_passes import AskedPasses
     from synth.logs.identify import Identified
 
 LIMITS_OF_USE = (
@@ -41,7 +41,7 @@ class FoundNumbers:
 def resolve(asked: Asked[ConfigSource, LogOptions]) -> AskedNumbers:
     """The passes; too few of them are refused."""
     config = asked.settings.resolved()
-    from synth.logs.asked_passes import asked_passes
+    from synth.logs.fitting_passes import asked_passes
 
     found = asked_passes(asked.options, config, asked.place)
     from synth.logs.identify import require_enough  # scipy: a log that is refused needs none
@@ -62,7 +62,7 @@ def steps(asked: AskedNumbers) -> Steps:
 
 def compute(asked: AskedNumbers, work: Work) -> FoundNumbers:
     """The numbers, and whether the model holds."""
-    from synth.frame.processors import available
+    from synth.frame.machine import available
     from synth.kernels.cache import guarded
     from synth.logs.identified_config import identified
     from synth.logs.identify import identify

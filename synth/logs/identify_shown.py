@@ -13,11 +13,10 @@ from synth.frame.interval import Interval
 from synth.frame.printed_numbers import four_figures
 from synth.logs import unknowns as asked
 from synth.logs.fitting_passes import FittingPasses
-from synth.logs.identifiability import Finding
-from synth.logs.identify import Identified
+from synth.logs.identify import Finding, Identified
 from synth.logs.residual_tests import MOTION, ResidualTest
 from synth.retarder.configuration.config_file import ConfigSource
-from tuning_tables.pass_log.path_resets import path_resets_m
+from tuning_tables.pass_log.pass_log import path_resets_m
 
 CONFIG: Final = "config.toml"
 

@@ -1,4 +1,5 @@
-"""Is the model wrong? What the passes say of laws that it has not, and whether its innovations are as it says.
+"""Is the model wrong? What the passes say of laws that it has not, and whether its innovations are as it says;
+with Holm's rule for several tests.
 
 Laws: a score test each, with the numbers of the estimate as nuisance, and the size of the effect by one step from 0.
 Innovations: those of neighbouring rows must not go together. All tests are clustered by pass, so a pass counts once.
@@ -10,7 +11,7 @@ larger than one that matters, not whether it is 0.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -20,8 +21,24 @@ from plant_models.frozen_arrays import Floats, Ints
 from synth.logs import unknowns as asked
 from synth.logs.estimate import STEP, Z95, Estimate, Posterior, posterior
 from synth.logs.fitting_passes import FittingPasses
-from synth.logs.holm import rejected
 from synth.logs.likelihood import Likelihood
+
+
+def rejected(p_values: Sequence[float], level: float) -> tuple[int, ...]:
+    """Numbers of the tests whose hypothesis falls, the clearest first.
+
+    The chance that any true hypothesis falls is `level` at most, however the tests depend on one another (Holm 1979,
+    Scandinavian Journal of Statistics 6, 65–70): the smallest of k p values is held against level / k, the next one
+    against level / (k − 1), and so on to the first that does not pass. A NaN never passes.
+    """
+    order = sorted(range(len(p_values)), key=lambda number: (p_values[number] != p_values[number], p_values[number]))
+    passed: list[int] = []
+    for place, number in enumerate(order):
+        if not p_values[number] * (len(order) - place) <= level:
+            break
+        passed.append(number)
+    return tuple(passed)
+
 
 SIGNIFICANCE: Final = 0.01
 """Of all tests together (Holm)."""

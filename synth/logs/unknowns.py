@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from plant_models.frozen_arrays import Floats
 from plant_models.library import SourcedValue
-from plant_models.pressure_gauge import USUAL_NOISE_KPA
+from plant_models.pressure_regulator import USUAL_NOISE_KPA
 from synth.logs.fitting_passes import FittingPasses
 
 FORCE, PNEUMATICS, FRICTION, SENSOR = "retarder.force.", "retarder.pneumatics.", "friction.", "sensor."

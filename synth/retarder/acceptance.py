@@ -1,19 +1,24 @@
-"""Whether a book of tables keeps the limits that its configuration sets: case by case, with reasons."""
+"""Whether a book of tables keeps the limits that its configuration sets, case by case, with reasons; and what a tune
+has come to: the book, what its passes say of the limits, and the files that hold its tables.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Generic
 
 from synth.frame.command import Limit
+from synth.frame.exhibits import File
 from synth.frame.printed_numbers import counted
 from synth.retarder.case_result import CaseResult
+from synth.retarder.comparison.measured import Judgement, interval_text, judgement
 from synth.retarder.configuration.settings import AcceptanceSettings
 from synth.retarder.failed_case import FailedCase, told_together
-from synth.retarder.judgement import Judgement, interval_text, judgement
-from synth.retarder.tuned_case import TunedCase
+from synth.retarder.tune import Book
+from synth.retarder.tuned_case import Case, TunedCase
+from synth.simulation.exit_statistics import UnavoidableError
 from synth.simulation.replicates import share_of
-from synth.simulation.unavoidable_error import UnavoidableError
 from tuning_tables import Decisions
 
 
@@ -141,3 +146,26 @@ def what_to_change(case: CaseResult) -> tuple[str, ...]:
 def unavoidable_text(error: UnavoidableError) -> str:
     """The bound of every regulator's rms, with its interval."""
     return f"the rms that no regulator avoids is {error.rms_m_s:.4f} {interval_text(error.rms_ci95_m_s)} m/s"
+
+
+@dataclass(frozen=True)
+class FoundBook(Generic[Case]):
+    """`verdicts`: on the cases of `book`, in its order; `files`: the tables together, in every form.
+
+    `no_st`: why there is no Structured Text among them, '' where there is, or where none is written.
+    """
+
+    book: Book[Case]
+    verdicts: tuple[CaseVerdict, ...]
+    files: tuple[File, ...]
+    no_st: str = ""
+
+    @property
+    def judged(self) -> Iterator[tuple[Case, CaseVerdict]]:
+        """Each case with its verdict."""
+        return zip(self.book.cases, self.verdicts, strict=True)
+
+    @property
+    def feasible(self) -> tuple[Case, ...]:
+        """The cases whose position does not forbid the limit of the rms."""
+        return tuple(case for case, verdict in self.judged if verdict.feasible)

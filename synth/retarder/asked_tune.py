@@ -2,23 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Generic
 
+from plant_models import Plant
 from synth.frame.command import Limit, Steps, Work
+from synth.problem.resolution import Resolution
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import require_room
-from synth.retarder.epochs import Epochs, Table
+from synth.retarder.epochs import Epochs, Ground, Table
 from synth.retarder.tuned_case import Case
 
 if TYPE_CHECKING:
     from synth.frame.exhibits import File
     from synth.frame.results_directory import ResultsDirectory
-    from synth.retarder.found_book import FoundBook
+    from synth.retarder.acceptance import FoundBook
+    from synth.retarder.case_result import CaseResult
+    from synth.retarder.options import TuneOptions
     from synth.retarder.tune import Book, CaseDone
-    from synth.retarder.tune_options import TuneOptions
+    from tuning_tables import ControllerTable
+
+
+@dataclass(frozen=True)
+class RadarEpochs:
+    """See `Epochs`; the section [regulator] of a configuration tells which of them.
+
+    With `pareto` each case also tells what less time in the position costs.
+    """
+
+    pareto: bool = False
+
+    def grids(self, config: ResolvedConfig, plant: Plant) -> tuple[Plant, Sequence[Resolution]]:
+        """See `Epochs`."""
+        return plant, config.grids(plant)
+
+    def cases(self, ground: Ground[ControllerTable], label: str, plant: Plant) -> list[Callable[[], CaseResult]]:
+        """See `Epochs`; all targets of a class are solved together."""
+        from synth.retarder.tune_case import case_orders, tune_case  # with the kernels
+
+        return [partial(tune_case, order) for order in case_orders(ground, label, plant, self.pareto)]
 
 
 @dataclass(frozen=True)
@@ -62,10 +86,9 @@ def tuned(
     `files` raises `InvalidTable`: the tables make no book.
     """
     from synth.kernels.cache import guarded
-    from synth.retarder.acceptance import judged
-    from synth.retarder.attempted_case import require_a_table, tables_refused
+    from synth.retarder.acceptance import FoundBook, judged
+    from synth.retarder.failed_case import require_a_table, tables_refused
     from synth.retarder.first_run import compiled_beside
-    from synth.retarder.found_book import FoundBook
     from synth.retarder.tune import tune
 
     with compiled_beside(work.progress.note), tables_refused(asked.place, asked.config):

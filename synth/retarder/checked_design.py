@@ -1,4 +1,5 @@
-"""Lines whose cost on the grid of their design is what an independent computation says it is.
+"""Lines whose cost on the grid of their design is what an independent computation says it is, and surfaces of a case
+for commands at any time, polished from its lines for commands at rest.
 
 A polish goes wherever the expected cost of its own grid is least, into the errors of that grid too. So its end is
 judged twice: on the grid of the design, and without it. Where the two do not agree, the design is done again on a finer
@@ -11,22 +12,29 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final, Generic, Protocol, TypeVar
 
+import numpy as np
+
+from plant_models import Plant
 from plant_models.frozen_arrays import frozen_arrays
-from synth.problem.requirement import FrictionRange, OverspeedLimit
-from synth.problem.requirement_found import Finding
+from synth.problem.problem import Aim
+from synth.problem.requirement import Finding, FrictionRange, OverspeedLimit
+from synth.problem.resolution import Resolution, design_resolution
 from synth.retarder.tuned_case import GridCheck
+from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces, surfaces_of_lines
+from synth.solver.any_time.sampled_chain import EstimateError, check_sampled_chain, sampled_chain
+from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
+from synth.solver.any_time.surface_polish import NEGLIGIBLE_MASS, polish_surfaces
 from synth.solver.backward_induction import Solution, solve_all
-from synth.solver.chain.chain import Chain
+from synth.solver.chain.chain import Chain, finer_in_speed
 from synth.solver.chain.scenarios import persistent_scenarios
-from synth.solver.chance_constraint import keep_overspeed_limit
-from synth.solver.coarse_grid import CoarseGridError
-from synth.solver.descent import Descent
-from synth.solver.finer_speed import finer_in_speed
-from synth.solver.policy_density import exit_density
-from synth.solver.polynomial_fit import Fit
-from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.tuned_lines import fitted, polished
-from synth.solver.worst_case import guard_worst_case
+from synth.solver.descent import CoarseGridError, Descent
+from synth.solver.evaluation import exit_density
+from synth.solver.exit_density import ExitDensity, without_negative
+from synth.solver.kept_requirement import guard_worst_case, keep_overspeed_limit
+from synth.solver.switching_lines import PolynomialLines
+from synth.solver.tabulate import UNPREDICTED, surfaces_of, tabulate
+from synth.solver.tuned_lines import Fit, fitted, polished
+from tuning_tables import ControllerTable, Estimator, Generator
 
 
 @dataclass(frozen=True)
@@ -126,3 +134,40 @@ def finer(design: Chain) -> Chain:
     scenarios = persistent_scenarios(design.plant, FINER_FRICTIONS, FINER_RESISTANCES)
     days = ((share, finer_in_speed(day, FINER_SPEED, day.scenarios)) for share, day in design.other_days)
     return replace(finer_in_speed(design, FINER_SPEED, scenarios), other_days=tuple(days))
+
+
+NOBODYS = Generator("none", "0", "0" * 64), "trial", "2000-01-01T00:00:00Z"
+"""Origin of tables that are only tried."""
+
+
+def surface_degrees(lines: PolynomialLines, has_gauge: bool) -> tuple[int, ...]:
+    """Degrees in the path for the powers of the pressure: that of `lines`, and with a gauge one slope."""
+    return (lines.degree, *CUBIC_AND_SLOPE[1:]) if has_gauge else (lines.degree,)
+
+
+def starting_surfaces(plant: Plant, lines: PolynomialLines, has_gauge: bool) -> PolynomialSurfaces:
+    """Lines for commands at rest, taken at every pressure."""
+    stages = np.asarray(plant.position.stage_pressures_kpa[: plant.top_stage + 1])
+    return surfaces_of_lines(lines, stages, surface_degrees(lines, has_gauge))
+
+
+def polished_surfaces(
+    plant: Plant, aim: Aim, start: PolynomialSurfaces, steps: Resolution, estimate: EstimateError | None = None
+) -> Descent[PolynomialSurfaces]:
+    """The surfaces of least cost near `start`, on the grid `steps`, for the measured or an estimated speed."""
+    chain = replace(sampled_chain(plant, steps), estimate=estimate)
+    return polish_surfaces(start, SurfaceEvaluation(chain, negligible_mass=NEGLIGIBLE_MASS), aim)
+
+
+def surface_density(plant: Plant, table: ControllerTable) -> ExitDensity:
+    """Exact exit-speed density of a table that decides at any time, by the measured speed."""
+    check = check_sampled_chain(plant, design_resolution(plant, table.target_speed_m_s))
+    lines = surfaces_of(table, check.grid.path_m[:-1], check.modes)
+    return without_negative(SurfaceEvaluation(check).density(lines))
+
+
+def trial_table(
+    plant: Plant, surfaces: PolynomialSurfaces, target_m_s: float, estimator: Estimator | None = None
+) -> ControllerTable:
+    """The rounded table of surfaces that are only tried: of no origin, and not predicted."""
+    return tabulate(plant, surfaces, target_m_s, UNPREDICTED, *NOBODYS, estimator)

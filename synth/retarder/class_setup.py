@@ -9,9 +9,8 @@ from plant_models import Plant
 from synth.problem.resolution import finer_for_check
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configuration.settings import RegulatorSettings
-from synth.retarder.estimation.estimate_chain import estimate_chain
-from synth.retarder.estimation.simulated_prediction import prediction_passes
-from synth.retarder.estimation.tuning_days import TuningDays, tuning_days, tuning_row
+from synth.retarder.estimation.estimated_lines import estimate_chain
+from synth.retarder.estimation.tuning_days import TuningDays, prediction_passes, tuning_days, tuning_row
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.stratified_passes import stratified_passes

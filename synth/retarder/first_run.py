@@ -52,12 +52,11 @@ def value_a_policy() -> None:
     """Value a policy of the default position once, on a coarse grid, with the gradient."""
     import numpy as np
 
-    from synth.problem.aim import Aim
+    from synth.problem.problem import Aim
     from synth.problem.resolution import Resolution
     from synth.retarder.configuration.config_file import parse_config
     from synth.solver.chain.chain import persistent_chain
-    from synth.solver.evaluation import Evaluation
-    from synth.solver.policy_density import density_and_occupancy
+    from synth.solver.evaluation import Evaluation, density_and_occupancy
     from synth.solver.switching_lines import SwitchingLines
 
     config = parse_config("", "the default configuration")

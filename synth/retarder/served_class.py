@@ -7,14 +7,28 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, overload
 
+import numpy as np
+
 from plant_models import Approach, Plant, PointSensors, every_axle, first_axle
 from plant_models.library.position_entry import APPROACH
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.highest_stage import highest_stage
+from tuning_tables.document import StageTable
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
-from tuning_tables.table_kinds import StageTable
+
+
+def highest_stage(table: PassageTable) -> int:
+    """The highest stage that the table ever asks for from a lower one; it has rows for those above, too."""
+    top = len(table.pressure_kpa) - 1
+    raised = [
+        wanted + 1
+        for stage in range(top)
+        for wanted in range(stage, top)
+        if np.isfinite(table.switching_m_s[:, stage, wanted]).any()
+    ]
+    return max([table.initial_stage, *raised])
+
 
 LENGTH_TOLERANCE = 1e-6
 """Relative, for lengths, masses and pressures that must be the same."""

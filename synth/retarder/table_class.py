@@ -1,4 +1,6 @@
-"""Tables of a position by cut class, and what the closed loop of a class needs of cuts that are not quite of it."""
+"""Tables of a position by cut class, and what the closed loop of a class needs of cuts that are not quite of it; the
+classes of a book that a file of the user names: read, and of the position that the file means.
+"""
 
 from __future__ import annotations
 
@@ -6,21 +8,25 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
+from pathlib import Path
 
 import numpy as np
 
-from plant_models import Plant, PressingForce
+from plant_models import Plant, PlantError, PressingForce
 from plant_models.cut import ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
+from synth.frame.faults import InputError
+from synth.frame.settings.settings_file import BUILT_IN
 from synth.kernels.loop.motion import brake_rows
 from synth.kernels.loop.passes import Draws
+from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.forms.tables_at import tables_at
 from synth.retarder.served_class import plant_for
 from synth.simulation.closed_loop import ClosedLoop, close_loop
 from synth.simulation.controllers import Controller, TableController, fixed
-from synth.simulation.lost_readings import readings_z
-from synth.simulation.random_passes import RandomPasses
+from synth.simulation.random_passes import RandomPasses, readings_z
 from tuning_tables import ControllerTable
 
 SLOWEST_ENTRY_M_S = 0.05
@@ -107,3 +113,31 @@ def table_classes(tables: Sequence[ControllerTable], config: ResolvedConfig, sou
 def taken(passes: RandomPasses, rows: Ints) -> RandomPasses:
     """Some of `passes`."""
     return RandomPasses(**{name: values[rows] for name, values in vars(passes).items()})
+
+
+def book_classes(
+    named: str, book: Path, tuned_with: Path | None, position: str, position_key: str = "position.name"
+) -> tuple[TableClass, ...]:
+    """The classes of the tables in `book`, in the closed loops of the configuration `tuned_with`, None: built in.
+
+    `named` is what names the book, 'my.toml: aim.tables'; `position_key` names there the `position` that it must be of.
+    Raises `InputError` for a book of another position or one that does not fit its configuration, `TableError` for a
+    damaged one.
+    """
+    tables = tables_at(book).only_lines(named)
+    for table in tables:
+        if table.retarder.name != position:
+            raise InputError(
+                f"{named} names {book}, whose table {table.id} is for the position {table.retarder.name}, but "
+                f"{position_key} is {position}; give a book of that position"
+            )
+    config = load_config(tuned_with)
+    try:
+        return table_classes(tables, config, str(tuned_with or BUILT_IN))
+    except PlantError as fault:
+        raise InputError(unfitting(named, book, fault)) from None
+
+
+def unfitting(named: str, book: Path, fault: PlantError) -> str:
+    """The sentence for a book that does not fit what it is named for."""
+    return f"{named} names {book}, which does not fit: {fault}"

@@ -9,30 +9,25 @@ from functools import partial
 import numpy as np
 
 from plant_models import Plant
-from synth.problem.aim import Aim
-from synth.retarder.attempted_case import attempted
-from synth.retarder.case_result import CaseResult
+from synth.problem.problem import Aim
+from synth.retarder.case_result import PRICES_M2_S3, CaseResult, ParetoFront, ParetoPoint
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup
-from synth.retarder.comparison.compared_laws import beside_table, best_law, compared_laws, permitted
-from synth.retarder.comparison.comparison import Comparison
+from synth.retarder.comparison.baselines import beside_table, best_law, compared_laws, permitted
 from synth.retarder.comparison.friction_bound import friction_bound
-from synth.retarder.comparison.measured import Measured
+from synth.retarder.comparison.measured import Comparison, Measured
 from synth.retarder.comparison.served_entry import EntrySweep, entry_sweep, feasibility_of
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.epochs import Ground, Store
 from synth.retarder.estimation.estimated_table import controller_of
-from synth.retarder.failed_case import FailedCase
-from synth.retarder.off_nominal.trial import Trials, trials
-from synth.retarder.pareto.pareto_front import PRICES_M2_S3, ParetoFront, ParetoPoint
-from synth.retarder.policy_map import share_of_ties
+from synth.retarder.failed_case import FailedCase, attempted
+from synth.retarder.off_nominal_trials import Trials, trials
 from synth.retarder.tuned_table import TunedTable, ValidatedLines, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses
-from synth.simulation.exit_statistics import exit_statistics, rms_ratio
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio, unavoidable_error
 from synth.simulation.passes import TRACE_FACTORS, ExitSample
 from synth.simulation.random_passes import random_passes
-from synth.simulation.unavoidable_error import unavoidable_error
-from synth.solver.backward_induction import Solution
+from synth.solver.backward_induction import Solution, share_of_ties
 from tuning_tables import ControllerTable
 
 Front = Callable[[], ParetoFront]

@@ -10,18 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 from synth.frame.command import Asked, Command, Work
 from synth.frame.exhibits import Chapter, Sentence
-from synth.retarder.asked_tune import AskedTune, asked_tune, drawing, limits, steps, tuned
+from synth.retarder.asked_tune import AskedTune, RadarEpochs, asked_tune, drawing, limits, steps, tuned
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY, NOT_CERTIFIED
-from synth.retarder.radar_epochs import RadarEpochs
-from synth.retarder.tune_options import TUNE, TuneOptions
+from synth.retarder.options import TUNE, TuneOptions
 
 if TYPE_CHECKING:
     from synth.frame.exhibits import File
+    from synth.retarder.acceptance import FoundBook
     from synth.retarder.case_result import CaseResult
-    from synth.retarder.found_book import FoundBook
     from synth.retarder.tune import Book
     from tuning_tables import ControllerTable
 
@@ -68,14 +67,9 @@ def book_files(book: Book[CaseResult]) -> tuple[tuple[File, ...], str]:
 def show(found: FoundBook[CaseResult]) -> Iterator[Chapter]:
     """What is shown of it."""
     from synth.retarder.case_result import fronts_of
-    from synth.retarder.shown.checks import checks
-    from synth.retarder.shown.controllers import controllers
-    from synth.retarder.shown.criterion import criterion
-    from synth.retarder.shown.fronts import fronts
-    from synth.retarder.shown.off_nominal import off_nominal
-    from synth.retarder.shown.pictures import case_pictures
-    from synth.retarder.shown.predictions import predictions
-    from synth.retarder.shown.results import results
+    from synth.retarder.shown.checks import checks, off_nominal
+    from synth.retarder.shown.pictures import case_pictures, fronts
+    from synth.retarder.shown.results import controllers, criterion, predictions, results
 
     yield Chapter("Results", tuple(results(found)))
     yield Chapter("Case by case", tuple(case_pictures(found.book.cases)))

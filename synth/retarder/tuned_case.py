@@ -1,7 +1,10 @@
-"""What a tune finds out about a cut class and target, on whatever epochs the regulator decides."""
+"""What a tune finds out about a cut class and target, on whatever epochs the regulator decides; how cases are grouped,
+and what files are called.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -11,12 +14,11 @@ from numpy.typing import NDArray
 from plant_models import Plant
 from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.retarder.comparison.measured import Measured
-from synth.simulation.exit_statistics import BrakePower, ExitStatistics
+from synth.simulation.exit_statistics import BrakePower, ExitStatistics, UnavoidableError
 from synth.simulation.passes import PassTrace
-from synth.simulation.unavoidable_error import UnavoidableError
 from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
-from tuning_tables.table_kinds import StageTable
+from tuning_tables.document import StageTable
 
 
 @frozen_arrays
@@ -134,3 +136,17 @@ class TunedCase:
 
 
 Case = TypeVar("Case", bound=TunedCase)
+
+
+def file_stem(*parts: str) -> str:
+    """A file name from words: lower case, letters and digits of any script kept, the rest one hyphen."""
+    text = "".join(c if c.isalnum() or c == "." else " " for c in " ".join(parts).lower())
+    return "-".join(text.split())
+
+
+def by_class(cases: Iterable[Case]) -> tuple[tuple[Case, ...], ...]:
+    """The cases of each cut class, in the order in which the classes first appear."""
+    groups: dict[str, list[Case]] = {}
+    for case in cases:
+        groups.setdefault(case.label, []).append(case)
+    return tuple(tuple(group) for group in groups.values())

@@ -1,4 +1,5 @@
-"""The one way from an aim to a validated table: solve, fit, polish, round, predict, simulate.
+"""The one way from an aim to a validated table: solve, fit, polish, round, predict, simulate; and a table as a
+controller holds it, with what is computed of it without sampling.
 
 `tune` adds comparison and studies to it, a sweep adds nothing.
 """
@@ -10,18 +11,21 @@ from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.problem.aim import Aim
-from synth.problem.any_time_resolution import design_resolution
-from synth.retarder.any_time.surface_table import polished_surfaces, starting_surfaces
-from synth.retarder.checked_design import NODES_KEPT, CheckedDesign, checked_design
+from synth.problem.problem import Aim
+from synth.problem.resolution import design_resolution
+from synth.retarder.checked_design import (
+    NODES_KEPT,
+    CheckedDesign,
+    checked_design,
+    polished_surfaces,
+    starting_surfaces,
+    surface_density,
+)
 from synth.retarder.class_setup import ClassSetup, EstimatorSetup
-from synth.retarder.epochs import Store
-from synth.retarder.estimation.estimated_lines import SimulatedRms, estimated_lines
-from synth.retarder.estimation.estimated_surfaces import estimated_surfaces
+from synth.retarder.epochs import Store, ValidatedTable, validated
+from synth.retarder.estimation.estimated_lines import SimulatedRms, estimated_lines, estimated_surfaces
 from synth.retarder.estimation.estimated_table import EstimatedTable, trimmed_on
-from synth.retarder.estimation.simulated_prediction import density_of, simulated_prediction
-from synth.retarder.rounded_table import PredictedTable, rounded, with_prediction
-from synth.retarder.validated_table import ValidatedTable, validated
+from synth.retarder.estimation.tuning_days import density_of, simulated_prediction
 from synth.simulation.closed_loop import TableController
 from synth.simulation.passes import ExitSample
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
@@ -29,9 +33,53 @@ from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
 from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
-from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.tabulate import UNPREDICTED, tabulate
-from tuning_tables import ControllerTable, from_json, to_json
+from synth.solver.resolved_density import resolved_density
+from synth.solver.switching_lines import PolynomialLines, SwitchingLines
+from synth.solver.tabulate import UNPREDICTED, lines_of, prediction_of, tabulate
+from tuning_tables import ControllerTable, Decisions, from_json, to_json
+
+
+def rounded(setup: ClassSetup, lines: PolynomialLines | PolynomialSurfaces, target_speed_m_s: float) -> ControllerTable:
+    """The table of `lines` for the measured speed, not yet predicted."""
+    return tabulate(setup.plant, lines, target_speed_m_s, UNPREDICTED, *setup.stamp(target_speed_m_s))
+
+
+@frozen_arrays
+class PredictedTable:
+    """A rounded table with its prediction, and the exit density behind it."""
+
+    table: ControllerTable
+    density: ExitDensity
+
+    @property
+    def rms_m_s(self) -> float:
+        """The predicted rms."""
+        return self.table.predicted.rms_m_s
+
+    @property
+    def most_off(self) -> float:
+        """A grid is not believed where the exact figure differs by more."""
+        return 1.25
+
+
+def with_prediction(check: Chain, table: ControllerTable) -> PredictedTable:
+    """`table` with the figures of its exit-speed density; as `predict`."""
+    density = predict(check, table)
+    return PredictedTable(replace(table, predicted=prediction_of(density, table.target_speed_m_s)), density)
+
+
+def predict(check: Chain, table: ControllerTable) -> ExitDensity:
+    """Exit-speed density of an exported table for the measured speed, resolved near its target.
+
+    On `check` if it decides at rest; at any time on a chain of its own of the same plant.
+    """
+    if table.decisions is Decisions.AT_ANY_TIME:
+        return surface_density(check.plant, table)
+    lines = lines_of(table, check.grid.path_m)
+    stages = check.actuator.stages
+    used = SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages])
+    return resolved_density(check, used, table.target_speed_m_s)
+
 
 Lines = TypeVar("Lines", PolynomialLines, PolynomialSurfaces)
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from plant_models.frozen_arrays import Floats, Ints
-from plant_models.pads import overpressure_kpa
+from plant_models.pressure_regulator import overpressure_kpa
 from plant_models.stage_regulator import resting_modes, stage_locked_actuator
 from synth.kernels.any_time.any_time_law import AnyTimeLaw
 from synth.kernels.any_time.closed_loop import run_any_time_passes
@@ -26,11 +26,9 @@ from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.regulator import Rule, Sensor
 from synth.kernels.loop.trace import EVENT_FIELDS, Trace
 from synth.simulation.controllers import Controller, LineController, Regulator, TableController, all_fixed, fixed
-from synth.simulation.drive_pieces import drive_pieces, empty_periods
-from synth.simulation.lost_readings import readings_z
 from synth.simulation.passes import ExitSample, PassTrace
-from synth.simulation.path_cells import path_cells
-from synth.simulation.random_passes import RandomPasses
+from synth.simulation.path_and_drive import drive_pieces, empty_periods, path_cells
+from synth.simulation.random_passes import RandomPasses, readings_z
 from synth.simulation.stratified_passes import many_passes
 
 __all__ = [

@@ -3,6 +3,9 @@
 Motion and pneumatic drive are continuous `nlsys`, connected by `interconnect` (`nominal_loop`). The sampled,
 stage-locked regulator is a discrete-time `nlsys` (`regulator_system`). python-control refuses to connect systems of
 different timebases, so `nominal_response` closes the loop. What python-control can represent is exact here.
+
+Between the two stand the ideal impulse element, which makes an impulse of each command whose area is the signal of the
+stage that is commanded, and the zero-order hold, which makes steps of the impulses (zhukovitsky-2012, figure 4).
 """
 
 from __future__ import annotations
@@ -25,6 +28,35 @@ from tuning_tables.programs.observe import observe
 
 if TYPE_CHECKING:
     from control import InterconnectedSystem, NonlinearIOSystem
+
+Impulse = tuple[float, float]
+"""(instant in s, area)."""
+
+ImpulseTrain = tuple[Impulse, ...]
+"""Impulses in the order of time."""
+
+
+def resting_train(value: float) -> ImpulseTrain:
+    """The train of a signal that has had this value for ever."""
+    return ((-math.inf, value),)
+
+
+def with_command(
+    train: ImpulseTrain, instant_s: float, stage: int, stage_pressures_kpa: tuple[float, ...]
+) -> ImpulseTrain:
+    """The train with one more impulse at its end, whose area is the pressure of `stage`.
+
+    Raises `ValueError` for an instant before that of the last.
+    """
+    if instant_s < train[-1][0]:
+        raise ValueError(f"impulse train: a command at {instant_s:g} s comes after that at {train[-1][0]:g} s")
+    return (*train, (instant_s, stage_pressures_kpa[stage]))
+
+
+def held(train: ImpulseTrain, time_s: float) -> float:
+    """Zero-order hold: the area of the last impulse at or before `time_s`, which must not be before the first."""
+    return next(value for instant, value in reversed(train) if instant <= time_s)
+
 
 STAGE, MODE, LOCKED, SLOPE, LAST, KNOWN = range(6)
 """Places in the regulator's state; from `KNOWN` on the state of the estimator."""

@@ -1,4 +1,5 @@
-"""The nominal pass by python-control: a second computation of what the simulator does, and how far they are apart.
+"""The nominal pass, mean friction, mean resistance, no noise: by the simulator, and a second computation of it by
+python-control; and how far they are apart.
 
 - At every sample the regulator is asked; between samples `input_output_response` integrates the loop.
 - python-control has no exact dead time, and its input is linear between time points. Valve and computing delays are
@@ -14,24 +15,67 @@ durations of its transients and the path coefficients.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from plant_models import Plant, RetarderPosition
+from plant_models import Plant, RetarderPosition, RollingResistance
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
-from plant_models.pads import overpressure_kpa
+from plant_models.pressure_regulator import overpressure_kpa
 from plant_models.stage_regulator import reaches_valves_s
 from synth.kernels.loop.passes import LONGEST_PASS_S
-from synth.simulation.closed_loop import Controller
-from synth.simulation.control_system import nominal_loop, regulated_actuator, regulator_start, regulator_system
-from synth.simulation.impulse_train import ImpulseTrain, held, resting_train
+from synth.simulation.closed_loop import Controller, trace
+from synth.simulation.control_system import (
+    ImpulseTrain,
+    held,
+    nominal_loop,
+    regulated_actuator,
+    regulator_start,
+    regulator_system,
+    resting_train,
+)
 from synth.simulation.passes import PassTrace
+from synth.simulation.random_passes import NOISE_SAMPLES, PATH_CELLS, RandomPasses
 
 if TYPE_CHECKING:
     from control import InterconnectedSystem
+
+
+def nominal_plant(plant: Plant) -> Plant:
+    """`plant` without chance: every cut has the mean friction and resistance, the sensor only quantises."""
+    return replace(
+        plant,
+        friction=replace(plant.friction, common_cv=0.0, axle_cv=0.0, path_std=0.0),
+        resistance=RollingResistance(plant.resistance.mean_n_per_kn, 0.0),
+        sensor=replace(plant.sensor, noise_m_s=0.0, missed_share=0.0),
+    )
+
+
+def nominal_entry_m_s(plant: Plant, entry_u: float) -> float:
+    """The entry speed below which the share `entry_u` (0 … 1) of all cuts enter."""
+    return float(plant.entry.speed_m_s(np.array([entry_u]))[0])
+
+
+def nominal_pass(plant: Plant, controller: Controller, entry_u: float, phase_u: float) -> PassTrace:
+    """The nominal pass event by event; entry as in `nominal_entry_m_s`, first sample after `phase_u` of a period."""
+    return trace(nominal_plant(plant), controller, one_pass(entry_u, phase_u), 0)
+
+
+def one_pass(entry_u: float, phase_u: float) -> RandomPasses:
+    """A single pass with entry speed and phase as given, and the mean of everything else."""
+    one = np.ones(1)
+    return RandomPasses(
+        cut_z=np.zeros(1),
+        entry_u=entry_u * one,
+        phase_u=phase_u * one,
+        resistance_u=0.5 * one,
+        path_z=np.zeros((1, PATH_CELLS), dtype=np.float32),
+        noise_z=np.zeros((1, NOISE_SAMPLES), dtype=np.float32),
+        loss_key=np.zeros(1, dtype=np.int64),
+        weight=one,
+    )
 
 
 CLOSED = 0.0

@@ -22,9 +22,16 @@ from synth.kernels.loop.passes import Draws
 from synth.kernels.loop.trace import EVENT_FIELDS
 from synth.simulation.closed_loop import SUBSTEP_S, ClosedLoop, close_loop, empty_exits, trace_of
 from synth.simulation.controllers import all_fixed, fixed
-from synth.simulation.heard_pairs import HeardPairs, as_given, deciding_pulses, every_pulse
-from synth.simulation.passage_controller import PassageController
-from synth.simulation.passage_sample import PassageSample, PassageTrace, PassReadings
+from synth.simulation.passage_controller import (
+    HeardPairs,
+    PassageController,
+    PassageSample,
+    PassageTrace,
+    PassReadings,
+    as_given,
+    deciding_pulses,
+    every_pulse,
+)
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import many_passes
 

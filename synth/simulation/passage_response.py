@@ -23,8 +23,7 @@ from synth.kernels.loop.passage_loop import WATCHED_FROM_S
 from synth.kernels.loop.passage_pulses import Pulses, coils_of, read_speed_m_s
 from synth.kernels.loop.passage_regulator import DECIDED, believed_passage, outcome_of, stage_at_passage
 from synth.kernels.loop.passes import LONGEST_PASS_S
-from synth.simulation.control_system import nominal_loop
-from synth.simulation.impulse_train import ImpulseTrain, held, resting_train
+from synth.simulation.control_system import ImpulseTrain, held, nominal_loop, resting_train
 from synth.simulation.nominal_response import CLOSED, NominalResponse, played, to_the_end, valve_schedule
 from synth.simulation.passage_controller import PassageController
 from synth.simulation.passage_loop import PassageLoop

@@ -1,14 +1,28 @@
-"""Random numbers of simulated passes, drawn once and used for every controller (common random numbers)."""
+"""Random numbers of simulated passes, drawn once and used for every controller (common random numbers): in rows, or
+by key, those of a cut at a position, whichever cuts are beside it; and which readings a radar loses, in bursts.
+
+Whether a reading is lost is a Markov chain of two states, one step a sample (Gilbert 1960): a burst ends with
+probability 1/L at each sample, L its mean length in readings, and a new one begins with the probability that makes the
+stationary share what it is to be. The numbers that decide come from the key of the pass, so no other number of the
+pass moves, and a pass loses the same readings under every controller.
+
+The numbers of the sensor come again after so many readings, and with them the losses. So the chain runs round a ring:
+it goes round twice with the same numbers, and the second turn, which ends as it began, is kept. A burst may thus last
+over the place where they come again.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import fields
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
+from plant_models import DopplerSensor
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
+from plant_models.rolling.random_numbers import Purpose, keyed_uniform, keyed_words
 from synth.kernels.loop.normal_numbers import normal_rows
 
 BLOCK_PASSES = 1000
@@ -130,3 +144,62 @@ def normal_columns(sequence: np.random.SeedSequence, columns: int) -> NDArray[np
     drawn = np.empty((BLOCK_PASSES, columns), dtype=np.float32)
     normal_rows(words, drawn, np.empty((2, TOGETHER), dtype=np.float32))
     return drawn
+
+
+def keyed_passes(seed: int, keys: tuple[Ints, ...], friction_keys: tuple[Ints, ...], path_cells: int) -> RandomPasses:
+    """Passes told apart by `keys`, arrays (n,) each; two with the same `friction_keys` have the same ξ_cut.
+
+    A pass has the same numbers whatever n, and the same first ones along the path whatever `path_cells`.
+    """
+    from scipy.special import ndtri  # start-up: scipy only where it is needed
+
+    entry, phase, resistance = keyed_uniform(seed, Purpose.PASS_CLOCK, keys, 3)
+    return RandomPasses(
+        cut_z=ndtri(keyed_uniform(seed, Purpose.CUT_FRICTION, friction_keys, 1)[0]),
+        entry_u=entry,
+        phase_u=phase,
+        resistance_u=resistance,
+        path_z=keyed_normal(seed, Purpose.PASS_PATH, keys, path_cells),
+        noise_z=keyed_normal(seed, Purpose.PASS_NOISE, keys, NOISE_SAMPLES),
+        loss_key=(keyed_words(seed, Purpose.PASS_LOSS, keys, 1)[0] >> np.uint64(1)).astype(np.int64),
+        weight=np.ones(len(phase)),
+    )
+
+
+def keyed_normal(seed: int, purpose: Purpose, keys: tuple[Ints, ...], columns: int) -> NDArray[np.float32]:
+    """Standard normal numbers (n, columns)."""
+    words = keyed_words(seed, purpose, keys, -(-columns // 2))
+    drawn = np.empty((words.shape[1], columns), dtype=np.float32)
+    normal_rows(words.reshape(-1), drawn, np.empty((2, TOGETHER), dtype=np.float32))
+    return drawn
+
+
+BURSTS_A_TURN = 8
+"""Mean bursts that a ring has room for at least: that its chain does not end as it began then has probability e⁻⁸."""
+
+
+def readings_z(passes: RandomPasses, sensor: DopplerSensor) -> NDArray[np.float32]:
+    """The numbers of the readings of `passes`, NaN where `sensor` loses one; (n, 256) or some times as many columns.
+
+    Those of `passes` themselves where it loses none.
+    """
+    if sensor.missed_share == 0.0:
+        return passes.noise_z
+    samples = passes.noise_z.shape[1]
+    turns = max(1, math.ceil(BURSTS_A_TURN * sensor.missed_readings / samples))
+    lost = lost_readings(passes.loss_key, sensor, turns * samples)
+    return np.where(lost, np.float32(np.nan), np.tile(passes.noise_z, (1, turns)))
+
+
+def lost_readings(keys: Ints, sensor: DopplerSensor, samples: int) -> Bools:
+    """Which of `samples` readings are lost in passes with these `keys` (n,), (n, samples)."""
+    stay = 1.0 - 1.0 / sensor.missed_readings
+    begin = (1.0 - stay) * sensor.missed_share / (1.0 - sensor.missed_share)
+    first, *u = keyed_uniform(0, Purpose.LOST_READING, (keys,), samples + 1)
+    lost = np.empty((samples, len(keys)), dtype=np.bool_)
+    now = first < sensor.missed_share
+    for _ in range(2):
+        for sample in range(samples):
+            now = u[sample] < np.where(now, stay, begin)
+            lost[sample] = now
+    return np.ascontiguousarray(lost.T)

@@ -1,4 +1,4 @@
-"""Solve a problem: backward induction over path quanta to switching lines."""
+"""Solve a problem: backward induction over path quanta to switching lines, and to a map of the best command."""
 
 from __future__ import annotations
 
@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
+from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.kernels.sweep.bellman import Entrance, sweep
 from synth.kernels.sweep.drawn_lines import Readings
 from synth.kernels.sweep.pass_time import Costs, Prices
 from synth.kernels.vector.packs import EIGHT
-from synth.problem.aim import Aim
-from synth.solver.chain.chain import Chain
-from synth.solver.chain.kernel_arrays import chain_arrays, pass_times, scenario_arrays
+from synth.problem.problem import Aim
+from synth.solver.chain.chain import Chain, chain_arrays, pass_times, scenario_arrays
 from synth.solver.switching_lines import SwitchingLines
 
 TIE_M2_S2 = 1e-9
@@ -177,3 +176,53 @@ def true_speed_weights(speed_m_s: Floats, readings: Floats, noise: float) -> tup
 def with_exit_node(lines: Floats) -> Floats:
     """(N, K + 1) per quantum start → (K + 1, N + 1) with the last row repeated at S_exit."""
     return np.concatenate([lines, lines[-1:]]).T.copy()
+
+
+@frozen_arrays
+class PolicyMap:
+    """Best command and indifferent region on the solver's grid, by stage.
+
+    `path_m` (N,), `speed_m_s` (E,); `command` (K + 1, N, E) int8: −1 down, 0 hold, +1 up; `indifferent`
+    (K + 1, N, E): several commands cost the same within the tolerance.
+    """
+
+    path_m: Floats
+    speed_m_s: Floats
+    command: NDArray[np.int8]
+    indifferent: Bools
+
+
+def policy_map(solution: Solution, tolerance_m2_s2: float) -> PolicyMap:
+    """The solver's map by measured speed.
+
+    The cost of holding is taken as 0, of a change as minus its gain; the best command is the cheapest, hold in
+    a tie; a state is indifferent if a second command costs at most `tolerance_m2_s2` more than the best.
+    """
+    grid, (down, up) = solution.chain.grid, gains(solution)
+    best = np.maximum(0.0, np.maximum(down, up))
+    command = np.zeros(down.shape, dtype=np.int8)
+    command[(down > 0.0) & (down >= up)] = -1
+    command[(up > 0.0) & (up > down)] = 1
+    near = np.stack([best - gain <= tolerance_m2_s2 for gain in (np.zeros_like(best), down, up)])
+    return PolicyMap(grid.path_m[:-1], grid.speed_m_s, command, near.sum(axis=0) >= 2)
+
+
+def share_of_ties(solution: Solution) -> float:
+    """Share of the states with a change at hand where hold wins because the best change gains nothing."""
+    changes = np.maximum(*gains(solution))
+    tied = np.abs(changes[np.isfinite(changes)]) <= TIE_M2_S2
+    return float(tied.mean())
+
+
+def gains(solution: Solution) -> tuple[Floats, Floats]:
+    """What a change down and one up gain, (K + 1, N, E) each; −inf where there is none."""
+    down, up = (np.moveaxis(gain, 1, 0) for gain in (solution.gain_down, solution.gain_up))
+    down, up = np.where(available(down), down, -np.inf), np.where(available(up), up, -np.inf)
+    up[solution.chain.plant.entrance_stage :, : solution.chain.approach_nodes] = -np.inf
+    return down, up
+
+
+def available(gain: Floats) -> Bools:
+    """Which commands a stage has at all: the sweep leaves the gain of a missing one exactly zero everywhere."""
+    exists: Bools = np.any(gain != 0.0, axis=(1, 2), keepdims=True)
+    return np.broadcast_to(exists, gain.shape)

@@ -9,13 +9,12 @@ import numpy as np
 
 from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.kernels.sweep.finer_end import HandOver, forward_to_finer_end, refine_landings
-from synth.solver.chain.chain import Chain
-from synth.solver.chain.epochs import Policy
+from synth.solver.chain.chain import Chain, chain_arrays, scenario_arrays
+from synth.solver.chain.decisions import Policy
 from synth.solver.chain.grid import MARGIN_CELLS, Grid
-from synth.solver.chain.kernel_arrays import chain_arrays, scenario_arrays
 from synth.solver.chain.landings import in_whole_packs
+from synth.solver.evaluation import commands, exit_density
 from synth.solver.exit_density import ExitDensity, without_negative
-from synth.solver.policy_density import commands, exit_density
 
 CELLS = 20
 """At least so many cells lie within three standard deviations of the exit speed to both sides of its mean."""

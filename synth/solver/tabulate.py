@@ -8,10 +8,9 @@ import numpy as np
 
 from plant_models import Plant
 from plant_models.frozen_arrays import Bools, Floats
-from synth.problem.aim import OVERSPEED_M_S
+from synth.problem.problem import OVERSPEED_M_S
 from synth.solver.exit_density import ExitDensity
-from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.switching_lines import SwitchingLines
+from synth.solver.switching_lines import PolynomialLines, SwitchingLines
 from tuning_tables import (
     Approach,
     ControllerTable,

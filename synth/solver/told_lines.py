@@ -13,16 +13,14 @@ import numpy as np
 
 from plant_models import Plant
 from plant_models.frozen_arrays import Floats, frozen_arrays
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
-from synth.solver.chain.chain import Chain
+from synth.problem.problem import Aim
+from synth.solver.chain.chain import Chain, known_factors
 from synth.solver.chain.scenarios import equally_spaced_normal
-from synth.solver.coarse_grid import CoarseGridError
-from synth.solver.evaluation import Evaluation
-from synth.solver.finer_speed import known_factors
-from synth.solver.policy_density import scenario_densities
-from synth.solver.polish import polish
-from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.descent import CoarseGridError
+from synth.solver.evaluation import Evaluation, scenario_densities
+from synth.solver.switching_lines import PolynomialLines
+from synth.solver.tuned_lines import polish
 
 SQUARED_ERROR_ALONE = Criterion(stall_cost_m2_s2=0.0, switching_tolerance_m2_s2=0.0, time_price_m2_s3=0.0)
 """What is measured: neither stalls nor switchings nor time cost anything besides."""

@@ -1,20 +1,198 @@
-"""The polynomial lines of one aim: solved, fitted, polished; nothing else of a tune."""
+"""The polynomial lines of one aim: fitted to the solution by what being off the line costs, then polished.
+
+The polish minimises the exactly evaluated cost of the polynomial policy itself over all coefficients at once; its
+gradient comes from one forward and one backward pass (`evaluation.Evaluation.gradient`).
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
-from synth.problem.aim import Aim
+import numpy as np
+
+from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
+from synth.problem.problem import Aim
 from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import Chain
-from synth.solver.descent import Descent
-from synth.solver.evaluation import Evaluation, Gradient
-from synth.solver.policy_density import density_and_occupancy, exit_density
-from synth.solver.polish import Evaluate, polish
-from synth.solver.polynomial_fit import Fit, fit_lines
-from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.switching_lines import SwitchingLines, always_up
+from synth.solver.descent import CostAndSlopes, Descent, descend, one_blas_thread, require_positive
+from synth.solver.evaluation import Evaluation, Gradient, density_and_occupancy, exit_density
+from synth.solver.switching_lines import (
+    MINIMUM_GAP_M_S,
+    PolynomialLines,
+    SwitchingLines,
+    always_up,
+    basis,
+    gap_of,
+    opened,
+)
+
+
+@frozen_arrays
+class Fit:
+    """Fitted lines and `curvature` (K + 1, 2, N): second derivative of the cost by every line value."""
+
+    lines: PolynomialLines
+    curvature: Floats
+
+
+@one_blas_thread()
+def fit_lines(solution: Solution, occupancy: Floats, degree: int) -> Fit:
+    """Weighted least squares; the weight of a node is the curvature of the cost in the line's position there.
+
+    `occupancy` (I, N, H, L, E): expected samples under the solution's own policy. Where a line is never near a
+    sample it costs nothing to be off it; a thousandth of the largest weight keeps it near its matrix.
+    """
+    t = solution.chain
+    nodes, stages = t.grid.path_m[:-1], t.actuator.stages
+    ends_m = t.plant.start_m, t.plant.exit_m
+    has_line = np.ones((stages, 2), dtype=bool)
+    has_line[0, 0] = has_line[-1, 1] = False
+    matrix = basis(nodes, *ends_m, degree)
+    coefficients = np.zeros((stages, 2, degree + 1))
+    curvature = np.zeros((stages, 2, len(nodes)))
+    per_stage = stage_occupancy(occupancy, t.actuator.mode_stage, stages)
+    for k, side in zip(*np.nonzero(has_line), strict=True):
+        line = (solution.lines.lower_m_s, solution.lines.upper_m_s)[side][k, :-1]
+        gain = (solution.gain_down, solution.gain_up)[side][:, k]
+        weight = off_line_cost(line, gain, per_stage[:, k], t.grid.speed_m_s)
+        curvature[k, side] = weight
+        line = carried_back(line, t.approach_nodes)
+        known = np.isfinite(line)
+        if not known.any():
+            coefficients[k, side, 0] = (0.0, t.grid.speed_m_s[-1])[side]
+            continue
+        root = np.sqrt(weight[known] + 1e-3 * weight[known].max() + 1e-12)
+        coefficients[k, side] = np.linalg.lstsq(matrix[known] * root[:, None], line[known] * root, rcond=None)[0]
+    return Fit(opened(PolynomialLines(*ends_m, coefficients, has_line)), curvature)
+
+
+def carried_back(line: Floats, nodes: int) -> Floats:
+    """`line` (N,) with its first finite value in place of infinite ones at the first `nodes`.
+
+    Before the entrance a stage may have no line where it must not be left or is never met. A polynomial that is free
+    there would cross its partner, and what keeps the two apart would move both everywhere.
+    """
+    finite = np.isfinite(line)
+    if not finite.any():
+        return line
+    first = int(np.argmax(finite))
+    return np.where((np.arange(len(line)) < min(first, nodes)), line[first], line)
+
+
+def stage_occupancy(occupancy: Floats, mode_stage: Ints, stages: int) -> Floats:
+    """Expected samples by node, stage and speed, (N, K + 1, E)."""
+    by_mode = occupancy.sum(axis=(0, 3))
+    out = np.zeros((by_mode.shape[0], stages, by_mode.shape[2]))
+    for mode, stage in enumerate(mode_stage):
+        out[:, stage] += by_mode[:, mode]
+    return out
+
+
+def off_line_cost(line: Floats, gain: Floats, occupancy: Floats, speed_m_s: Floats, window_m_s: float = 0.15) -> Floats:
+    """Second derivative of the cost by the line's position at every node, (N,).
+
+    Samples per m/s near the line times the slope of the gain there, both over ±`window_m_s`.
+    """
+    weight = np.zeros(len(line))
+    for n, v in enumerate(line):
+        if not np.isfinite(v):
+            continue
+        low, high = np.searchsorted(speed_m_s, (v - window_m_s, v + window_m_s))
+        if high - low < 2:
+            continue
+        slope = abs(gain[n, high - 1] - gain[n, low]) / (speed_m_s[high - 1] - speed_m_s[low])
+        weight[n] = slope * max(occupancy[n, low:high].sum(), 0.0) / (2 * window_m_s)
+    return weight
+
+
+LOOSE_M_S = 0.3
+"""See `whitening`."""
+
+Evaluate = Callable[[SwitchingLines], tuple[float, Floats]]
+"""Lines at path nodes → (cost, its derivatives by the lower and the upper lines (2, N, K + 1))."""
+
+
+@one_blas_thread()
+def polish(
+    start: PolynomialLines,
+    curvature: Floats,
+    nodes_m: Floats,
+    evaluate: Evaluate,
+    max_iterations: int,
+    tolerance: float = 5e-3,
+) -> Descent[PolynomialLines]:
+    """Minimise `evaluate` over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` on the path.
+
+    It ends when a step changes the cost by less than `tolerance` of the first cost. The cost of the result is positive
+    and no higher than the start's. A negative cost can only come from a grid that is too coarse.
+
+    Raises `CoarseGridError` if the cost to start from is not positive.
+
+    Sequential quadratic programming in coordinates in which the `curvature` (K + 1, 2, N) of `fit_lines` is
+    the unit matrix, so that the first steps are Newton steps.
+    """
+    free, width = np.nonzero(start.has_line), start.degree + 1
+    matrix = start.basis(nodes_m)[: curvature.shape[2]]
+    first = evaluate(start.at(nodes_m))
+    before = require_positive(first[0], "lines")
+    scale = whitening(curvature[free], matrix, before)
+
+    def unpack(y: Floats) -> PolynomialLines:
+        coefficients = start.coefficients.copy()
+        coefficients[free] += np.einsum("lab,lb->la", scale, y.reshape(-1, width))
+        return replace(start, coefficients=coefficients)
+
+    def by_point(cost_and_slopes: tuple[float, Floats]) -> CostAndSlopes:
+        cost, by_lines = cost_and_slopes
+        gradient = np.stack([np.ascontiguousarray(each.T) @ matrix for each in by_lines], axis=1)[free]
+        return cost, np.einsum("lab,la->lb", scale, gradient).ravel()
+
+    found = descend(
+        lambda y: by_point(evaluate(unpack(y).at(nodes_m))), by_point(first), [gap_constraint(start, free, scale)],
+        max_iterations, tolerance, allowed=lambda y: gap_of(unpack(y)) >= 0.5 * MINIMUM_GAP_M_S,
+    )  # fmt: skip
+    cost, best = found.cost_after, unpack(found.best) if found.best.any() else start
+    lines = opened(best)
+    if lines is not best:
+        cost = evaluate(lines.at(nodes_m))[0]
+    if not 0.0 < cost <= before:
+        cost, lines = before, start
+    return found.ending(lines, cost)
+
+
+def whitening(curvature: Floats, matrix: Floats, cost: float) -> Floats:
+    """Per line the matrix T with Tᵀ·H·T = 1, H the Hessian of cost/`cost` by the line's coefficients.
+
+    `curvature` (lines, N), `matrix` (N, r + 1). A line that nothing depends on is held as if moving it by
+    `LOOSE_M_S` everywhere doubled the cost.
+    """
+    loose = matrix.T @ matrix / (len(matrix) * LOOSE_M_S**2)
+    hessian = np.einsum("na,ln,nb->lab", matrix, curvature / cost, matrix) + loose
+    lower = np.linalg.cholesky(hessian)
+    whitened: Floats = np.linalg.inv(lower).transpose(0, 2, 1)
+    return whitened
+
+
+def gap_constraint(lines: PolynomialLines, free: tuple[Ints, ...], scale: Floats) -> dict[str, Any]:
+    """Linear inequality V_hi,k(s) − V_lo,k(s) − gap ≥ 0 at points along the path, for SLSQP."""
+    points = lines.nodes_m(13)
+    matrix = lines.basis(points)
+    index = {(int(k), int(side)): i for i, (k, side) in enumerate(zip(*free, strict=True))}
+    both = [k for k in range(len(lines.has_line)) if lines.has_line[k].all()]
+    width = lines.degree + 1
+    jacobian = np.zeros((len(both) * len(points), len(index) * width))
+    for row, k in enumerate(both):
+        rows = slice(row * len(points), (row + 1) * len(points))
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            at = index[k, side] * width
+            jacobian[rows, at : at + width] = sign * matrix @ scale[index[k, side]]
+    at_start = lines.at(points)
+    gap = (at_start.upper_m_s - at_start.lower_m_s)[both].ravel() - MINIMUM_GAP_M_S
+    return {"type": "ineq", "fun": lambda y: jacobian @ y + gap, "jac": lambda y: jacobian}
+
 
 POLISH_ITERATIONS, POLISH_TOLERANCE = 25, 5e-3
 

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 from tests.tuning_tables.forged_book import correct_payload
-from tuning_tables.seal import SEAL_BYTES, is_sealed, seal_of
+from tuning_tables.whole_file import SEAL_BYTES, is_sealed, seal_of
 
 Edit = Callable[[h5py.File, str, random.Random], None]
 """Changes something about the dataset of that name."""

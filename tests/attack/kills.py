@@ -19,8 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from synth.frame.held_directory import LOCK
-from synth.frame.own_files import MARKER
+from synth.frame.own_files import LOCK, MARKER
 from synth.frame.results_directory import LEFTOVER, SUMMARY
 from tests.attack.forks import Ended, Limits, Stroke, contents, forked, prepared, warmed
 from tests.golden.orders import ORDERS, Order

@@ -14,26 +14,25 @@ from typing import Final
 import h5py
 import numpy as np
 
-from synth.aim.configuration.template import default_aim_toml
+from synth.aim.configuration.aim_file import default_aim_toml
 from synth.cli.hump import check_command
 from synth.computer.command import COMMAND as COMPUTER
-from synth.computer.template import default_computer_toml
-from synth.frame.asked_file import asked_of
+from synth.computer.settings import default_computer_toml
+from synth.frame.perform import asked_of
 from synth.frame.terminal.manner import Manner
 from synth.frame.terminal.telling import say
-from synth.hump.aiming.command import COMMAND as AIM
-from synth.hump.configuration.template import default_trial_toml
-from synth.hump.forms.hump_csv import to_csv
+from synth.hump.aiming import COMMAND as AIM
+from synth.hump.configuration.trial_file import default_trial_toml
 from synth.hump.hump_file import parse_hump
+from synth.hump.hump_forms import to_csv
 from synth.hump.making.make_command import COMMAND as MAKE
 from synth.hump.railml.write import to_railml
 from synth.hump.trains.simulate_command import COMMAND as SIMULATE
-from synth.logs.loaded_passes import loaded_passes
-from synth.retarder.configuration.config_file import load_config
-from synth.retarder.configuration.config_template import default_sensors_toml
+from synth.logs.fitting_passes import loaded_passes
+from synth.retarder.configuration.config_file import default_sensors_toml, load_config
+from synth.retarder.options import TuneOptions
 from synth.retarder.sensors.tune_command import COMMAND as SENSORS_TUNE
 from synth.retarder.sweep.command import COMMAND as SWEEP_RUN
-from synth.retarder.tune_options import TuneOptions
 from tests.attack.forged import forged
 from tests.attack.mutants import mutant
 from tests.attack.processes import Changed, Kind, Reading

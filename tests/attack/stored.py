@@ -21,20 +21,19 @@ from typing import Any, Final, TypeVar
 import numpy as np
 
 from synth.cli.inspect import inspect_command
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.terminal.manner import Manner
 from synth.hump.configuration.trial_file import parse_trial_file
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.outcome_file import to_npz, trains_of
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.resolved_trial import resolve_trial
-from synth.hump.trains.stored_trains import stored_trains
+from synth.hump.rolling.outcomes import TrainOutcomes
+from synth.hump.trains.outcome_file import stored_trains, to_npz, trains_of
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.resolved_trial import resolve_trial
+from synth.retarder.comparison.measured import Judgement
 from synth.retarder.failed_case import FailedCase
 from synth.retarder.forms.code_options import code_options
 from synth.retarder.forms.table_forms import FORMS
 from synth.retarder.forms.tables_at import tables_at
-from synth.retarder.judgement import Judgement
-from synth.retarder.sweep.refinement import Gap
+from synth.retarder.sweep.plan import Gap
 from synth.retarder.sweep.unit_result import Row, UnitResult, from_bytes, to_bytes
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics
 from tests.attack.forged import forged
@@ -43,10 +42,10 @@ from tests.attack.processes import Changed, Kind, Reading
 from tests.tuning_tables.every_kind import SAMPLES, altered, document_of, places, sealed, value_at, whole_lines
 from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import InvalidTable, write_book
-from tuning_tables.canonical import document_checksum
+from tuning_tables.document import StageTable
+from tuning_tables.json_text import document_checksum
 from tuning_tables.passages.sensor_layout import DecidesOn
-from tuning_tables.seal import SEAL_BYTES, seal_of
-from tuning_tables.table_kinds import StageTable
+from tuning_tables.whole_file import SEAL_BYTES, seal_of
 
 Figures = TypeVar("Figures", ExitStatistics, BrakePower)
 

@@ -13,7 +13,7 @@ from typing import Final, NoReturn
 
 import pytest
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from tests.attack.kinds import KINDS
 from tests.attack.processes import Kind, Limits, Outcome, Reading, attempts
 from tests.effort import every, sized

@@ -11,7 +11,7 @@ from typing import Any
 
 from synth.checker.finding import Kind
 from synth.checker.verdict import DAMAGED, NOT_CONFIRMED, Verdict, verify
-from tuning_tables.canonical import document_checksum
+from tuning_tables.json_text import document_checksum
 
 Document = dict[str, Any]
 

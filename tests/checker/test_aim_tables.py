@@ -16,8 +16,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from synth.checker.aim.reading import read_aim
-from synth.checker.aim.rule import exit_speed
+from synth.checker.aim.table import exit_speed, read_aim
 from synth.checker.finding import Kind
 from synth.checker.float32 import bits
 from synth.checker.verdict import verify
@@ -27,15 +26,14 @@ from tests.controller_code.sample_book import FOUR_AXLES, table_of
 from tests.st_files import aim_st_files
 from tests.tuning_tables.aim.made_tables import answers, category_table, hard_questions, measured_table, sample_set
 from tuning_tables.aim import AimTables
-from tuning_tables.aim.aim_table import AimTable
-from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.aim.st_source import aim_export
-from tuning_tables.c_source import c_files
-from tuning_tables.canonical import canonical_json, document_checksum
+from tuning_tables.aim.aim_tables import AimTable
+from tuning_tables.aim.exports import aim_c_files, aim_export
 from tuning_tables.csv_file import to_csv
-from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.export_names import ExportPrefix
+from tuning_tables.exports import c_files
 from tuning_tables.json_file import from_json, to_json
-from tuning_tables.plc_forms.iec import unit_files
+from tuning_tables.json_text import canonical_json, document_checksum
+from tuning_tables.language.st_layout import unit_files
 from tuning_tables.table_book import TableBook
 
 AIMS = AimTables((category_table(1.0), measured_table(), category_table(1.5, 4, "СТ")))

@@ -19,12 +19,11 @@ import pytest
 
 from synth.checker.claims import PredictionRatio, own_faults, simulated_faults
 from synth.checker.coarse_simulation import Passes, simulate
-from synth.checker.stated_off_nominal import KEYS, off_nominal_faults
 from synth.checker.statistics import FALSE_ALARM, ExitFigures, binomial_tail, figures_of
-from synth.checker.summary import Summary, by_case, read_summary
+from synth.checker.summary import KEYS, Summary, by_case, off_nominal_faults, read_summary
 from synth.checker.table_reading import Table, read_table
 from synth.checker.verdict import verify
-from synth.retarder.off_nominal.trial import CONDITIONS
+from synth.retarder.off_nominal_trials import CONDITIONS
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import ExitSample
 

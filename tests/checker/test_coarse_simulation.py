@@ -22,7 +22,7 @@ from synth.checker.coarse_simulation import (
     simulate,
     start_speed_m_s,
 )
-from synth.checker.entry import Uniform
+from synth.checker.drawn_cuts import Uniform
 from synth.checker.estimator_sense import at, work_of
 from synth.checker.plant import Drive, Plant, config_sha256
 from synth.checker.statistics import FALSE_ALARM, binomial_tail, figures_of

@@ -15,9 +15,9 @@ from typing import Any
 import pytest
 
 from scripts.documentation.known_defects_page import defects_text
-from synth.checker.code_file import code_at
+from synth.checker.code_export import code_at
 from synth.cli import main
-from synth.frame.known_defects import PLACE, Defect, known_defects, release
+from synth.frame.version import PLACE, Defect, known_defects, release
 from tests.effort import sized
 from tests.tuning_tables.every_kind import smallest_aim, smallest_lines, smallest_points
 from tuning_tables import document, write_json
@@ -119,7 +119,7 @@ def unsafe(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.M
     """Whether the made-up defect, which the program then knows, makes tables unsafe."""
     listed = {**vars(MADE_UP), "unsafe": request.param}
     (tmp_path / "defects.json").write_text(json.dumps({"defects": [listed]}), encoding="utf-8")
-    monkeypatch.setattr("synth.frame.known_defects.PLACE", tmp_path / "defects.json")
+    monkeypatch.setattr("synth.frame.version.PLACE", tmp_path / "defects.json")
     return bool(request.param)
 
 
@@ -179,7 +179,7 @@ def test_inspect_warns_of_a_table_by_the_version_that_exported_it(
         write_json(smallest_lines(), tmp_path / "later.json")
     write_json(smallest_lines(), tmp_path / "now.json")
     monkeypatch.setattr(
-        "synth.frame.known_defects.known_defects", lambda: (replace(MADE_UP, introduced="98", steps=("exported",)),)
+        "synth.frame.version.known_defects", lambda: (replace(MADE_UP, introduced="98", steps=("exported",)),)
     )
     for name in ("later", "now"):
         assert main(["inspect", str(tmp_path / f"{name}.json")]) == 0

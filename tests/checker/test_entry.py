@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from plant_models import EntryLaw, EntrySpeed, HistogramEntrySpeed, NormalEntrySpeed
-from synth.checker.entry import Entry, Histogram, Normal, Uniform
+from synth.checker.drawn_cuts import Entry, Histogram, Normal, Uniform
 from synth.checker.plant import UnusableConfigError, plant_of
 from synth.retarder.configuration.config_file import parse_config
 

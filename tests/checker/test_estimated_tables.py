@@ -20,7 +20,7 @@ from synth.checker.verdict import CONFIRMED, verify
 from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
 from tests.tuning_tables.forged_book import forge, put
 from tuning_tables import Approach, TableBook, read_book, write_book
-from tuning_tables.c_source import vectors_csv
+from tuning_tables.exports import vectors_csv
 from tuning_tables.golden_vectors import GoldenVectors, golden_vectors
 from tuning_tables.rule import decide_many
 

@@ -24,7 +24,7 @@ from synth.retarder.estimation.estimator_design import estimator_of, frozen_read
 from tests.checker.planted_fault import Document
 from tuning_tables.estimator import Estimator, begin
 from tuning_tables.held_table import lines_apart
-from tuning_tables.programs.alarms import alarms
+from tuning_tables.programs.decide import alarms
 from tuning_tables.programs.observe import observe
 
 Sample = tuple[float, float, float]

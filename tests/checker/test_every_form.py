@@ -11,11 +11,10 @@ from typing import Final
 
 import pytest
 
-from synth.checker.code_file import FOLDERS, CodeFile, code_at, code_files
+from synth.checker.code_export import FOLDERS, CodeFile, code_at, code_files
 from synth.checker.code_records import plain
-from synth.checker.export_check import findings_of
 from synth.checker.exports import code_differences
-from synth.checker.finding import Finding, Kind
+from synth.checker.finding import Finding, Kind, findings_of
 from synth.checker.source import Source, read_source
 from synth.checker.verdict import verify
 from synth.retarder.forms.code_options import CODE_NAMES, OPTIONS, CodeOptions
@@ -25,13 +24,12 @@ from tests.controller_code.sample_book import approaching_book, surface_book
 from tests.effort import every
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
 from tuning_tables import to_json
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.document import AnyTable
+from tuning_tables.export_names import RETARDER, ExportPrefix
 from tuning_tables.language.records import Record, st_name
-from tuning_tables.programs.aim_table import AIM_GRID
-from tuning_tables.programs.line_table import LINE_TABLE
-from tuning_tables.programs.passage_table import HELD_PASSAGES
+from tuning_tables.programs.aim_speed import AIM_GRID
+from tuning_tables.programs.held import HELD_PASSAGES, LINE_TABLE
 from tuning_tables.self_test_size import SMALL
-from tuning_tables.table_kinds import AnyTable
 
 LONG: Final = f"{'of a long name ' * 9}{'x' * 100}"
 """Comments break it into lines, each form at other places."""

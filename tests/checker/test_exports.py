@@ -14,11 +14,9 @@ from pathlib import Path
 import h5py
 import pytest
 
-from synth.checker.code_export import c_differences, st_differences
-from synth.checker.code_file import LINES
+from synth.checker.code_export import LINES, c_differences, st_differences
 from synth.checker.finding import DamagedError, Kind
-from synth.checker.golden_export import vector_differences
-from synth.checker.line_numbers import due_of_lines
+from synth.checker.line_exports import due_of_lines, vector_differences
 from synth.checker.table_reading import Table, read_table
 from tests.checker.planted_fault import Document, alone, found, judged, look, rewrite
 from tests.controller_code.sample_book import (
@@ -32,11 +30,10 @@ from tests.controller_code.sample_book import (
 from tests.controller_code.test_families import at_rest
 from tests.st_files import st_files
 from tuning_tables import ControllerTable, Decisions, to_json
-from tuning_tables.c_source import c_files
-from tuning_tables.export_prefix import ExportPrefix
-from tuning_tables.plc_forms.iec import unit_files
+from tuning_tables.export_names import ExportPrefix
+from tuning_tables.exports import TABLE_FILE, c_files, line_export
+from tuning_tables.language.st_layout import unit_files
 from tuning_tables.self_test_size import SMALL
-from tuning_tables.st_source import TABLE_FILE, line_export
 from tuning_tables.table_book import TableBook
 
 

@@ -15,14 +15,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scripts.studies.in_the_loop.agreement import ask
-from synth.checker.canonical import canonical_form, crc32, parse_json, require_right_crc32
+from synth.checker.content import canonical_form, crc32, parse_json, require_right_crc32
 from synth.checker.finding import DamagedError
 from synth.checker.float32 import above, below, bits, decide, from_bits, horner, is_float32, rises, rounded
 from synth.checker.table_reading import read_table
 from tests.controller_code.sample_book import approaching_book, sample_book, surface_book
 from tuning_tables import to_json
-from tuning_tables.canonical import canonical_json
-from tuning_tables.json_text import read_json_text
+from tuning_tables.json_text import canonical_json, read_json_text
 from tuning_tables.table_book import TableBook
 
 REAL = st.floats(allow_nan=False)
@@ -77,7 +76,7 @@ def test_crc_check_value() -> None:
 
 
 def test_a_wrong_crc_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("synth.checker.canonical.POLYNOMIAL", 0xEDB88321)
+    monkeypatch.setattr("synth.checker.content.POLYNOMIAL", 0xEDB88321)
     with pytest.raises(ArithmeticError, match="cbf43926"):
         require_right_crc32()
 

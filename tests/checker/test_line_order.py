@@ -27,8 +27,7 @@ from synth.checker.table_sense import tilt_of
 from tests.checker.any_time_tables import sloped, sound_table
 from tuning_tables import Stage, to_json
 from tuning_tables.errors import InvalidTable
-from tuning_tables.line_order import require_order, rounding_bound, smallest_gap
-from tuning_tables.surface_order import require_stage, stage_gap, surface_bound
+from tuning_tables.stage import require_order, require_stage, rounding_bound, smallest_gap, stage_gap, surface_bound
 
 LINE = st.lists(st.floats(-4, 4, width=32), min_size=4, max_size=4)
 

@@ -16,8 +16,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from synth.checker.finding import DamagedError, Kind
-from synth.checker.passages.reading import read_passage_table
-from synth.checker.passages.rule import passages_heard, wanted
+from synth.checker.passages.table import passages_heard, read_passage_table, wanted
 from synth.cli import main
 from tests.checker.planted_fault import Document, found, judged, look, rewrite
 from tests.controller_code.passage_tables import every_axle_book, passage_book
@@ -26,10 +25,10 @@ from tests.tuning_tables.passages.made_tables import passage_tables as any_table
 from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables.csv_file import to_csv
 from tuning_tables.json_file import to_json
-from tuning_tables.passages.c_source import passage_c_files
-from tuning_tables.passages.held_passages import held_by
+from tuning_tables.passages.exports import passage_c_files
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.rule import held_by
 from tuning_tables.passages.sensor_layout import DecidesOn
 from tuning_tables.programs.at_pulse import wanted_stage
 

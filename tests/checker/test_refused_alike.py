@@ -31,7 +31,7 @@ from tests.tuning_tables.every_kind import (
 from tests.tuning_tables.forged_book import forge, put
 from tuning_tables import TableError, from_json, read_book, write_book
 from tuning_tables.book_layout import Layout, book_layout
-from tuning_tables.table_kinds import AnyTable
+from tuning_tables.document import AnyTable
 
 SOUND: Final[Mapping[str, Callable[[], AnyTable]]] = {
     "lines": lambda: sound_table("plain"),

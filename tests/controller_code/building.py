@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from scripts.studies.in_the_loop.builds import BUILDS, Build
-from scripts.studies.in_the_loop.controller_process import compile_with
+from scripts.studies.in_the_loop.controller_process import BUILDS, Build, compile_with
 from tests.effort import sized
 
 

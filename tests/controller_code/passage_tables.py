@@ -9,12 +9,11 @@ import numpy as np
 
 from tests.controller_code.sample_book import FOUR_AXLES, SIX_AXLES
 from tuning_tables import CutId, Generator, Predicted, RetarderId
-from tuning_tables.approach import Approach
+from tuning_tables.decisions import Approach
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.passages.plausible_motion import PlausibleMotion
-from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
+from tuning_tables.passages.sensor_layout import DecidesOn, PlausibleMotion, SensorLayout
 
 BUNCH = (-4.0, 2.0, 10.65, 14.0, 21.25, 30.0, 39.0)
 """The third one stands two axles of a four-axle car behind the second: their pairs come together. The last one stands

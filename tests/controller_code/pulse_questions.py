@@ -9,11 +9,11 @@ import numpy.typing as npt
 from numba import njit
 
 from synth.kernels.compiled_rules import compiled_rule
-from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.pulse_sequences import heard_cuts
+from tuning_tables.passages.rule import held_by
 from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
-from tuning_tables.programs.passage_table import HeldPassages
+from tuning_tables.programs.held import HeldPassages
 from tuning_tables.programs.tracker import LONGEST_WAIT_S, begin_cut, believed_passage
 
 ON, BEGIN, GIVEN, PAIR = range(4)

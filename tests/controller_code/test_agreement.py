@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 from scripts.studies.in_the_loop.agreement import Questions, Tracks, ask, decisions_of, differences, follow
-from scripts.studies.in_the_loop.builds import Build
-from scripts.studies.in_the_loop.controller_process import BuildError, build_controller
-from scripts.studies.in_the_loop.software_in_the_loop import PipeLine, closed_loop_with_process
+from scripts.studies.in_the_loop.controller_process import Build, BuildError, build_controller
+from scripts.studies.in_the_loop.loop_study import PipeLine, closed_loop_with_process
 from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.random_passes import random_passes
 from tests.controller_code.building import FEW_WAYS, WAYS

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from scripts.studies.in_the_loop.builds import Build
+from scripts.studies.in_the_loop.controller_process import Build
 from tests.controller_code.building import WAYS, built, told
 from tests.controller_code.conftest import ToChange, Tool
 from tests.effort import QUESTIONS
@@ -24,11 +24,11 @@ from tests.tuning_tables.aim.made_tables import (
     sample_set,
 )
 from tuning_tables.aim import AimTables
-from tuning_tables.aim.c_source import aim_c_files
+from tuning_tables.aim.exports import aim_c_files
 from tuning_tables.aim.golden_aims import few_golden_aims, golden_aims
 from tuning_tables.controller_code.aim_code import aim_code
 from tuning_tables.controller_code.code import crc32_of, words_of
-from tuning_tables.export_prefix import RETARDER
+from tuning_tables.export_names import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
 PROGRAM = r"""

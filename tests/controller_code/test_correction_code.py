@@ -11,13 +11,13 @@ import numpy.typing as npt
 import pytest
 from numba import njit
 
-from scripts.studies.in_the_loop.builds import Build
+from scripts.studies.in_the_loop.controller_process import Build
 from synth.kernels.compiled_rules import compiled_rule
 from tests.controller_code.building import WAYS, built, told
 from tests.controller_code.conftest import ToChange, Tool
 from tests.effort import QUESTIONS
-from tuning_tables.c_correction import correction_c_files
 from tuning_tables.correction import Correction
+from tuning_tables.exports import correction_c_files
 from tuning_tables.programs.correct import corrected_speed, learn_exit, usable_exit
 
 CORRECTION = Correction(0.15, 0.06)

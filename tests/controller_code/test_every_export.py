@@ -21,12 +21,11 @@ from tests.effort import every
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
 from tests.tuning_tables.st.conftest import oddly_named_book
 from tuning_tables.aim import AimTables
-from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.c_correction import correction_c_files
-from tuning_tables.c_source import c_files
+from tuning_tables.aim.exports import aim_c_files
 from tuning_tables.correction import Correction
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
-from tuning_tables.passages.c_source import passage_c_files
+from tuning_tables.export_names import RETARDER, ExportPrefix
+from tuning_tables.exports import c_files, correction_c_files
+from tuning_tables.passages.exports import passage_c_files
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.self_test_size import SMALL
 from tuning_tables.table_book import TableBook

@@ -15,15 +15,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scripts.studies.in_the_loop.builds import Build
-from scripts.studies.in_the_loop.controller_process import COMMAND, Controller, sources_of
-from scripts.studies.in_the_loop.held_words import held_record, held_words, places, table_words
-from synth.checker.code_file import code_files
+from scripts.studies.in_the_loop.controller_process import (
+    COMMAND,
+    Build,
+    Controller,
+    held_record,
+    held_words,
+    places,
+    sources_of,
+    table_words,
+)
+from synth.checker.code_export import code_files
 from synth.cli.qualification.second_program import with_other_number
 from synth.retarder.forms.code_options import CONTROLLER_NAMES, FMU_NAMES, CodeOptions
-from synth.retarder.forms.correction_form import correction_files
-from synth.retarder.forms.exporters import exporters_at
-from synth.retarder.forms.table_forms import FORMS
+from synth.retarder.forms.table_forms import FORMS, correction_files
+from synth.retarder.forms.tables_at import exporters_at
 from tests.controller_code.building import built as built_of
 from tests.controller_code.conftest import Built, Tool
 from tests.controller_code.passage_tables import passage_table
@@ -31,16 +37,15 @@ from tests.controller_code.sample_book import sample_book
 from tests.st_files import st_files
 from tests.tuning_tables.aim.made_tables import category_table
 from tuning_tables import decide_for, from_json, read_book, read_table, to_json, write_book
-from tuning_tables.c_source import c_files
 from tuning_tables.controller_code.line_code import line_code
+from tuning_tables.document import AnyTable
 from tuning_tables.estimator import begin, unseen_samples
-from tuning_tables.exporter import exporting_version
+from tuning_tables.export_names import exporting_version
+from tuning_tables.exports import TABLE_FILE, c_files
 from tuning_tables.language.c99_data import hex_float
 from tuning_tables.rule import speed_for
 from tuning_tables.self_test_size import FULL, SMALL
-from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
-from tuning_tables.table_kinds import AnyTable
 
 CHANGES = np.array([*(1 << bit for bit in range(8)), 0xFF, 0x5A], dtype=np.uint8)
 """Bits of a byte that are turned round: each alone, all, and half of them."""
@@ -139,7 +144,7 @@ TABLES: Sequence[AnyTable] = (sample_book().tables[0], passage_table("light"), c
 def later(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """The program as a later version of it."""
     exporting_version.cache_clear()
-    monkeypatch.setattr("tuning_tables.exporter.version", lambda _: "98.7")
+    monkeypatch.setattr("tuning_tables.export_names.version", lambda _: "98.7")
     yield "retarder-synth 98.7"
     exporting_version.cache_clear()
 

@@ -13,13 +13,12 @@ import numpy as np
 import pytest
 
 from scripts.studies.in_the_loop.agreement import choices_of
-from scripts.studies.in_the_loop.controller_process import COMMAND, sources_of
-from scripts.studies.in_the_loop.held_words import held_record, held_words, places, sealed
+from scripts.studies.in_the_loop.controller_process import COMMAND, held_record, held_words, places, sealed, sources_of
 from tests.controller_code.conftest import Built, ToChange
 from tests.controller_code.sample_book import estimator_of, table_of, with_approach, with_slopes
 from tests.effort import sized
 from tuning_tables import ControllerTable, Decisions, Status, ValidRange
-from tuning_tables.book_families import families_of
+from tuning_tables.book_classes import families_of
 from tuning_tables.self_test_size import SMALL
 from tuning_tables.table_book import TableBook
 

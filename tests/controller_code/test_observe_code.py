@@ -11,15 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scripts.studies.in_the_loop.builds import SANITIZED
-from scripts.studies.in_the_loop.controller_process import compile_with, write_sources
-from scripts.studies.in_the_loop.hard_samples import hard_samples
-from scripts.studies.in_the_loop.held_words import held_words, places
+from scripts.studies.in_the_loop.controller_process import SANITIZED, compile_with, held_words, places, write_sources
+from scripts.studies.in_the_loop.hard_questions import hard_samples
 from tests.controller_code.conftest import Built, Tool
 from tests.controller_code.sample_book import estimating_book, sample_book, surface_book, table_of
 from tuning_tables import alarms_for, speed_for, unseen_samples
-from tuning_tables.c_source import c_files
 from tuning_tables.estimator import begin
+from tuning_tables.exports import c_files
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.table_book import TableBook
 

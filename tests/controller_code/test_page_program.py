@@ -15,7 +15,7 @@ from tests.controller_code.sample_book import estimating_book
 from tests.controller_code.weighed_cuts import NAMES, TARGET_M_S, braked_by, weighed_book, weighed_cuts
 from tests.effort import sized
 from tuning_tables import decide_for
-from tuning_tables.c_source import c_files
+from tuning_tables.exports import c_files
 from tuning_tables.table_book import TableBook
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "controllers.md"

@@ -12,8 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from scripts.studies.in_the_loop.builds import Build
-from scripts.studies.in_the_loop.controller_process import compile_with
+from scripts.studies.in_the_loop.controller_process import Build, compile_with
 from tests.controller_code.building import WAYS, built, told, written
 from tests.controller_code.conftest import Tool
 from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
@@ -21,10 +20,10 @@ from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, rig
 from tests.effort import QUESTIONS, every
 from tuning_tables.controller_code.code import crc32_of, words_of
 from tuning_tables.controller_code.passage_code import passage_code
-from tuning_tables.export_prefix import RETARDER
-from tuning_tables.passages.c_source import passage_c_files
-from tuning_tables.passages.held_passages import held_by
+from tuning_tables.export_names import RETARDER
+from tuning_tables.passages.exports import passage_c_files
 from tuning_tables.passages.passage_book import PassageBook
+from tuning_tables.passages.rule import held_by
 from tuning_tables.programs.at_pulse import wanted_stage
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 

@@ -23,11 +23,10 @@ from tests.effort import every, sized
 from tests.tuning_tables.aim.made_tables import category_table, sample_set
 from tuning_tables import from_json
 from tuning_tables.aim import AimTables
-from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.c_correction import correction_c_files
-from tuning_tables.c_source import c_files
+from tuning_tables.aim.exports import aim_c_files
 from tuning_tables.correction import Correction
-from tuning_tables.passages.c_source import passage_c_files
+from tuning_tables.exports import c_files, correction_c_files
+from tuning_tables.passages.exports import passage_c_files
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.self_test_size import FULL, SMALL
 from tuning_tables.table_book import TableBook

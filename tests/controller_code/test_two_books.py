@@ -12,12 +12,11 @@ from synth.retarder.configuration.config_file import parse_config
 from tests.controller_code.sample_book import FOUR_AXLES, estimating_book, park_book, sample_book, table_of
 from tests.st_files import st_files
 from tuning_tables import ControllerTable
-from tuning_tables.c_source import c_files
-from tuning_tables.category_names import category_names
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.category_number import category_names
+from tuning_tables.export_names import RETARDER, ExportPrefix
+from tuning_tables.exports import c_files, line_export
 from tuning_tables.golden_choices import golden_choices
-from tuning_tables.plc_forms.iec import unit_files
-from tuning_tables.st_source import line_export
+from tuning_tables.language.st_layout import unit_files
 from tuning_tables.table_book import TableBook
 
 POSITIONS = {"bunch": estimating_book(), "park": park_book()}

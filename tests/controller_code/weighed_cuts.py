@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from tests.controller_code.sample_book import FOUR_AXLES, estimator_of, table_of
 from tuning_tables import Estimator, alarms_for, begin, speed_for
-from tuning_tables.programs.alarms import table_after
+from tuning_tables.programs.decide import table_after
 from tuning_tables.table_book import TableBook
 
 TARGET_M_S = 2.5

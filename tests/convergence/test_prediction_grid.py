@@ -9,23 +9,21 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from scripts.studies.tuned_table import tuned_table
-from synth.problem.aim import Aim
+from scripts.studies.cases import tuned_table
+from synth.problem.problem import Aim
 from synth.problem.resolution import LONG_PASS_M, Resolution, finer_for_check
 from synth.retarder.configuration.config_file import load_config, parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.rounded_table import predict
+from synth.retarder.tuned_table import predict
 from synth.simulation.closed_loop import LineController, TableController, simulate_many
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.replicates import share_of
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from synth.solver.descent import Descent
-from synth.solver.evaluation import Evaluation
-from synth.solver.policy_density import commands_of, exit_density, forward_all
-from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.evaluation import Evaluation, commands_of, exit_density, forward_all
 from synth.solver.resolved_density import times_as_fine
-from synth.solver.switching_lines import SwitchingLines
+from synth.solver.switching_lines import PolynomialLines, SwitchingLines
 from synth.solver.tabulate import lines_of
 from synth.solver.tuned_lines import fitted, polished
 from tests.effort import every

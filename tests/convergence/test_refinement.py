@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 
 from plant_models import EntrySpeed, Friction, Plant
 from synth.kernels.sweep.chain_arrays import PathNoise
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, noise_on_landings, persistent_chain
 from synth.solver.chain.scenarios import Scenarios
-from synth.solver.policy_density import density_and_occupancy, exit_density
-from synth.solver.polynomial_fit import stage_occupancy
+from synth.solver.evaluation import density_and_occupancy, exit_density
 from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tuned_lines import stage_occupancy
 
 TARGET_M_S = 3.0
 

@@ -16,17 +16,16 @@ from scipy.stats import binomtest
 from plant_models.errors import PlantError
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter, Chart, Column, File, Sentence, Table
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.interval import Interval
 from synth.frame.own_files import MARKER
 from synth.frame.printed_numbers import decimals
 from synth.frame.results_directory import results_directory
 from synth.frame.settings.numbers import numbers_of
 from synth.frame.settings.options import Options, configured
-from synth.frame.settings.output import OutputSettings
-from synth.frame.settings.section import Section, choice, optional, setting
+from synth.frame.settings.section import OutputSettings, Section, choice, optional, setting
 from synth.frame.settings.settings_file import parse_settings
-from tuning_tables.canonical import canonical_json
+from tuning_tables.json_text import canonical_json
 
 
 class CoinSettings(Section):

@@ -20,22 +20,19 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from plant_models import PlantError
+from plant_models.library.hump_forms import UNITS, in_unit, unit_in_name
 from plant_models.library.sourced_value import SET_BY_USER
-from plant_models.library.written_units import UNITS, in_unit, unit_in_name
 from synth.aim.configuration.settings import AimFileSettings
 from synth.cli import main
 from synth.computer.settings import ComputerSettings
-from synth.frame.input_error import InputError
-from synth.frame.settings.changed import changed, with_inputs
-from synth.frame.settings.numbers import numbers_of
-from synth.frame.settings.schema import schema_of
+from synth.frame.faults import InputError
+from synth.frame.settings.numbers import numbers_of, schema_of
 from synth.frame.settings.section import Section, many, sections_in, setting, setting_limits, setting_unit
-from synth.frame.settings.settings_file import parse_settings, settings_in
-from synth.frame.settings.template import template
-from synth.frame.settings.toml_text import toml_text
+from synth.frame.settings.settings_file import changed, parse_settings, settings_in, with_inputs
+from synth.frame.settings.template import template, toml_text
 from synth.hump.configuration.settings import HumpTrialSettings
-from synth.hump.forms.hump_csv import from_csv, to_csv
 from synth.hump.hump_file import parse_hump
+from synth.hump.hump_forms import from_csv, to_csv
 from synth.retarder.configuration.settings import Settings
 from tests.frame.small_command import CoinFile
 from tests.plant_models.hump.random_humps import SMALL

@@ -13,14 +13,12 @@ import openpyxl
 import pytest
 
 from synth.frame.exhibits import Column, Table
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.interval import Interval
-from synth.frame.page.inline_svg import inline_svg, shorter
-from synth.frame.page.markup import Markup, element
+from synth.frame.page.markup import Markup, element, inline_svg, shorter
 from synth.frame.page.page_table import MOST_COLUMNS, MOST_ROWS, on_screen, table_or_words
 from synth.frame.printed_numbers import counted, percent, span
-from synth.frame.sheet import sheet_rows
-from synth.frame.workbook import MOST_BYTES, first_sheet_csv, to_workbook
+from synth.frame.sheet import MOST_BYTES, first_sheet_csv, sheet_rows, to_workbook
 
 SVG = (
     b'<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '

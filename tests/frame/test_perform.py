@@ -16,21 +16,19 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from plant_models import PlantError
-from synth.frame.asked_file import asked_of
 from synth.frame.command import Limit, Verdict
-from synth.frame.command_guide import CommandGuide, Shown
-from synth.frame.command_line import Listed, add_listed, listed_group
+from synth.frame.command_line import CommandGuide, Listed, Shown, add_listed, listed_group
 from synth.frame.exhibits import Chapter, Column, Table, brief_value
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.interval import Interval
 from synth.frame.page.told_page import shown
+from synth.frame.perform import asked_of
 from synth.frame.printed_numbers import ABSENT, as_known
 from synth.frame.sheet import to_csv
-from synth.frame.summary import plain, rows_of
 from synth.frame.terminal.progress import pace
-from synth.frame.told import Told
+from synth.frame.told import Told, plain, rows_of
 from tests.frame.small_command import COMMAND, CoinOptions, results_in
-from tuning_tables.canonical import canonical_json
+from tuning_tables.json_text import canonical_json
 
 LISTED = Listed(
     "throw coins",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import ResultsDirectory, results_directory
 from tests.effort import sized

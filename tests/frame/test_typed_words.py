@@ -15,7 +15,7 @@ import typer
 from synth.cli.commands import app as program
 from synth.cli.listed import COMMANDS, HUMP, SWEEP
 from synth.frame.command_line import Listed, loaded
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.settings.options import (
     BY_PLACE,
     NEEDED,

@@ -13,15 +13,13 @@ from typing import NoReturn
 
 import pytest
 
-from synth.frame.asked_file import asked_of
 from synth.frame.command import Command, Unfinished, Work
 from synth.frame.exhibits import Chapter, File
-from synth.frame.held_directory import LOCK, held, is_held
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.interval import Interval
-from synth.frame.own_files import MARKER
+from synth.frame.own_files import LOCK, MARKER, held, is_held
 from synth.frame.page.told_page import shown
-from synth.frame.perform import perform
+from synth.frame.perform import asked_of, perform
 from synth.frame.results_directory import CONFIGURATION, results_directory
 from synth.frame.settings.toml_file import read_text
 from synth.frame.terminal.manner import Manner
@@ -240,7 +238,7 @@ def test_who_only_asks_is_not_taken_for_a_run(tmp_path: Path) -> None:
 HOLD = """
 import sys
 from pathlib import Path
-from synth.frame.held_directory import held
+from synth.frame.own_files import held
 
 with held(Path(sys.argv[1])) as is_ours:
     print(is_ours, flush=True)

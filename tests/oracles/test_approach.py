@@ -10,16 +10,15 @@ import numpy as np
 import pytest
 
 from plant_models import Approach, DopplerSensor, EntrySpeed, Friction, Plant, PlantError, PressingForce, TrackProfile
-from synth.problem.aim import Aim
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController, close_loop, simulate
 from synth.simulation.controllers import full_brake
-from synth.simulation.nominal_pass import nominal_pass, nominal_plant
+from synth.simulation.nominal_response import nominal_pass, nominal_plant
 from synth.simulation.random_passes import random_passes
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
-from synth.solver.evaluation import Evaluation
-from synth.solver.policy_density import exit_density
+from synth.solver.evaluation import Evaluation, exit_density
 from synth.solver.switching_lines import SwitchingLines
 from tests.oracles.test_monte_carlo import GRID
 

@@ -10,8 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Friction, Plant, RollingResistance
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain

@@ -16,10 +16,9 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, EntrySpeed, Plant, Pneumatics, PressingForce, PressureHistory
-from synth.problem.aim import Aim
-from synth.problem.criterion import Criterion
+from synth.problem.criterion import AsymmetricSquare, Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
-from synth.problem.terminal_cost import AsymmetricSquare
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 

@@ -11,8 +11,8 @@ import pytest
 from plant_models import EntrySpeed, Friction, Plant, PressingForce, RollingResistance, TrackProfile
 from synth.problem.resolution import Resolution
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
+from synth.solver.evaluation import exit_density
 from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_density import exit_density
 from synth.solver.switching_lines import SwitchingLines
 
 NEVER = math.inf

@@ -11,14 +11,13 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, EntrySpeed, Friction, Plant, PressingForce
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.random_passes import random_passes
 from synth.solver.chain.chain import Chain, persistent_chain
-from synth.solver.evaluation import Evaluation
-from synth.solver.policy_density import exit_density
+from synth.solver.evaluation import Evaluation, exit_density
 from synth.solver.switching_lines import SwitchingLines
 
 PASSES = 4000

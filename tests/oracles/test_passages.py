@@ -10,15 +10,13 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, Plant, PointSensors, RollingResistance, every_axle, first_axle
-from synth.problem.aim import Aim
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import persistent_chain
-from synth.solver.chain.sensor_passages import SensorPassages, with_point_sensors
-from synth.solver.evaluation import Evaluation
-from synth.solver.passage_polish import polish_passages
-from synth.solver.passage_speeds import PassageSpeeds, passage_speeds
-from synth.solver.policy_density import commands_of, forward_all
+from synth.solver.chain.sampling import SensorPassages, with_point_sensors
+from synth.solver.evaluation import Evaluation, commands_of, forward_all
+from synth.solver.passage_speeds import PassageSpeeds, passage_speeds, polish_passages
 from tests.oracles.plain_loops import CRITERION, TARGET_M_S, PlainLoops
 
 TINY = Resolution(path_step_m=0.5, speed_step_m_s=0.14, friction_nodes=2, path_levels=2, resistance_nodes=1)

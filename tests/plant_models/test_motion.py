@@ -24,8 +24,8 @@ from plant_models import (
     couple,
     path_coefficients,
 )
-from plant_models.credible_motion import SPARE_ACCELERATION_M_S2, credible_motion
 from plant_models.motion import braked_axles, mean_braked_axles, path_breaks_m
+from plant_models.point_sensors import SPARE_ACCELERATION_M_S2, credible_motion
 from synth.simulation.passage_loop import close_passage_loop
 from synth.simulation.random_passes import random_passes
 from tests.effort import every, sized

@@ -20,9 +20,9 @@ from plant_models import (
     WeightForce,
     couple,
 )
-from plant_models.brake_power import FullBrake
 from plant_models.library.catalogue import load_car, load_position
 from plant_models.motion import path_breaks_m, path_coefficients
+from plant_models.stage_regulator import FullBrake
 
 DRIVE = Pneumatics(700.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 15.0)
 STAGES_KPA = (0.0, 150.0, 300.0, 450.0, 600.0)

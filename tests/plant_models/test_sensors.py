@@ -12,12 +12,12 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from plant_models import Approach, Cut, DopplerSensor, PlantError, PointSensors, every_axle, first_axle
-from plant_models.approach import SHORTEST_APPROACH_M
 from plant_models.library import BUILT_IN, WHEEL_SENSORS, TypeFile, TypeFileError, load_position, load_wheel_sensor
+from plant_models.library.sensor_entry import WHEEL_SENSOR_SCHEMA, wheel_sensor_from
 from plant_models.library.sourced_value import SourcedTable
-from plant_models.library.wheel_sensor_entry import WHEEL_SENSOR_SCHEMA, wheel_sensor_from
 from plant_models.point_sensors import deciding_passages, passages
 from plant_models.speed_sensor import FINEST_RESOLUTION_M_S
+from plant_models.track_profile import SHORTEST_APPROACH_M
 
 
 @pytest.mark.parametrize("resolution_m_s", [0.0, 1e-6, 0.01, 1.0])

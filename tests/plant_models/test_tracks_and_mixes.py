@@ -9,7 +9,7 @@ import pytest
 
 from plant_models import PlantError
 from plant_models.library import BUILT_IN, CAR_MIXES, TRACKS, Kind, TypeFile, load_car, load_position, load_track
-from plant_models.library.car_mix_entry import car_mix_from, load_car_mix
+from plant_models.library.car_entry import car_mix_from, load_car_mix
 from plant_models.library.track_entry import track_from
 
 TRACK = BUILT_IN.file(TRACKS, "large-hump").text

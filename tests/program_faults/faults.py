@@ -46,15 +46,15 @@ PLANTED: Final = {
     ),
     "prediction": (
         ("synth/solver/exit_density.py", "first - self.stalled * target_speed_m_s", "first"),
-        ("synth/problem/aim.py", "OVERSPEED_M_S = 0.3", "OVERSPEED_M_S = 0.4"),
+        ("synth/problem/problem.py", "OVERSPEED_M_S = 0.3", "OVERSPEED_M_S = 0.4"),
         ("synth/solver/tabulate.py", "rms_m_s=density.rms_m_s(", "rms_m_s=0.9 * density.rms_m_s("),
         ("synth/simulation/closed_loop.py", "self.plant.sensor.computing_delay_s,", "0.0,"),
     ),
     "exporter": (
         (f"{EXPORT}/st_data.py", "{float(number):.9E}", "{float(number):.6E}"),
         (f"{EXPORT}/c99_data.py", "float(np.float32(value)).hex()", "float(np.float16(value)).hex()"),
-        ("tuning_tables/book_families.py", "for_cut(other) and interpolable(one, other)", "for_cut(other)"),
-        ("tuning_tables/declared/key_rows.py", '["number", key, repr(cells)]', '["number", key, f"{cells:g}"]'),
+        ("tuning_tables/book_classes.py", "for_cut(other) and interpolable(one, other)", "for_cut(other)"),
+        ("tuning_tables/csv_file.py", '["number", key, repr(cells)]', '["number", key, f"{cells:g}"]'),
     ),
 }
 TESTS: Final = {

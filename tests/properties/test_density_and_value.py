@@ -17,13 +17,12 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from synth.kernels.plain import VARIABLE
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain, persistent_chain
-from synth.solver.evaluation import Evaluation
-from synth.solver.policy_density import commands_of, exit_density, forward_all, forward_one
+from synth.solver.evaluation import Evaluation, commands_of, exit_density, forward_all, forward_one
 from synth.solver.switching_lines import SwitchingLines
 from tests.effort import sized
 from tests.frame.small_command import results_in

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from synth.kernels.sweep.finer_end import refine, refine_landings, refinement
-from synth.problem.terminal_cost import share_above
+from synth.problem.criterion import share_above
 from synth.solver.chain.chain import Chain, chain_of
+from synth.solver.evaluation import exit_density
 from synth.solver.exit_density import ExitDensity, without_negative
-from synth.solver.policy_density import exit_density
 from synth.solver.resolved_density import density_by_end, finer_end
 from tests.properties.test_density_and_value import FEW, SEEDS, random_lines
 

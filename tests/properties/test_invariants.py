@@ -11,10 +11,10 @@ import pytest
 from scipy.stats import norm
 
 from plant_models import Plant
-from scripts.studies.point_sensors.told import with_known_friction
+from scripts.studies.point_sensors.worth import with_known_friction
 from synth.kernels.sweep.commands import CERTAIN, command_probabilities, command_slopes
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import Chain, persistent_chain

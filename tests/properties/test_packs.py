@@ -18,13 +18,12 @@ from scipy.special import ndtr
 from plant_models import Plant
 from synth.kernels.vector import packs
 from synth.kernels.vector.normal_packs import normal_cdf8, normal_density8
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve, solve_all
 from synth.solver.chain.chain import Chain, persistent_chain
-from synth.solver.evaluation import Evaluation
-from synth.solver.policy_density import exit_density
+from synth.solver.evaluation import Evaluation, exit_density
 
 Doubles = NDArray[np.float64]
 Singles = NDArray[np.float32]

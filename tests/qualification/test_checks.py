@@ -19,10 +19,16 @@ import pytest
 from synth.cli.qualification import any_time, structured_text
 from synth.cli.qualification.any_time import any_time_checks, any_time_tables
 from synth.cli.qualification.c_code import COMPILERS, c_checks, compiler_check, fault_check, self_test
-from synth.cli.qualification.check import Outcome
-from synth.cli.qualification.golden import ELSEWHERE, LIBRARIES, golden_check, golden_of, kept
-from synth.cli.qualification.kernels import plain_checks, tune_checks
-from synth.cli.qualification.program import Ran, process
+from synth.cli.qualification.check import Outcome, Ran, process
+from synth.cli.qualification.golden import (
+    ELSEWHERE,
+    LIBRARIES,
+    golden_check,
+    golden_of,
+    kept,
+    plain_checks,
+    tune_checks,
+)
 from synth.cli.qualification.second_program import (
     CODE,
     loop_check,
@@ -157,7 +163,7 @@ def test_a_process_under_way_ends_with_the_command(tmp_path: Path) -> None:
     text = """\
 import atexit, sys, threading, time
 from pathlib import Path
-from synth.cli.qualification.program import process
+from synth.cli.qualification.check import process
 one = threading.Thread(target=process, args=(["sh", "-c", "touch begun; exec sleep 60"], Path(sys.argv[1])))
 one.start()
 while not Path(sys.argv[1], "begun").exists():

@@ -17,7 +17,7 @@ from synth.cli import main
 from synth.cli.qualification import installed, qualified
 from synth.cli.qualification.check import Check, Outcome, checked, not_checked
 from synth.cli.qualification.qualified import Qualified
-from synth.frame.known_defects import Defect
+from synth.frame.version import Defect
 
 PASSED = checked("bytes", "by hash", "equal", "equal", holds=True)
 LEFT = not_checked("compiler", "self-test", "not on PATH: cc", "sound", "put a compiler on PATH")

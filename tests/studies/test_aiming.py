@@ -8,22 +8,46 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from scripts.studies.aimed_braking.anemometer import ByReadingAndWind, WindByAnemometer
+from scripts.studies.aimed_braking.measuring import ByReadingAndWind, WindByAnemometer
 from scripts.studies.aimed_braking.sensitivity import EXIT_STD_M_S, farther
-from scripts.studies.aiming.aimed_cuts import AimedCuts, rolled_cuts
-from scripts.studies.aiming.hump import POINTS, large_hump, weight_category
-from scripts.studies.aiming.levelled import BOUNDS_M_S, NEAR, levelled
-from scripts.studies.aiming.norm_distance import BEYOND, norm_distance, root
-from scripts.studies.aiming.places import FreeDistance, FromCrest
-from scripts.studies.aiming.recorded_cuts import NearestRecord
-from scripts.studies.aiming.regression import ByRegression
-from scripts.studies.aiming.trial import Cuts, Draws, outcomes, tried, value_of
-from scripts.studies.yard_chain.chain import CATEGORY, ESTIMATED, MEASURED, BookSize, Kind, chain_samples
-from scripts.studies.yard_chain.faults import HandBraked, WithMissing
-from scripts.studies.yard_chain.practices import TODAY_EXIT, Samples, practice, saved
-from synth.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement
+from scripts.studies.aiming.cuts import (
+    POINTS,
+    AimedCuts,
+    FreeDistance,
+    FromCrest,
+    large_hump,
+    rolled_cuts,
+    weight_category,
+)
+from scripts.studies.aiming.refinements import ByRegression, NearestRecord
+from scripts.studies.aiming.trial import (
+    BEYOND,
+    BOUNDS_M_S,
+    NEAR,
+    Cuts,
+    Draws,
+    levelled,
+    norm_distance,
+    outcomes,
+    root,
+    tried,
+    value_of,
+)
+from scripts.studies.yard_chain.chain import (
+    CATEGORY,
+    ESTIMATED,
+    MEASURED,
+    TODAY_EXIT,
+    BookSize,
+    Kind,
+    Samples,
+    chain_samples,
+    practice,
+    saved,
+)
+from scripts.studies.yard_chain.details import HandBraked, WithMissing
+from synth.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement, ResistanceByTwoSpeeds
 from synth.aim.position_models import NormalPosition, PositionModel
-from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import SceneCuts
 
 P = 0.1

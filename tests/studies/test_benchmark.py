@@ -11,15 +11,22 @@ import pytest
 
 from plant_models import Friction, Plant, RollingResistance
 from scripts.studies.benchmark.by_numpy import sweep_by_numpy
-from scripts.studies.benchmark.findings import Limit
+from scripts.studies.benchmark.findings import (
+    CACHE_LINE_BYTES,
+    SUMS_A_TURN,
+    Limit,
+    SweepWork,
+    filled,
+    load_loop,
+    multiply_add_loop,
+    sweep_work,
+)
 from scripts.studies.benchmark.kernels.roofline import loads, loads_a_turn, multiply_adds
-from scripts.studies.benchmark.machine_rates import CACHE_LINE_BYTES, SUMS_A_TURN, filled, load_loop, multiply_add_loop
 from scripts.studies.benchmark.study import apart, line_difference, value_difference, vectors_needed
-from scripts.studies.benchmark.work import SweepWork, sweep_work
-from scripts.studies.in_the_loop.code_cost import CodeSize, dearest_call, missing, size_in, size_program, totals_in
-from scripts.studies.timing.turns import Times
-from synth.problem.aim import Aim
+from scripts.studies.in_the_loop.cost_study import CodeSize, dearest_call, missing, size_in, size_program, totals_in
+from scripts.studies.timing import Times
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve_all
 from synth.solver.chain.chain import Chain, persistent_chain

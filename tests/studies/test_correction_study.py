@@ -11,14 +11,12 @@ import pytest
 
 from plant_models import Plant
 from scripts.studies.any_time.study import quicker
-from scripts.studies.cases import Case, named_cases
-from scripts.studies.correction.ageing import FrictionFalls, SensorCreeps
-from scripts.studies.correction.sequence import corrected, run_sequence
-from scripts.studies.correction.study import rms_ratio
-from scripts.studies.estimator.wrong import wrongs
-from scripts.studies.limits.change import FREE_DEGREE, QUIET_M_S, changes
-from scripts.studies.sensor_fault import no_fault
-from scripts.studies.tuned_table import tuned_table
+from scripts.studies.cases import Case, named_cases, tuned_table
+from scripts.studies.changed_plants import no_fault
+from scripts.studies.correction import rms_ratio
+from scripts.studies.correction_sequence import FrictionFalls, SensorCreeps, corrected, run_sequence
+from scripts.studies.estimator.wrong_study import wrongs
+from scripts.studies.limits import FREE_DEGREE, QUIET_M_S, changes
 from synth.retarder.configuration.config_file import load_config
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
 from synth.simulation.random_passes import random_passes

@@ -15,9 +15,9 @@ from scripts.studies.estimator.reserve_study import excess_outside
 from scripts.studies.near_target import NEAR_M_S, log_rms_near, near_ratio, near_target
 from scripts.studies.verification import FACTORS, USUAL_PREDICTION_RATIO, doubts_of, sample_of, with_rms_times
 from synth.checker.coarse_simulation import Passes
-from synth.checker.low_friction import GROUP
+from synth.checker.drawn_cuts import GROUP
 from synth.checker.table_reading import Table, read_table
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import REPLICATE_PASSES
 from tests.tuning_tables.conftest import table

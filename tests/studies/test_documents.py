@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-from scripts.studies.document_pictures import pictures_of
+from scripts.studies.document_parts import pictures_of
 from scripts.studies.documents import DATA, KEPT, documents, filled, listed, result_of, stale, written
 from scripts.studies.registry import STUDIES
 from scripts.studies.result import Result, read_result, run_study
 from scripts.studies.study import Study
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from tests.effort import every
 
 ROOT = Path(__file__).parents[2]

@@ -11,25 +11,31 @@ import pytest
 
 from plant_models import PlantError
 from plant_models.library.catalogue import load_car, load_position, load_weight_categories
-from scripts.studies.control_computer.failed_hump import ByHand, FailedPosition, StuckReleased, WeakSupply, failed_trial
-from scripts.studies.control_computer.failure_costs_of_hump import (
+from scripts.studies.control_computer.benefit import FIGURES, Benefit, Yard, regulator_benefit
+from scripts.studies.control_computer.failed_hump import (
+    ByHand,
+    FailedPosition,
+    StuckPosition,
+    StuckReleased,
+    WeakSupply,
+    failed_trial,
+)
+from scripts.studies.control_computer.hump_runs import (
     ExtraFigure,
     difference_of_counts,
     failure_figures,
     other_track_with_frozen_points,
     paired_difference,
 )
-from scripts.studies.control_computer.findings import ControlComputer
 from scripts.studies.control_computer.published_speeds import published_speeds
-from scripts.studies.control_computer.regulator_benefit import FIGURES, Benefit, Yard, regulator_benefit
-from scripts.studies.control_computer.stuck_position import StuckPosition
+from scripts.studies.control_computer.study import ControlComputer
 from scripts.studies.documents import result_of
 from synth.computer.economics.hump_day_change import change_of_trains
-from synth.computer.economics.hump_rates import RATES, HumpRates, rates_after
-from synth.frame.settings.changed import changed
-from synth.hump.trains.normal_hump_position import LibraryBrake, NormalHumpPosition
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.trial import HumpTrial
+from synth.computer.economics.traffic import RATES, HumpRates, rates_after
+from synth.frame.settings.settings_file import changed
+from synth.hump.rolling.hump_position import LibraryBrake, NormalHumpPosition
+from synth.hump.rolling.outcomes import TrainOutcomes
+from synth.hump.trial.trial import HumpTrial
 from tests.synth.computer.economics.made_cases import CHANGE, HANDLING, PRICES, TODAY, TRAFFIC, half95, made_outcomes
 from tests.synth.hump.trains.made_trials import Day
 

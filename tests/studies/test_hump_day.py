@@ -22,15 +22,14 @@ from scripts.studies.humping.base_trial import (
     with_planner,
     with_stds,
 )
-from scripts.studies.humping.findings import HumpDay
+from scripts.studies.humping.pairs import on_graph, on_section, thrown_in, with_king_switch, with_switches
 from scripts.studies.humping.runs import Group, measured
-from scripts.studies.humping.sensitivity import on_graph, on_section, thrown_in, with_king_switch, with_switches
+from scripts.studies.humping.study import HumpDay
 from scripts.studies.humping.table_positions import FRICTION, SUPPLY, TablePositions
-from synth.hump.trains.class_choice import ClassChoice
-from synth.hump.trains.hump_routes import Mark
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.table_hump_position import TableHumpPosition
-from synth.hump.trains.trial import HumpTrial
+from synth.hump.rolling.hump_routes import Mark
+from synth.hump.rolling.outcomes import TrainOutcomes
+from synth.hump.rolling.table_hump_position import ClassChoice, TableHumpPosition
+from synth.hump.trial.trial import HumpTrial
 from tests.synth.hump.trains.coarse_book import coarse_classes, coming
 
 ROOT = Path(__file__).parents[2]

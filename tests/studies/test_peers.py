@@ -15,10 +15,17 @@ from plant_models import Plant
 from scripts.studies.peers.kernels.peer_loop import BY_TABLE, Peer
 from scripts.studies.peers.kernels.prediction import Prediction, held, line_square, stage_by_prediction
 from scripts.studies.peers.kernels.pulses import STATE, Pulses, begin_pulses, stage_by_pulses
-from scripts.studies.peers.peer_loop import PeerLoop, peer_loop
+from scripts.studies.peers.peer_loop import (
+    NO_PREDICTION,
+    NO_PULSES,
+    PeerLoop,
+    PredictiveController,
+    PulseController,
+    no_table,
+    peer_loop,
+)
 from scripts.studies.peers.peer_tuning import PREDICTIVE as PREDICTIVE_FAMILY
 from scripts.studies.peers.peer_tuning import Aimed, cost_of
-from scripts.studies.peers.regulators import NO_PREDICTION, NO_PULSES, PredictiveController, PulseController, no_table
 from synth.kernels.any_time.any_time_law import AnyTimeLaw
 from synth.kernels.loop.passes import Draws
 from synth.retarder.estimation.estimator_design import estimator_of

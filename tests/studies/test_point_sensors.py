@@ -10,22 +10,31 @@ import pytest
 
 from plant_models import PointSensors
 from scripts.studies.point_sensors.fault_losses import fault_rows
-from scripts.studies.point_sensors.layouts import equal_sections, planned
-from scripts.studies.point_sensors.sensor_table import AXLES, SensorTable, tabulated, unfinished_share
-from scripts.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
-from scripts.studies.point_sensors.told import RESISTANCES, speeds_for, squares_at, told_bound
-from synth.frame.input_error import InputError
+from scripts.studies.point_sensors.sites import (
+    AXLES,
+    TEXTS,
+    SensorTable,
+    Site,
+    equal_sections,
+    planned,
+    single_stage,
+    site_of,
+    sites,
+    tabulated,
+    unfinished_share,
+)
+from scripts.studies.point_sensors.worth import RESISTANCES, speeds_for, squares_at, told_bound
+from synth.frame.faults import InputError
 from synth.problem.resolution import Resolution
-from synth.retarder.sensors.candidate_places import LayoutCase, candidate_places
-from synth.retarder.sensors.layout import equal_layout, with_layout
+from synth.retarder.sensors.layout import LayoutCase, candidate_places, equal_layout, with_layout
 from synth.retarder.sensors.layout_plan import LayoutProblem
-from synth.retarder.sensors.tuned_passages import PassageChains, TunedPassages, passage_chains, tuned_passages
+from synth.retarder.sensors.passage_table import PassageChains, TunedPassages, passage_chains, tuned_passages
 from synth.simulation.exit_statistics import exit_statistics
-from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample
+from synth.simulation.passage_controller import DECIDED, NOT_HEARD, UNFINISHED, PassageSample
 from synth.simulation.stratified_passes import stratified_passes
+from synth.solver.chain.sampling import with_point_sensors
 from synth.solver.chain.scenarios import Scenarios, resistance_scenarios
-from synth.solver.chain.sensor_passages import with_point_sensors
-from synth.solver.policy_density import exit_density
+from synth.solver.evaluation import exit_density
 from synth.solver.told_lines import told_factors
 
 COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=5, resistance_nodes=1)

@@ -27,7 +27,7 @@ from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
 from synth.simulation.random_passes import RandomPasses, random_passes
 from tests.effort import every
 from tests.synth.case_factory import make_plant, make_table
-from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM
+from tuning_tables.programs.decide import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM
 
 
 @pytest.fixture(scope="module")

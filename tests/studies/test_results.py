@@ -13,15 +13,12 @@ from typing import Any
 import pytest
 
 from scripts.studies import study as study_module
-from scripts.studies.cases import class_cases, named_cases, of_masses
-from scripts.studies.criteria.study import criteria
-from scripts.studies.markdown_table import MarkdownTable, table
-from scripts.studies.options import option, options_from, parser_of
+from scripts.studies.cases import class_cases, named_cases, of_masses, side_by_side
+from scripts.studies.criteria import criteria
 from scripts.studies.result import Result, read_result, run_study
-from scripts.studies.side_by_side import side_by_side
-from scripts.studies.study import Findings, Method, Study
-from scripts.studies.timing.turns import Ratio, Times, in_turns, speed_against, timed
-from synth.frame.input_error import InputError
+from scripts.studies.study import Findings, MarkdownTable, Method, Study, option, options_from, parser_of, table
+from scripts.studies.timing import Ratio, Times, in_turns, speed_against, timed
+from synth.frame.faults import InputError
 from synth.problem.criterion import SQUARED_ERROR_CRITERION
 from synth.retarder.configuration.config_file import load_config
 

@@ -10,17 +10,18 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, Plant, PlantError, WeightForce
-from scripts.studies.plant_changes import aged_valves, friction
-from scripts.studies.robustness.condition import conditions, out_of_service, shifted_stages
-from scripts.studies.robustness.perturbation import at_value, sensible_ends
+from scripts.studies.changed_plants import aged_valves, friction
+from scripts.studies.robustness.condition import at_value, conditions, out_of_service, sensible_ends, shifted_stages
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.cut_class import CutClass
-from synth.retarder.configuration.plant_parameter import Parameter, assumed_keys, parameters
 from synth.retarder.configuration.plant_values import (
     NEARLY_SUPPLY,
     SLOPE_BY_AXLES,
     STAGE_PRESSURES,
+    Parameter,
+    assumed_keys,
     by_axles,
+    parameters,
     with_values,
 )
 from synth.retarder.configuration.resolved_config import ResolvedConfig

@@ -13,21 +13,26 @@ from scipy.stats import binom
 
 from plant_models import Plant
 from plant_models.library import car_names, load_car, load_position, position_names
-from scripts.studies.every_cut.cut_figures import Beside, BesideWithout, CutFigures, Outcome, Untuned
-from scripts.studies.every_cut.findings import faults_of
-from scripts.studies.every_cut.kept_cases import KeptCases
-from scripts.studies.every_cut.measured_case import measured
-from scripts.studies.every_cut.order_statistics import median_interval
-from scripts.studies.every_cut.random_case import CARS_OF_A_CUT, RandomCase, random_case
-from scripts.studies.every_cut.study import Options, configuration
-from scripts.studies.sensor_fault import DropOut, LostForGood, LostReadings, at_random, reading_times_s
+from scripts.studies.changed_plants import DropOut, LostForGood, LostReadings, at_random, reading_times_s
+from scripts.studies.every_cut.cut_figures import (
+    CARS_OF_A_CUT,
+    Beside,
+    BesideWithout,
+    CutFigures,
+    Outcome,
+    RandomCase,
+    Untuned,
+    random_case,
+)
+from scripts.studies.every_cut.measured_case import KeptCases, measured
+from scripts.studies.every_cut.study import Options, configuration, faults_of, median_interval
 from synth.retarder.comparison.baselines import energy_rule
 from synth.retarder.configuration.config_file import parse_config
 from synth.simulation.closed_loop import TableController, close_loop, simulate, trace
 from synth.simulation.exit_statistics import clopper_pearson
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import RandomPasses, random_passes
-from synth.solver.one_blas_thread import one_blas_thread
+from synth.solver.descent import one_blas_thread
 from tests.effort import sized
 from tests.synth.case_factory import make_plant, make_table
 
@@ -220,7 +225,7 @@ def test_what_another_software_has_found_is_not_taken(
 ) -> None:
     file = tmp_path / "every-cut.jsonl"
     assert KeptCases(file).outcome_of("a", lambda: SOUND) == SOUND
-    monkeypatch.setattr(f"scripts.studies.every_cut.kept_cases.{changed}", lambda: "another")
+    monkeypatch.setattr(f"scripts.studies.every_cut.measured_case.{changed}", lambda: "another")
     other = replace(SOUND, rms_m_s=0.2)
     assert KeptCases(file).outcome_of("a", lambda: other) == other
 

@@ -10,21 +10,17 @@ from pathlib import Path
 import pytest
 
 from plant_models import Approach, Plant
-from scripts.studies.document_pictures import pictures_of
+from scripts.studies.document_parts import pictures_of
 from scripts.studies.documents import DATA, KEPT, result_of, stale, written
 from scripts.studies.structure.study import SENSORS, WIRED_TOLERANCE_M_S, Structure, energy_rule, part_rows, passage_run
-from scripts.studies.structure.wired_pressure import first_time
-from scripts.studies.structure.wired_radar import wired_radar_pass
-from synth.frame.input_error import InputError
+from scripts.studies.structure.wired_radar import first_time, wired_radar_pass
+from synth.frame.faults import InputError
 from synth.retarder.configuration.config_file import load_config
 from synth.simulation.controllers import TableController
-from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant
-from synth.simulation.nominal_response import response_difference
+from synth.simulation.nominal_response import nominal_entry_m_s, nominal_pass, nominal_plant, response_difference
 from synth.simulation.passage_loop import close_passage_loop
-from synth.simulation.structure.diagram import Diagram
-from synth.simulation.structure.part import Part
-from synth.simulation.structure.passage_diagram import passage_diagram
-from synth.simulation.structure.radar_diagram import radar_diagram
+from synth.simulation.structure.diagram import Diagram, Part
+from synth.simulation.structure.regulators import passage_diagram, radar_diagram
 from tests.synth.test_control_system import table_for
 
 ROOT = Path(__file__).parents[2]

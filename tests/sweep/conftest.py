@@ -17,8 +17,8 @@ import pytest
 from synth.cli import main
 from synth.frame.own_files import MARKER
 from synth.frame.workers.engine import Engine, InThisProcess
-from synth.hump.trains.trial import BATCH
-from synth.retarder.sweep.unit_answer import answer
+from synth.hump.trial.trial import BATCH
+from synth.retarder.sweep.command import answer
 
 EPOCH = "1700000000"
 PLANT = """\

@@ -10,8 +10,8 @@ from pathlib import Path
 from synth.frame.workers.engine import Answer
 from synth.hump.trains.batch import BatchOrder, answer_batch
 from synth.kernels.cache import cache_in_use
+from synth.retarder.sweep.command import answer
 from synth.retarder.sweep.plan import UnitOrder
-from synth.retarder.sweep.unit_answer import answer
 
 POISONED = "gondola-4-26t"
 

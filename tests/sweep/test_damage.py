@@ -10,18 +10,17 @@ from pathlib import Path
 
 import pytest
 
-from synth.frame.held_directory import is_held
+from synth.frame.own_files import is_held
 from synth.frame.results_directory import results_directory
 from synth.frame.workers.engine import InThisProcess
-from synth.retarder.sweep.ledger import DONE, PLAN, STARTED, LedgerWriter, read_ledger
-from synth.retarder.sweep.sweep_directory import SWEEP, SweepDirectory
-from synth.retarder.sweep.unit_answer import answer
+from synth.retarder.sweep.command import answer
+from synth.retarder.sweep.sweep_directory import DONE, PLAN, STARTED, SWEEP, LedgerWriter, SweepDirectory, read_ledger
 from synth.retarder.sweep.unit_result import from_bytes, to_bytes
 from tests.sweep.conftest import Ran, contents, events, run
 from tests.tuning_tables.every_kind import altered, places
 from tuning_tables import DamagedTable
-from tuning_tables.canonical import canonical_json
-from tuning_tables.seal import SEAL_BYTES, seal_of
+from tuning_tables.json_text import canonical_json
+from tuning_tables.whole_file import SEAL_BYTES, seal_of
 
 
 def test_a_result_is_read_back_as_it_was(serial: Path) -> None:

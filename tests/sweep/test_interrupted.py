@@ -21,7 +21,7 @@ from typing import Any
 import pytest
 
 from synth.frame.workers.dask_cluster import LOGGERS, SCHEDULER_LOST, silence
-from synth.retarder.sweep.ledger import DONE, STARTED
+from synth.retarder.sweep.sweep_directory import DONE, STARTED
 from tests.sweep.conftest import Ran, begin, contents, events, kill_and_reap, wait_until
 
 

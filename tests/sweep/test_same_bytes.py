@@ -14,10 +14,10 @@ from plant_models.library import BUILT_IN, CARS, RETARDERS
 from synth.frame.workers.engine import InThisProcess
 from synth.frame.workers.local_workers import LocalWorkers
 from synth.retarder.configuration.config_file import load_config
+from synth.retarder.sweep.command import answer
 from synth.retarder.sweep.plan import plan_of
 from synth.retarder.sweep.sweep_file import SweepFile, parse_sweep
 from synth.retarder.sweep.tune_unit import tune_unit
-from synth.retarder.sweep.unit_answer import answer
 from tests.sweep.conftest import EPOCH, MEASURED, PLANT, SWEEP, Ran, contents, events, run
 from tuning_tables import read_book
 

@@ -16,14 +16,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from synth.frame.settings.toml_text import toml_text
+from synth.frame.settings.template import toml_text
 from synth.frame.workers.engine import InThisProcess
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.sweep.plan import Refinement, plan_of
-from synth.retarder.sweep.refinement import Bench, Gap, refined
+from synth.retarder.sweep.command import answer
+from synth.retarder.sweep.plan import Bench, Gap, Refinement, plan_of, refined
 from synth.retarder.sweep.sweep_file import parse_sweep
 from synth.retarder.sweep.tune_unit import between_rms_m_s, setup_of, tune_unit, tuned_tables
-from synth.retarder.sweep.unit_answer import answer
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import random_passes
 from tests.sweep.conftest import MEASURED, PLANT, SWEEP, Ran, run

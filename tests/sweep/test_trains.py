@@ -15,20 +15,19 @@ import pytest
 
 from synth.frame.command import Unfinished
 from synth.frame.results_directory import results_directory
-from synth.frame.workers.engine import Answer, InThisProcess
+from synth.frame.workers.engine import Answer, InThisProcess, missing_of
 from synth.frame.workers.local_workers import LocalWorkers
-from synth.frame.workers.stored_results import missing_of
+from synth.hump.rolling.outcomes import joined
 from synth.hump.trains.batch import BatchOrder, answer_batch, orders_of
-from synth.hump.trains.made_trial import made_trial
 from synth.hump.trains.outcome_file import to_npz, trains_of
-from synth.hump.trains.outcomes import joined
-from synth.hump.trains.resolved_trial import load_trial
 from synth.hump.trains.train_run import TrialRun, run_of, run_trials
-from synth.hump.trains.trial import BATCH
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.resolved_trial import load_trial
+from synth.hump.trial.trial import BATCH
 from tests.effort import every
 from tests.sweep import poison
 from tests.sweep.conftest import Ran, begin, contents, kill_and_reap, wait_until
-from tuning_tables.seal import seal_of
+from tuning_tables.whole_file import seal_of
 
 
 def batch_file(out: Path, key: str) -> Path:

@@ -12,20 +12,16 @@ from plant_models import (
     Plant,
     RollingResistance,
 )
-from synth.retarder.case_result import CaseResult
-from synth.retarder.comparison.comparison import Comparison
-from synth.retarder.comparison.measured import Measured
-from synth.retarder.off_nominal.outcome import OffNominal, Outcome
-from synth.retarder.off_nominal.trial import CONDITIONS
-from synth.retarder.policy_map import PolicyMap
+from synth.retarder.case_result import CaseResult, OffNominal, Outcome
+from synth.retarder.comparison.measured import Comparison, Measured
+from synth.retarder.off_nominal_trials import CONDITIONS
 from synth.retarder.tuned_case import Feasibility, GridCheck
-from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
+from synth.simulation.exit_statistics import UnavoidableError, brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import TRACE_FACTORS, ExitSample, PassTrace
-from synth.simulation.unavoidable_error import UnavoidableError
+from synth.solver.backward_induction import PolicyMap
 from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
-from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.switching_lines import SwitchingLines
+from synth.solver.switching_lines import PolynomialLines, SwitchingLines
 from synth.solver.tabulate import clock_of
 from tests.synth.conftest import GONDOLA_OFFSETS_M, pilot_plant
 from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange

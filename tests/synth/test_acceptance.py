@@ -11,13 +11,11 @@ import pytest
 from synth.frame.command import Limit
 from synth.retarder.acceptance import advice_of, judge_case, judged, limits_of
 from synth.retarder.case_result import CaseResult
-from synth.retarder.comparison.measured import prediction_ratio_of
+from synth.retarder.comparison.measured import judgement, prediction_ratio_of
 from synth.retarder.configuration.settings import AcceptanceSettings
-from synth.retarder.judgement import judgement
-from synth.retarder.shown.off_nominal import worst_of
-from synth.simulation.exit_statistics import ExitStatistics, overspeed_of
+from synth.retarder.shown.checks import worst_of
+from synth.simulation.exit_statistics import ExitStatistics, UnavoidableError, overspeed_of
 from synth.simulation.passes import ExitSample
-from synth.simulation.unavoidable_error import UnavoidableError
 from tests.synth.case_factory import make_case
 from tuning_tables import Decisions, Predicted
 

@@ -7,8 +7,8 @@ from itertools import pairwise
 from matplotlib.colors import to_rgb
 
 from plant_models.library.weight_category import OWN_NUMBERS, YARD_NUMBERS
-from synth.frame.picture.category_colour import OWN, YARD, category_colour
-from synth.frame.picture.series import graded
+from synth.frame.picture.house_style import graded
+from synth.frame.picture.picture import OWN, YARD, category_colour
 
 
 def test_the_categories_of_the_yard_are_dark_to_pale_in_grey_too() -> None:

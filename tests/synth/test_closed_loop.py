@@ -19,7 +19,7 @@ from synth.kernels.loop.closed_loop import run_passes
 from synth.kernels.loop.passes import Draws
 from synth.retarder.comparison.baselines import energy_rule
 from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate, simulate_many, trace
-from synth.simulation.path_cells import cell_edges_m
+from synth.simulation.path_and_drive import cell_edges_m
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.switching_lines import SwitchingLines

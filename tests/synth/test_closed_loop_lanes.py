@@ -25,7 +25,7 @@ from synth.solver.switching_lines import SwitchingLines
 from tests.oracles.passes_one_by_one import events_of, one_by_one
 from tests.synth.case_factory import make_table
 from tuning_tables.estimator import Estimator
-from tuning_tables.figures import ValidRange
+from tuning_tables.provenance import ValidRange
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
 

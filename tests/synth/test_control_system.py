@@ -13,16 +13,23 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor, Friction, Plant, RollingResistance
-from synth.frame.summary import plain
+from synth.frame.told import plain
 from synth.retarder.comparison.baselines import energy_rule, relay
-from synth.retarder.control_loop import TOLERANCE_M_S
 from synth.retarder.estimation.estimator_design import estimator_of
-from synth.retarder.line_control_loop import ENTRIES, LineControlLoop, line_control_loop
+from synth.retarder.loops.control_loop import ENTRIES, TOLERANCE_M_S, LineControlLoop, line_control_loop
 from synth.retarder.served_class import ServedClass
 from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.simulation.control_system import motion_system, nominal_loop, regulator_system
-from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant, one_pass
-from synth.simulation.nominal_response import commands_of, nominal_response, parting, response_difference
+from synth.simulation.nominal_response import (
+    commands_of,
+    nominal_entry_m_s,
+    nominal_pass,
+    nominal_plant,
+    nominal_response,
+    one_pass,
+    parting,
+    response_difference,
+)
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of

@@ -10,32 +10,29 @@ import numpy as np
 import pytest
 
 from plant_models import EntrySpeed, Plant, PlantError, PressingForce, RetarderPosition, RollingResistance
-from synth.frame.input_error import InputError
-from synth.problem.aim import Aim
-from synth.problem.criterion import Criterion
-from synth.problem.problem import Problem
-from synth.problem.requirement import FrictionRange, OverspeedLimit
-from synth.problem.requirement_found import OverspeedLimitFound
+from synth.frame.faults import InputError
+from synth.problem.criterion import (
+    AsymmetricSquare,
+    Criterion,
+    PenalisedOverspeed,
+    SquaredError,
+    TerminalCost,
+    share_above,
+)
+from synth.problem.problem import Aim, Problem
+from synth.problem.requirement import FrictionRange, OverspeedLimit, OverspeedLimitFound
 from synth.problem.resolution import Resolution, finer_for_check
-from synth.problem.terminal_cost import AsymmetricSquare, PenalisedOverspeed, SquaredError, TerminalCost, share_above
 from synth.retarder.checked_design import required_lines
-from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.config_template import default_config_toml
+from synth.retarder.configuration.config_file import default_config_toml, parse_config
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.exit_statistics import clopper_pearson, exit_statistics
 from synth.simulation.random_passes import random_passes
 from synth.solver.backward_induction import Solution, solve
-from synth.solver.chain.chain import Chain, check_chain, persistent_chain
-from synth.solver.chance_constraint import keep_overspeed_limit, predicted_density
-from synth.solver.evaluation import Evaluation
-from synth.solver.finer_speed import finer_in_speed, known_factors
-from synth.solver.policy_density import exit_density, scenario_densities
-from synth.solver.polish import whitening
-from synth.solver.polynomial_fit import Fit
-from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.switching_lines import SwitchingLines
-from synth.solver.tuned_lines import fitted, polished
-from synth.solver.worst_case import FACTORS, guard_worst_case
+from synth.solver.chain.chain import Chain, check_chain, finer_in_speed, known_factors, persistent_chain
+from synth.solver.evaluation import Evaluation, exit_density, scenario_densities
+from synth.solver.kept_requirement import FACTORS, guard_worst_case, keep_overspeed_limit, predicted_density
+from synth.solver.switching_lines import PolynomialLines, SwitchingLines
+from synth.solver.tuned_lines import Fit, fitted, polished, whitening
 
 COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=3, resistance_nodes=1)
 TARGET_M_S = 3.0

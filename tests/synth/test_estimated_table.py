@@ -10,10 +10,9 @@ import pytest
 
 from plant_models import Friction, Plant
 from scripts.studies.estimator.pair import speed_error_m_s
-from synth.problem.aim import Aim
-from synth.problem.estimator_resolution import LEAST_ERROR_M_S, design_error_m_s
-from synth.problem.resolution import Resolution
-from synth.retarder.estimation.estimate_chain import SLOW_DAY_SHARE, SLOW_DAY_Z, estimate_chain, rms_with_white_error
+from synth.problem.problem import Aim
+from synth.problem.resolution import LEAST_ERROR_M_S, Resolution, design_error_m_s
+from synth.retarder.estimation.estimated_lines import SLOW_DAY_SHARE, SLOW_DAY_Z, estimate_chain, rms_with_white_error
 from synth.retarder.estimation.estimated_table import SHIFTS, Trim, moved, trimmed
 from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.closed_loop import LineController, close_loop, trace
@@ -22,8 +21,7 @@ from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.chain.speed_measurement import SmoothMeasurement
 from synth.solver.evaluation import Evaluation
-from synth.solver.polynomial_lines import PolynomialLines, opened
-from synth.solver.switching_lines import SwitchingLines
+from synth.solver.switching_lines import PolynomialLines, SwitchingLines, opened
 from synth.solver.tuned_lines import tuned_lines
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=4, resistance_nodes=1)

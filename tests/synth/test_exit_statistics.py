@@ -21,19 +21,18 @@ from scipy import stats
 
 from plant_models import EntrySpeed, Plant
 from synth.frame.exhibits import Chart, Sentence, Table
+from synth.retarder.case_result import PRICES_M2_S3, ParetoFront, ParetoPoint, nearly_free, told
 from synth.retarder.comparison.served_entry import ENTRY_PASSES, ENTRY_POINTS, entry_sweep, feasibility_of, served
-from synth.retarder.line_control_loop import command_forecast
-from synth.retarder.pareto.pareto_front import PRICES_M2_S3, ParetoFront, ParetoPoint, nearly_free, told
-from synth.retarder.pictures.pareto_fronts import pareto_fronts
-from synth.retarder.shown.fronts import fronts
+from synth.retarder.loops.control_loop import command_forecast
+from synth.retarder.pictures.accuracy import pareto_fronts
+from synth.retarder.shown.pictures import fronts
 from synth.retarder.shown.results import NO_REGRET, overall, remarks
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.common_passes import CommonPasses, common_passes
-from synth.simulation.exit_statistics import brake_power, clopper_pearson, exit_statistics, rms_ratio
+from synth.simulation.exit_statistics import brake_power, clopper_pearson, exit_statistics, rms_ratio, unavoidable_error
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
-from synth.simulation.unavoidable_error import unavoidable_error
 from tests.synth.case_factory import make_case, make_sample
 from tests.synth.test_control_system import table_for
 from tests.synth.test_report import found_book

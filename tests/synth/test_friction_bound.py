@@ -9,18 +9,27 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, Plant
-from synth.retarder.comparison.friction_bound import bound_of
-from synth.retarder.comparison.told_regulator import Told, best_by_others, by_lines, run_told
+from synth.retarder.comparison.friction_bound import (
+    Bias,
+    Told,
+    ToldWithEstimator,
+    best_by_others,
+    bound_of,
+    by_lines,
+    knowing,
+    levelled,
+    no_bias,
+    run_told,
+)
 from synth.retarder.estimation.estimated_table import controller_of, moved
 from synth.retarder.estimation.estimator_design import estimator_of
-from synth.retarder.estimation.told_estimator import Bias, ToldWithEstimator, knowing, levelled, no_bias
 from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
-from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.switching_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED, tabulate
 from synth.solver.told_lines import ToldLines
 from tuning_tables import Generator

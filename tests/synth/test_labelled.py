@@ -16,16 +16,16 @@ import synth
 from synth.api.passes import Simulated
 from synth.frame.exhibits import Table
 from synth.frame.sheet import to_csv
-from synth.retarder.shown.controllers import CONTROLLER, controller_row
+from synth.retarder.shown.results import CONTROLLER, controller_row
 from tests.controller_code.passage_tables import passage_book
 from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
 from tests.synth.case_factory import make_plant, make_sample, make_trace, measured
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
 from tuning_tables import decide_many, write_book
 from tuning_tables.aim import AimTables
+from tuning_tables.document import StageTable
 from tuning_tables.pass_log import PassLog
 from tuning_tables.table_book import TableBook
-from tuning_tables.table_kinds import StageTable
 from tuning_tables.units import unit_of
 
 BOOKS: dict[str, Callable[[], tuple[StageTable, ...]]] = {

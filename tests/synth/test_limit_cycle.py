@@ -24,7 +24,7 @@ from synth.retarder.comparison.limit_cycle import (
     relay_cycle,
     stage_pair,
 )
-from synth.retarder.pictures.loop_cycle import describing_function_analysis
+from synth.retarder.loops.pictures import describing_function_analysis
 from synth.simulation.closed_loop import LineController, trace
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines

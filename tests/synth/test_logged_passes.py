@@ -13,17 +13,15 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import Approach, DopplerSensor, Plant, PlantError
-from plant_models.pressure_gauge import PressureGauge
+from plant_models.pressure_regulator import PressureGauge
 from synth.kernels.loop.passes import Draws
 from synth.retarder.comparison.baselines import energy_rule
 from synth.retarder.configuration.config_file import parse_config
 from synth.simulation.closed_loop import LineController, close_loop, simulate, trace
 from synth.simulation.common_passes import common_passes
-from synth.simulation.keyed_passes import keyed_passes
-from synth.simulation.logged_passes import GAP_S, LoggedClass, logged_passes, mixed_log
-from synth.simulation.lost_readings import lost_readings, readings_z
-from synth.simulation.nominal_pass import nominal_plant
-from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.simulation.nominal_response import nominal_plant
+from synth.simulation.random_passes import RandomPasses, keyed_passes, lost_readings, random_passes, readings_z
+from synth.simulation.sampled_pass import GAP_S, LoggedClass, logged_passes, mixed_log
 from synth.simulation.stratified_passes import stratified_passes
 from tests.synth.case_factory import make_case
 from tuning_tables.pass_log.pass_log import PassLog

@@ -12,8 +12,8 @@ import pytest
 from plant_models import Plant, PressingForce, WeightForce
 from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.off_nominal.trial import CONDITIONS, Trials, trials
-from synth.retarder.shown.off_nominal import worst_of
+from synth.retarder.off_nominal_trials import CONDITIONS, Trials, trials
+from synth.retarder.shown.checks import worst_of
 from synth.simulation.closed_loop import TableController, simulate
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio

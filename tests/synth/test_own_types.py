@@ -13,10 +13,9 @@ from pathlib import Path
 import pytest
 
 from plant_models.library import CARS, KINDS, POSITIONS, RETARDERS, Kind, TypeFile, load_car
-from plant_models.library.library import BUILT_IN, Library
-from plant_models.library.type_file import TypeFileError
+from plant_models.library.library import BUILT_IN, Library, TypeFileError
 from synth.cli.type_template import START_FROM, type_toml
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 

@@ -22,22 +22,17 @@ from matplotlib.patches import StepPatch
 from matplotlib.text import Text
 
 from synth.frame.exhibits import Chart
-from synth.frame.picture.figure_file import draw, figure_files
-from synth.frame.picture.house_style import MATHEMATICS, logarithmic_y, new_figure
+from synth.frame.picture.house_style import MATHEMATICS, draw, figure_files, logarithmic_y, new_figure
 from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.picture.studio import draw_chart
-from synth.retarder.case_names import by_class, file_stem
 from synth.retarder.case_result import CaseResult
-from synth.retarder.command_panels import command_image
-from synth.retarder.exit_bins import bin_edges_m_s, predicted_density
-from synth.retarder.pictures.case_picture import case_picture
-from synth.retarder.pictures.exit_density import exit_density
-from synth.retarder.pictures.feasibility import feasibility
-from synth.retarder.pictures.rms_by_controller import rms_by_controller
-from synth.retarder.pictures.stage_colours import colour_of, outcome, parts_in_stage
+from synth.retarder.pictures.accuracy import feasibility, rms_by_controller
+from synth.retarder.pictures.exits import case_picture, exit_density
+from synth.retarder.pictures.stage_panels import colour_of, command_image, outcome, parts_in_stage
 from synth.retarder.pictures.table_picture import Passes, table_lines, table_passes, table_surfaces
 from synth.retarder.shown.pictures import accuracy_charts, case_chart, case_pictures
-from synth.retarder.shown_case import NEAR_M_S, shown_case
+from synth.retarder.shown_case import NEAR_M_S, bin_edges_m_s, predicted_density, shown_case
+from synth.retarder.tuned_case import by_class, file_stem
 from synth.simulation.passes import ExitSample
 from tests.synth.case_factory import make_case, make_policy_map
 

@@ -13,19 +13,16 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, persistent_chain
-from synth.solver.evaluation import Evaluation
+from synth.solver.evaluation import Evaluation, commands_of, density_and_occupancy
 from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_density import commands_of, density_and_occupancy
-from synth.solver.polish import Evaluate, polish, whitening
-from synth.solver.polynomial_fit import Fit, carried_back, fit_lines
-from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of, opened
-from synth.solver.switching_lines import SwitchingLines
+from synth.solver.switching_lines import MINIMUM_GAP_M_S, PolynomialLines, SwitchingLines, gap_of, opened
 from synth.solver.tabulate import lines_of, prediction_of, tabulate
+from synth.solver.tuned_lines import Evaluate, Fit, carried_back, fit_lines, polish, whitening
 from tuning_tables import ControllerTable, Generator, InvalidTable, Predicted, decide_for
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3, resistance_nodes=1)
@@ -124,7 +121,7 @@ def test_a_polish_that_opening_spoils_leaves_the_lines_as_they_were(
         cost, by_lines = exact(lines)
         return error if np.array_equal(lines.upper_m_s, at_moved) else cost, by_lines
 
-    monkeypatch.setattr("synth.solver.polish.opened", lambda lines: moved)
+    monkeypatch.setattr("synth.solver.tuned_lines.opened", lambda lines: moved)
     result = polish(fit.lines, fit.curvature, nodes, evaluate, 25)
     assert result.best is fit.lines
     assert result.cost_after == result.cost_before > 0.0

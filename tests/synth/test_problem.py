@@ -16,17 +16,21 @@ from scipy.optimize import brentq
 
 from plant_models import Friction
 from plant_models.errors import PlantError
-from plant_models.library.type_file import WEIGHT_CATEGORIES, TypeFile
+from plant_models.library.library import WEIGHT_CATEGORIES, TypeFile
 from plant_models.library.weight_category import WeightCategories, categories_from
 from synth.checker.verdict import verify
 from synth.cli import main
-from synth.problem.aim import Aim
-from synth.problem.any_time_resolution import LARGE_SPREAD_M_S, design_resolution
 from synth.problem.criterion import Criterion
-from synth.problem.estimator_resolution import design_error_m_s, estimator_resolution
-from synth.problem.problem import Problem
+from synth.problem.problem import Aim, Problem
 from synth.problem.requirement import FrictionRange
-from synth.problem.resolution import Resolution, finer_for_check
+from synth.problem.resolution import (
+    LARGE_SPREAD_M_S,
+    Resolution,
+    design_error_m_s,
+    design_resolution,
+    estimator_resolution,
+    finer_for_check,
+)
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.solver.chain import grid

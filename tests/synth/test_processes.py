@@ -27,9 +27,8 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from plant_models import PlantError
 from synth.cli import commands, main, told
-from synth.frame.input_error import InputError
-from synth.frame.machine_fault import MACHINE_FAULTS
-from synth.frame.processors import available, processor_name
+from synth.frame.faults import MACHINE_FAULTS, InputError
+from synth.frame.machine import available, processor_name
 from synth.frame.terminal import standard_streams
 from synth.frame.terminal.telling import (
     DAMAGED,
@@ -44,8 +43,8 @@ from synth.frame.terminal.telling import (
 from synth.kernels.compiling import borrowing, part, part_inline
 from synth.retarder import first_run
 from synth.retarder.first_run import compiled_beside
-from synth.retarder.work_queue import run_nested
-from synth.solver.one_blas_thread import one_blas_thread
+from synth.retarder.tune import run_nested
+from synth.solver.descent import one_blas_thread
 from tuning_tables import OtherKind, TableError
 from tuning_tables.errors import InvalidLog
 

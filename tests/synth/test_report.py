@@ -19,15 +19,14 @@ from synth.frame.page.markup import VOID
 from synth.frame.page.told_page import page_of
 from synth.frame.picture.picture import Picture
 from synth.frame.told import Told
-from synth.retarder.acceptance import judged
+from synth.retarder.acceptance import FoundBook, judged
 from synth.retarder.case_result import CaseResult
 from synth.retarder.comparison.limit_cycle import hunting_report
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
 from synth.retarder.failed_case import FailedCase
-from synth.retarder.found_book import FoundBook
-from synth.retarder.off_nominal.trial import CONDITIONS
+from synth.retarder.off_nominal_trials import CONDITIONS
 from synth.retarder.shown.checks import checks
 from synth.retarder.tune import Book
 from synth.retarder.tune_command import COMMAND

@@ -7,11 +7,10 @@ from pathlib import Path
 import pytest
 
 from plant_models.library import position_names
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.problem.resolution import Resolution
-from synth.retarder.configuration.config_file import load_config, parse_config
-from synth.retarder.configuration.config_template import default_config_toml
-from tuning_tables.canonical import canonical_json
+from synth.retarder.configuration.config_file import default_config_toml, load_config, parse_config
+from tuning_tables.json_text import canonical_json
 
 CUT = '[[cut]]\ncar = "gondola-4"\nmass_t = 22\n'
 

@@ -12,7 +12,7 @@ from plant_models import PlantError
 from plant_models.library import load_car, load_position, position_names, sources, sources_cited_in
 from plant_models.library.source import CITATION, sources_from_toml
 from plant_models.library.sourced_value import SourcedValue
-from synth.retarder.configuration.config_template import default_config_toml
+from synth.retarder.configuration.config_file import default_config_toml
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "reference" / "sources.md").read_text(encoding="utf-8")

@@ -10,13 +10,12 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, Plant
-from synth.problem.aim import Aim
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.evaluation import Evaluation
-from synth.solver.polynomial_fit import Fit
-from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of
+from synth.solver.switching_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of
 from synth.solver.told_lines import (
     SQUARED_ERROR_ALONE,
     Effort,
@@ -29,7 +28,7 @@ from synth.solver.told_lines import (
     told_factors,
     told_lines,
 )
-from synth.solver.tuned_lines import fitted, polished
+from synth.solver.tuned_lines import Fit, fitted, polished
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.04, friction_nodes=4, resistance_nodes=1)
 TARGET_M_S = 3.0

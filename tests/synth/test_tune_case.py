@@ -17,22 +17,20 @@ from typing import Any, NoReturn
 import pytest
 
 from synth.frame.exhibits import Chart
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.picture.studio import Studio, draw_chart
 from synth.frame.workers.engine import Teller
-from synth.retarder.asked_tune import AskedTune, tuned
-from synth.retarder.book_classes import book_classes
+from synth.retarder.asked_tune import AskedTune, RadarEpochs, tuned
 from synth.retarder.case_result import CaseResult
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.estimation.estimate_chain import estimate_chain
+from synth.retarder.estimation.estimated_lines import estimate_chain
 from synth.retarder.failed_case import FailedCase
-from synth.retarder.forms.table_file import file_stem, is_infeasible
-from synth.retarder.policy_map import policy_map, share_of_ties
-from synth.retarder.radar_epochs import RadarEpochs
+from synth.retarder.forms.tables_at import file_stem, is_infeasible
 from synth.retarder.shown.pictures import case_chart, feasibility
+from synth.retarder.table_class import book_classes
 from synth.retarder.tune import Book, no_notice, tune
 from synth.simulation.controllers import TableController
-from synth.solver.backward_induction import solve
+from synth.solver.backward_induction import policy_map, share_of_ties, solve
 from tests.synth.case_factory import make_case
 from tests.synth.hump.trains.coarse_book import PARK, coarse_classes
 from tuning_tables import ControllerTable, InvalidTable, read_json, write_book, write_json

@@ -17,15 +17,14 @@ import pytest
 import synth
 from plant_models import Friction, Plant, PlantError
 from synth.kernels.loop.motion import LEFT, advance
-from synth.problem.aim import Aim
-from synth.problem.problem import Problem
+from synth.problem.problem import Aim, Problem
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.retarder import checked_design
 from synth.retarder.checked_design import CheckedDesign, design_of
 from synth.retarder.comparison.baselines import FAMILIES, TunedBaseline, energy_rule, relay, tune_baselines
 from synth.retarder.estimation.tuning_days import tuning_days, tuning_row
-from synth.retarder.rounded_table import PredictedTable, with_prediction
 from synth.retarder.tuned_case import GridCheck
+from synth.retarder.tuned_table import PredictedTable, with_prediction
 from synth.simulation.closed_loop import LineController, close_loop, simulate
 from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import exit_statistics
@@ -33,10 +32,9 @@ from synth.simulation.random_passes import PATH_CELLS, RandomPasses, random_pass
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
-from synth.solver.coarse_grid import CoarseGridError
+from synth.solver.descent import CoarseGridError
 from synth.solver.evaluation import Gradient
-from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.switching_lines import SwitchingLines
+from synth.solver.switching_lines import PolynomialLines, SwitchingLines
 from synth.solver.tabulate import UNPREDICTED, tabulate
 from synth.solver.tuned_lines import cost_at_full_brake, remembering
 from tests.synth.case_factory import make_case

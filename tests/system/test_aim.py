@@ -16,7 +16,7 @@ from synth.cli import main
 from tests.frame.small_command import results_in
 from tests.system.conftest import EPOCH, Command
 from tuning_tables.aim import aim_exit_speed
-from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.aim.aim_tables import AimTable
 from tuning_tables.json_file import read_json
 
 SMALL = """\

@@ -20,12 +20,11 @@ from tests.system.test_start_up import HEAVY, modules_after
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
 from tuning_tables.aim import ParkPosition
 from tuning_tables.aim.aim_tables import AimTables
-from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.aim.st_source import aim_export
+from tuning_tables.aim.exports import aim_c_files, aim_export
 from tuning_tables.csv_file import to_csv
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_names import RETARDER, ExportPrefix
 from tuning_tables.json_file import to_json, write_json
-from tuning_tables.plc_forms.iec import unit_files
+from tuning_tables.language.st_layout import unit_files
 from tuning_tables.self_test_size import SMALL
 
 TABLES = (category_table(1.0), measured_table(), category_table(1.5, 4, "СТ"))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from synth.cli import main
-from synth.frame.terminal.printed_table import PrintedTable
+from synth.frame.terminal.printed_page import PrintedTable
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.sweep.tune_unit import between_rms_m_s
 from synth.solver.chain.chain import check_chain

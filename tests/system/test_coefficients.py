@@ -21,7 +21,7 @@ import pytest
 from llvmlite import binding
 
 from plant_models.library import position_names
-from synth.problem.aim import Aim
+from synth.problem.problem import Aim
 from synth.retarder.class_setup import class_setup, origin_of, validation_passes
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -29,7 +29,7 @@ from synth.retarder.sweep.plan import plan_of
 from synth.retarder.sweep.sweep_file import parse_sweep
 from synth.retarder.sweep.tune_unit import tune_unit
 from synth.retarder.tuned_table import solutions, tuned_table
-from synth.solver.one_blas_thread import one_blas_thread
+from synth.solver.descent import one_blas_thread
 from tests.effort import sized
 from tests.sweep.conftest import PLANT, SWEEP
 from tuning_tables import ControllerTable, to_json

@@ -21,7 +21,7 @@ from synth.cli import main
 from synth.cli.commands import app
 from synth.cli.guide import GUIDES
 from synth.cli.study import laboratory
-from synth.frame.command_guide import PAGES, CommandGuide
+from synth.frame.command_line import PAGES, CommandGuide
 from tests.frame.small_command import results_in
 
 ROOT = Path(__file__).parents[2]

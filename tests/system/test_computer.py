@@ -19,8 +19,7 @@ import pytest
 
 from synth.cli import main
 from synth.frame.results_directory import SUMMARY
-from synth.frame.terminal.printed_page import PrintedVerdict
-from synth.frame.terminal.printed_table import PrintedTable
+from synth.frame.terminal.printed_page import PrintedTable, PrintedVerdict
 from synth.retarder.bench.wires import c_header
 from tests.printed_page import Page, page_about
 from tests.synth.bench.played import HOST, free_port

@@ -11,14 +11,14 @@ from typing import Any
 import pytest
 
 from scripts.studies.documents import KEPT
-from scripts.studies.named_study import study_named
+from scripts.studies.registry import study_named
 from scripts.studies.result import read_result, run_study
 from synth.cli import main
 from synth.cli.qualification.golden import ELSEWHERE
 from synth.problem.resolution import finer_for_check
 from synth.retarder.configuration.config_file import load_config, parse_config
-from synth.retarder.rounded_table import with_prediction
 from synth.retarder.served_class import plant_for
+from synth.retarder.tuned_table import with_prediction
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.controllers import full_brake
 from synth.simulation.exit_statistics import brake_power, exit_statistics

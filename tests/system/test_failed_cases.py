@@ -15,10 +15,9 @@ import pytest
 from plant_models import PlantError
 from synth.checker.verdict import verify
 from synth.cli import main
-from synth.retarder.attempted_case import attempted
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.failed_case import FailedCase, told_together
-from synth.solver.coarse_grid import CoarseGridError
+from synth.retarder.failed_case import FailedCase, attempted, told_together
+from synth.solver.descent import CoarseGridError
 from tests.frame.small_command import results_in
 from tests.system.conftest import CLASS, MEASURED, SECOND_CLASS, Command, changed
 from tests.system.test_permissions import COARSE

@@ -9,7 +9,7 @@ import pytest
 
 import synth
 from plant_models.library.hump_schema import hump_schema
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from tests.frame.small_command import results_in
 from tests.plant_models.hump.random_humps import SMALL
 from tests.system.conftest import Command

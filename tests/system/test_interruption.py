@@ -16,8 +16,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from synth.frame.held_directory import LOCK
-from synth.frame.own_files import MARKER
+from synth.frame.own_files import LOCK, MARKER
 from synth.frame.results_directory import LEFTOVER
 from tests.system.conftest import EPOCH, Command
 from tuning_tables import read_book, read_json
@@ -185,7 +184,7 @@ SWALLOWING = """
 import signal, sys, time, weakref
 import synth.cli.hump
 from synth.cli import main
-from tuning_tables.atomic_file import replacing
+from tuning_tables.whole_file import replacing
 
 class Given: ...
 

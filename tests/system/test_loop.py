@@ -22,8 +22,7 @@ from tuning_tables import Approach, CutId, Decisions, Generator, Predicted, Reta
 from tuning_tables.json_file import write_json
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.passages.plausible_motion import PlausibleMotion
-from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
+from tuning_tables.passages.sensor_layout import DecidesOn, PlausibleMotion, SensorLayout
 
 pytest.importorskip("control")
 
@@ -122,7 +121,7 @@ def passage_table(config_path: Path) -> PassageTable:
 def test_responses_that_do_not_agree_give_1(
     command: Command, tuned: Path, two_classes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("synth.retarder.control_loop.TOLERANCE_M_S", 1e-9)
+    monkeypatch.setattr("synth.retarder.loops.control_loop.TOLERANCE_M_S", 1e-9)
     ran = command("loop", tuned / "tables" / f"{TABLE}.json", "-o", tmp_path / "out", "--config", two_classes)
     assert ran.code == 1
     assert "not accepted" in ran.out

@@ -182,7 +182,7 @@ def test_tables_are_made_and_checked(elsewhere: Elsewhere) -> None:
     assert json.loads(verified)["confirmed"] is True
     assert "its CRC-32 is right" in inspected
     held = elsewhere.python(
-        "from pathlib import Path\nfrom synth.frame.held_directory import held\nfrom synth.cli import main\n"
+        "from pathlib import Path\nfrom synth.frame.own_files import held\nfrom synth.cli import main\n"
         "with held(Path('tuned')):\n    raise SystemExit(main(['tune', 'one.toml', '-o', 'tuned']))"
     )
     assert held.returncode == 2

@@ -26,12 +26,11 @@ from tests.system.conftest import Command
 from tests.system.test_start_up import HEAVY, modules_after
 from tuning_tables import RetarderId, read_book, write_book
 from tuning_tables.csv_file import to_csv
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_names import RETARDER, ExportPrefix
 from tuning_tables.json_file import to_json, write_json
-from tuning_tables.passages.c_source import passage_c_files
+from tuning_tables.language.st_layout import unit_files
+from tuning_tables.passages.exports import passage_c_files, passage_export
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_export
-from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.self_test_size import SMALL
 
 BOOK = PassageBook(passage_book().tables[:3])

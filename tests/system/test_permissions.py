@@ -11,7 +11,7 @@ import pytest
 
 from synth.cli import main
 from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.permissions.refusal import tellable
+from synth.retarder.permissions.permission import tellable
 from synth.retarder.permissions.shown import AS_CONFIGURED
 from synth.retarder.shown.results import PERMISSIONS
 from tests.system.conftest import MEASURED

@@ -22,9 +22,7 @@ import pytest
 
 from synth.cli import main
 from synth.frame.exhibits import Column, Table
-from synth.frame.terminal.printed_page import PrintedVerdict, page_lines
-from synth.frame.terminal.printed_table import PrintedTable, table_lines
-from synth.frame.terminal.printed_words import wrapped
+from synth.frame.terminal.printed_page import PrintedTable, PrintedVerdict, page_lines, table_lines, wrapped
 from tests.printed_page import WIDTHS, Page, cells_of, plain, require_column, require_nothing_cut, table_of, with_half
 from tests.system.conftest import Command
 

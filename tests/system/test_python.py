@@ -16,7 +16,7 @@ import pytest
 
 import synth
 from plant_models import Plant
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from tests.system.test_coefficients import coefficients_sha256, kept
 from tuning_tables import ControllerTable, read_json
 

@@ -13,12 +13,12 @@ import jsonschema
 import pytest
 
 from plant_models.library import BUILT_IN, KINDS, TypeFileError
-from plant_models.library.type_file import Kind, TypeFile
+from plant_models.library.library import Kind, TypeFile
 from plant_models.library.type_schema import type_schema
 from synth.cli.file_kinds import FILE_KINDS, FileKind
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.settings.settings_file import parse_settings
-from synth.frame.settings.toml_text import toml_text
+from synth.frame.settings.template import toml_text
 from synth.retarder.configuration.settings import Settings
 from tests.system.conftest import Command
 
@@ -190,14 +190,12 @@ def replaced(tree: dict[str, Any], path: tuple[str, ...]) -> dict[str, Any]:
 
 def read_type(file: TypeFile) -> object:
     """The entry in `file`, by the reader of its kind."""
-    from plant_models.library.car_entry import car_from
-    from plant_models.library.car_mix_entry import car_mix_from
+    from plant_models.library.car_entry import car_from, car_mix_from
     from plant_models.library.position_entry import position_file
     from plant_models.library.retarder_entry import retarder_from
-    from plant_models.library.sensor_entry import sensor_from
+    from plant_models.library.sensor_entry import sensor_from, wheel_sensor_from
     from plant_models.library.track_entry import track_from
     from plant_models.library.weight_category import categories_from
-    from plant_models.library.wheel_sensor_entry import wheel_sensor_from
 
     readers: dict[str, Any] = {
         "cars": car_from,

@@ -125,7 +125,7 @@ def test_faults_of_the_machine_are_74_wherever_they_come_from(
         raise OSError(number, os.strerror(number), str(path))
 
     monkeypatch.setattr(
-        "synth.retarder.forms.table_file.read_book" if step == "read_book" else "pathlib.Path.mkdir", fail
+        "synth.retarder.forms.tables_at.read_book" if step == "read_book" else "pathlib.Path.mkdir", fail
     )
     ran = command("export", tuned / "book.h5", "--format", "csv", "-o", tmp_path / "csv")
     assert (ran.code, ran.out) == (74, "")

@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 
 from synth.cli import main
-from synth.frame.input_error import InputError
-from synth.retarder.forms.table_file import book_in
-from synth.retarder.forms.tables_at import tables_at
-from synth.retarder.pareto.pareto_front import PRICES_M2_S3
+from synth.frame.faults import InputError
+from synth.retarder.case_result import PRICES_M2_S3
+from synth.retarder.forms.tables_at import book_in, tables_at
 from tests.printed_page import Page, page_about
 from tests.system.conftest import Command
 

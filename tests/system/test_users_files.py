@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from plant_models.library import BUILT_IN
-from plant_models.library.type_file import CARS
+from plant_models.library.library import CARS
 from synth.cli import main
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import results_directory

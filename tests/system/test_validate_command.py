@@ -15,7 +15,7 @@ from tests.controller_code.sample_book import FOUR_AXLES, table_of, with_approac
 from tests.system.conftest import CLASS, EPOCH, MEASURED, Command
 from tests.system.small_book import ID
 from tuning_tables import read_book, read_json, to_json, write_json
-from tuning_tables.canonical import canonical_json, document_checksum
+from tuning_tables.json_text import canonical_json, document_checksum
 from tuning_tables.pass_log.log_files import read_logs
 
 

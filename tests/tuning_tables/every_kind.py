@@ -30,13 +30,12 @@ from tuning_tables import (
     to_json,
 )
 from tuning_tables.aim import AimAxes, AimTable
-from tuning_tables.canonical import canonical_json, document_checksum
-from tuning_tables.declared.leaf import Leaf
-from tuning_tables.declared.members import LeafMember, SectionMember, members_of
+from tuning_tables.declared.members import Leaf, LeafMember, SectionMember, members_of
 from tuning_tables.declared.numbers import Count, Number, Row
 from tuning_tables.declared.texts import Text, Word
+from tuning_tables.document import AnyTable
+from tuning_tables.json_text import canonical_json, document_checksum
 from tuning_tables.passages.sensor_layout import DecidesOn
-from tuning_tables.table_kinds import AnyTable
 
 Document = dict[str, Any]
 JsonPath = tuple[str | int, ...]

@@ -10,11 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables import TableError, read_any_book, write_book
-from tuning_tables.book_layout import Layout, stored_layout
-from tuning_tables.canonical import canonical_json
-from tuning_tables.payload import payload_sha256
-from tuning_tables.seal import seal_of
-from tuning_tables.table_kinds import StageTable
+from tuning_tables.book_layout import Layout, payload_sha256, stored_layout
+from tuning_tables.document import StageTable
+from tuning_tables.json_text import canonical_json
+from tuning_tables.whole_file import seal_of
 
 Edit = Callable[[h5py.File], None]
 Arrays = Mapping[str, npt.NDArray[Any]]

@@ -20,9 +20,7 @@ from tuning_tables import (
     ValidRange,
 )
 from tuning_tables.category_number import KNOWN_NUMBERS
-from tuning_tables.line_order import require_order
-from tuning_tables.stage import HIGHEST_DEGREE, MOST_STAGES, round_coefficients
-from tuning_tables.surface_order import require_stage
+from tuning_tables.stage import HIGHEST_DEGREE, MOST_STAGES, require_order, require_stage, round_coefficients
 
 # Whatever is printable in any script; but no space other than U+0020 is.
 texts = st.text(st.characters(exclude_categories=("C", "Z")) | st.just(" "), min_size=1, max_size=12)

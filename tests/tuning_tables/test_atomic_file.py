@@ -14,9 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from tuning_tables import ControllerTable, DamagedTable, book_image, hdf5_file, read_book, write_book
-from tuning_tables.atomic_file import replacing, write_atomically
-from tuning_tables.regular_file import read_regular_file
+from tuning_tables import ControllerTable, DamagedTable, book_layout, hdf5_file, read_book, write_book
+from tuning_tables.whole_file import read_regular_file, replacing, write_atomically
 
 
 def test_content_arrives_and_replaces_what_was_there(tmp_path: Path) -> None:
@@ -79,7 +78,7 @@ def test_a_killed_writer_leaves_the_old_file(tmp_path: Path) -> None:
     path.write_bytes(b"old")
     program = (
         "import os, signal, sys\n"
-        "from tuning_tables.atomic_file import replacing\n"
+        "from tuning_tables.whole_file import replacing\n"
         "with replacing(sys.argv[1]) as part:\n"
         "    part.write_bytes(b'new')\n"
         "    os.kill(os.getpid(), signal.SIGKILL)\n"
@@ -132,13 +131,13 @@ ON_POSIX = pytest.mark.skipif(os.name != "posix", reason="the limit of a file's 
 LOST_FOR_A_MOMENT = """
 import resource, sys
 from tuning_tables import book_image, read_book, write_book
-writes_axis, (_, hard) = book_image.write_axis, resource.getrlimit(resource.RLIMIT_FSIZE)
+writes_axis, (_, hard) = book_layout.write_axis, resource.getrlimit(resource.RLIMIT_FSIZE)
 def lost(*arguments):
     resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))
     writes_axis(*arguments)  # what it writes is flushed by a destructor, which can raise nothing
     resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
 tables = read_book(sys.argv[1])
-book_image.write_axis = lost
+book_layout.write_axis = lost
 try:
     write_book(tables, sys.argv[2])
 except OSError as fault:
@@ -210,7 +209,7 @@ def test_what_was_written_is_read_back_before_it_takes_the_name(
 ) -> None:
     path = tmp_path / "book.h5"
     path.write_bytes(b"old")
-    body, write = book_image.image_of, Path.write_bytes
+    body, write = book_layout.image_of, Path.write_bytes
     with monkeypatch.context() as patched:
         if lost_before_the_seal:
             patched.setattr(hdf5_file, "image_of", lambda *parts: with_a_gap(body(*parts), lost))

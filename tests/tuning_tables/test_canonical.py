@@ -23,8 +23,8 @@ from tests.tuning_tables.every_kind import smallest_aim
 from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import ControllerTable, InvalidTable, to_csv, to_json, write_csv
 from tuning_tables.aim import AimTable
-from tuning_tables.canonical import canonical_json, crc32_hex, document_checksum
-from tuning_tables.sheet import is_formula, sheet
+from tuning_tables.csv_file import is_formula, sheet
+from tuning_tables.json_text import canonical_json, crc32_hex, document_checksum
 
 
 @pytest.mark.requirement("FILE-07")

@@ -14,7 +14,7 @@ import pytest
 
 from plant_models.library import load_weight_categories
 from synth.checker.book_reading import read_documents
-from synth.checker.category_number import YARD
+from synth.checker.document_shape import YARD
 from synth.checker.source import SHAPES
 from synth.checker.table_reading import read_table
 from tests.st_files import st_files
@@ -30,9 +30,9 @@ from tuning_tables import (
     to_json,
     write_book,
 )
-from tuning_tables.c_source import c_files
-from tuning_tables.canonical import canonical_json, document_checksum
 from tuning_tables.category_number import KNOWN_NUMBERS
+from tuning_tables.exports import c_files
+from tuning_tables.json_text import canonical_json, document_checksum
 from tuning_tables.table_book import TableBook
 
 UNNUMBERED = Path(__file__).parent / "st" / "default_book"

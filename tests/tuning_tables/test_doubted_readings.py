@@ -9,7 +9,7 @@ from tests.tuning_tables.test_estimator import estimator as estimator
 from tuning_tables import unseen_samples
 from tuning_tables.estimator import CAUTION, Estimator, begin
 from tuning_tables.held_table import lines_apart
-from tuning_tables.programs.alarms import HEAVIER_ALARM, LOST_ALARM, SENSOR_ALARM, alarms, table_after
+from tuning_tables.programs.decide import HEAVIER_ALARM, LOST_ALARM, SENSOR_ALARM, alarms, table_after
 from tuning_tables.programs.motion_filter import LEAST_FACTOR
 from tuning_tables.programs.observe import observe
 

@@ -14,7 +14,7 @@ from tuning_tables import ControllerTable, InvalidTable, Predicted, Status, Tabl
 from tuning_tables.active_table import active
 from tuning_tables.estimator import Estimator, begin
 from tuning_tables.held_table import lines_apart
-from tuning_tables.programs.estimate import UNSEEN
+from tuning_tables.programs.held import UNSEEN
 from tuning_tables.programs.observe import observe
 
 PERIOD_S = 0.1

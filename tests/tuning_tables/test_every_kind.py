@@ -48,10 +48,9 @@ from tuning_tables import (
     write_json,
 )
 from tuning_tables.aim import AimTable
-from tuning_tables.canonical import canonical_json
 from tuning_tables.declared.members import members_of
-from tuning_tables.document import HEAD, to_document
-from tuning_tables.table_kinds import KINDS, AnyTable, kind_of
+from tuning_tables.document import HEAD, KINDS, AnyTable, kind_of, to_document
+from tuning_tables.json_text import canonical_json
 
 WRONG: list[object] = [None, "", "4", -1, [], [None], 0.5, *sized([], [True, {}])]
 VALIDATORS = {kind: jsonschema.Draft202012Validator(table_schema(kind)) for kind in KINDS}

@@ -22,8 +22,8 @@ from tests.tuning_tables.every_kind import (
     smallest_surfaces,
 )
 from tuning_tables import ControllerTable, DamagedTable, TableError, from_json, to_json
-from tuning_tables.canonical import canonical_json
-from tuning_tables.table_kinds import KINDS, AnyTable
+from tuning_tables.document import KINDS, AnyTable
+from tuning_tables.json_text import canonical_json
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from tuning_tables import ControllerTable, Decisions, Stage, ValidRange, decide_
 from tuning_tables.active_table import active
 from tuning_tables.golden_vectors import golden_vectors
 from tuning_tables.programs.decide import decide
-from tuning_tables.programs.line_table import LineTable
+from tuning_tables.programs.held import LineTable
 from tuning_tables.stage import Line
 
 NAN, INF = float("nan"), float("inf")

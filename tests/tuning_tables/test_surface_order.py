@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from tests.effort import sized
 from tuning_tables import ControllerTable, Decisions, InvalidTable, Stage, ValidRange
-from tuning_tables.stage import Line, round_coefficients
-from tuning_tables.surface_order import range_above, surface_bound
+from tuning_tables.stage import Line, range_above, round_coefficients, surface_bound
 
 Tilting = Callable[..., ControllerTable]
 Slopes = tuple[float, float]

@@ -28,7 +28,7 @@ from tests.controller_code.sample_book import approaching_book, estimating_book
 from tests.effort import sized
 from tests.tuning_tables.random_tables import tables
 from tuning_tables import ControllerTable, TableBook, decide_for, from_json, to_json
-from tuning_tables.c_source import c_files
+from tuning_tables.exports import c_files
 from tuning_tables.golden_vectors import golden_vectors, line_speeds
 from tuning_tables.rule import rises_at
 

@@ -3,12 +3,10 @@
 A controller needs `read_json(path, AimTable)` and `aim_exit_speed`; numpy is all they use.
 """
 
-from tuning_tables.aim.aim_table import AimTable
-from tuning_tables.aim.aim_tables import AimTables
+from tuning_tables.aim.aim_tables import AimTable, AimTables, aim_exit_speed
 from tuning_tables.aim.axes import AimAxes
-from tuning_tables.aim.exit_speed import aim_exit_speed
+from tuning_tables.aim.nodes import Reported
 from tuning_tables.aim.purpose import AimCategory, MeasuredResistance, ParkPosition, Required
-from tuning_tables.aim.reported import Reported
 
 __all__ = [
     "AimAxes",

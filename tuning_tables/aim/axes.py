@@ -1,4 +1,6 @@
-"""The axes of an aim table: for which numbers of cars, free distances and measured resistances it has nodes."""
+"""The axes of an aim table: for which numbers of cars, free distances and measured resistances it has nodes; and
+what a controller holds of it: the value that `programs.aim_speed` takes.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.aim.nodes import Nodes, nodes_of
+from tuning_tables.aim.purpose import FASTEST_M_S
 from tuning_tables.declared.numbers import Count, Number, Row
 from tuning_tables.errors import InvalidTable
+from tuning_tables.held_table import read_only
+from tuning_tables.programs.aim_speed import AimGrid
 
 MOST_CARS: Final = 1000
 MOST_NUMBERS_OF_CARS: Final = 64
@@ -111,3 +116,39 @@ def _axis(values: npt.ArrayLike, key: str, limits: tuple[float, float]) -> Nodes
     if (np.diff(axis) <= 0.0).any() or (steps < np.float32(LEAST_STEP)).any():
         raise InvalidTable(f"{key} is {axis.tolist()!r:.60}, but it must rise, by {LEAST_STEP:g} at least.")
     return axis
+
+
+NO_ANSWER = np.float32(-1.0)
+
+
+def aim_grid(
+    axes: AimAxes,
+    exit_speed_m_s: npt.NDArray[np.float64],
+    bounds_m_s: tuple[float, float] = (0.0, FASTEST_M_S),
+    category: int = 0,
+    p_overspeed: float = 0.0,
+    coupling_m_s: float = 0.0,
+) -> AimGrid:
+    """The exit speeds at the nodes of `axes`, in their shape, NaN for none. Raises `ValueError`."""
+    if exit_speed_m_s.shape != axes.shape:
+        raise ValueError(f"aim: speeds have the shape {exit_speed_m_s.shape}, their axes {axes.shape}")
+    if (exit_speed_m_s < 0.0).any():
+        raise ValueError("aim: an exit speed is below 0, which would stand for none")
+    resistance = axes.resistance_n_per_kn
+    columns = np.zeros(1) if resistance is None else resistance
+    speeds = exit_speed_m_s.astype(np.float32).reshape(*axes.shape[:2], -1)
+    return AimGrid(
+        category=category,
+        is_measured=int(resistance is not None),
+        listed=len(axes.cars),
+        distances=len(axes.free_distance_m),
+        resistances=len(columns),
+        p_overspeed=np.float32(p_overspeed),
+        coupling_m_s=np.float32(coupling_m_s),
+        lowest_m_s=np.float32(bounds_m_s[0]),
+        highest_m_s=np.float32(bounds_m_s[1]),
+        cars=read_only(axes.cars, np.int32),
+        distance_m=read_only(axes.free_distance_m, np.float32),
+        resistance_n_per_kn=read_only(columns, np.float32),
+        speed_m_s=read_only(np.where(np.isnan(speeds), NO_ANSWER, speeds), np.float32),
+    )

@@ -9,9 +9,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.aim.aim_table import AimTable
-from tuning_tables.aim.aim_tables import AimTables
-from tuning_tables.aim.held_aim import NO_ANSWER
+from tuning_tables.aim.aim_tables import AimTable, AimTables
+from tuning_tables.aim.axes import NO_ANSWER
 from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN
 from tuning_tables.programs.aim_speed import exit_speed
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar, Final
 
 from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN, LEAST_OWN, require_category_number
-from tuning_tables.declared.leaf import Json
-from tuning_tables.declared.members import require_declared
+from tuning_tables.declared.members import Json, require_declared
 from tuning_tables.declared.numbers import Count, Number
 from tuning_tables.declared.texts import Text
 from tuning_tables.errors import InvalidTable

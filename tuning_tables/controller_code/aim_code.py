@@ -8,15 +8,13 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.aim.aim_table import AimTable
-from tuning_tables.aim.aim_tables import AimTables
+from tuning_tables.aim.aim_tables import AimTable, AimTables
 from tuning_tables.aim.golden_aims import GoldenAims, golden_selections
-from tuning_tables.category_names import category_names, comment_text
+from tuning_tables.category_number import category_names, comment_text
 from tuning_tables.controller_code.code import ControllerCode, HeldTable, Questions, Rule, Values, made_by, padded
-from tuning_tables.controller_code.odd_aims import odd_aims
+from tuning_tables.controller_code.odd_tables import odd_aims
 from tuning_tables.language.records import SizedRecord, record_of
-from tuning_tables.programs.aim_speed import exit_speed
-from tuning_tables.programs.aim_table import AIM_GRID, Tables, select
+from tuning_tables.programs.aim_speed import AIM_GRID, Tables, exit_speed, select
 from tuning_tables.self_test_size import SelfTestSize
 
 SELECT: Final = Rule(select, "select")

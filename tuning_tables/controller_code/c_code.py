@@ -1,28 +1,29 @@
-"""A controller code as C99: header and source. Freestanding, no heap, no library call, no state but the caller's."""
+"""A controller code as C99: header and source. Freestanding, no heap, no library call, no state but the caller's.
+What no rule of Python gives are the files `c99/*.in`.
+"""
 
 from __future__ import annotations
 
 import re
 import textwrap
 from collections.abc import Iterator
+from importlib.resources import files
 from typing import Final
 
-from tuning_tables.c_template import part
-from tuning_tables.category_names import comment_text
-from tuning_tables.controller_code.c_choice import (
-    STATUSES,
-    select,
-    select_note,
-    select_of,
-    table_type,
-    tables_of,
-)
+from tuning_tables.category_number import comment_text
+from tuning_tables.controller_code.c_choice import STATUSES, select, select_note, select_of, table_type, tables_of
 from tuning_tables.controller_code.code import ControllerCode, HeldTable, Rule, crc32_of, words_of
-from tuning_tables.exporter import generated
+from tuning_tables.export_names import generated
 from tuning_tables.language.c99 import CNames, c_function, c_prototype
 from tuning_tables.language.c99_data import c_comment, c_constants, c_content, c_type
 from tuning_tables.language.tree import Program
 from tuning_tables.language.walking import constants_of
+
+
+def part(name: str) -> str:
+    """The text of the file `name` as it stands."""
+    return (files("tuning_tables") / "c99" / f"{name}.in").read_text("ascii")
+
 
 WIDTH: Final = 116
 

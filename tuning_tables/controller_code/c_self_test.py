@@ -7,19 +7,18 @@ from typing import Final
 
 import numpy as np
 
-from tuning_tables.c_template import part
 from tuning_tables.controller_code.c_choice import select_of, table_type, tables_of
-from tuning_tables.controller_code.c_choice_test import choosing, golden_choices
 from tuning_tables.controller_code.c_code import (
     FOOT,
     GUARD,
     c_names,
     crc32_name,
+    part,
     same_export,
 )
-from tuning_tables.controller_code.c_odd_test import odd_is_right
+from tuning_tables.controller_code.c_test_parts import choosing, golden_choices, odd_is_right
 from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
-from tuning_tables.exporter import generated
+from tuning_tables.export_names import generated
 from tuning_tables.language.c99 import wrapped
 from tuning_tables.language.c99_data import c_comment
 from tuning_tables.language.records import Kind

@@ -11,7 +11,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.category_names import CategoryName, comment_text
+from tuning_tables.category_number import CategoryName, comment_text
 from tuning_tables.language.folding import folded
 from tuning_tables.language.reading import program_of
 from tuning_tables.language.records import Kind, Record, SizedRecord

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tuning_tables.controller_code.code import ControllerCode, HeldTable, Questions, Rule
-from tuning_tables.correction import Correction
-from tuning_tables.golden_exits import golden_exits, golden_passes, golden_speeds
+from tuning_tables.correction import Correction, golden_exits, golden_passes, golden_speeds
 from tuning_tables.programs.correct import (
     CORRECTION,
     SETTING,

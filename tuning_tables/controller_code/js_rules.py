@@ -10,11 +10,9 @@ from tuning_tables.controller_code import line_code, passage_code
 from tuning_tables.controller_code.code import Rule, programs_of
 from tuning_tables.language.javascript import indented, js_functions, js_maker, js_values
 from tuning_tables.language.records import Record, SizedRecord
-from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.programs.estimate import ESTIMATE
-from tuning_tables.programs.line_table import LINE_TABLE
-from tuning_tables.programs.passage_table import HELD_PASSAGES
+from tuning_tables.passages.rule import held_by
+from tuning_tables.programs.held import ESTIMATE, HELD_PASSAGES, LINE_TABLE
 from tuning_tables.programs.tracker import TRACKER
 from tuning_tables.table import ControllerTable
 

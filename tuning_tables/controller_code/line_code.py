@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.active_table import ActiveTable, active
-from tuning_tables.category_names import category_names, comment_text
+from tuning_tables.category_number import category_names, comment_text
 from tuning_tables.controller_code.code import (
     Commanded,
     ControllerCode,
@@ -25,11 +25,9 @@ from tuning_tables.golden_choices import golden_choices
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.golden_vectors import GoldenVectors
 from tuning_tables.language.records import SizedRecord, record_of
-from tuning_tables.programs.alarms import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM, alarms
 from tuning_tables.programs.choose import Tables, blend, choose
-from tuning_tables.programs.decide import decide
-from tuning_tables.programs.estimate import ESTIMATE
-from tuning_tables.programs.line_table import LINE_TABLE, LineTable
+from tuning_tables.programs.decide import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM, alarms, decide
+from tuning_tables.programs.held import ESTIMATE, LINE_TABLE, LineTable
 from tuning_tables.programs.motion_filter import begin_cut
 from tuning_tables.programs.observe import observe
 from tuning_tables.self_test_size import SelfTestSize

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.book_categories import exported_number
-from tuning_tables.category_names import category_names, comment_text
+from tuning_tables.book_classes import exported_number
+from tuning_tables.category_number import category_names, comment_text
 from tuning_tables.controller_code.code import (
     Commanded,
     ControllerCode,
@@ -20,15 +20,15 @@ from tuning_tables.controller_code.code import (
     made_by,
     padded,
 )
-from tuning_tables.controller_code.odd_passages import odd_passages
+from tuning_tables.controller_code.odd_tables import odd_passages
 from tuning_tables.language.records import SizedRecord, record_of
-from tuning_tables.passages.golden_selections import golden_selections
-from tuning_tables.passages.held_passages import held_by
+from tuning_tables.passages.golden_passages import golden_selections
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.rule import held_by
 from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
 from tuning_tables.programs.choose import Tables, choose
-from tuning_tables.programs.passage_table import HELD_PASSAGES, HeldPassages
+from tuning_tables.programs.held import HELD_PASSAGES, HeldPassages
 from tuning_tables.programs.tracker import TRACKER, begin_cut, believed_passage
 from tuning_tables.self_test_size import SelfTestSize
 

@@ -11,14 +11,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from tuning_tables.category_names import comment_text
+from tuning_tables.category_number import comment_text
 from tuning_tables.controller_code.code import ControllerCode
-from tuning_tables.exporter import generated
+from tuning_tables.export_names import generated
 from tuning_tables.language.records import Kind, Member, st_name
-from tuning_tables.language.st_data import of_tables
+from tuning_tables.language.st_data import int_array, of_tables, pieces, place_of, real_array
 from tuning_tables.language.st_unit import Block, Declared, Unit, Variable, local, retold, st_structure
 from tuning_tables.language.structured_text import StNames, st_block
-from tuning_tables.st_literals import int_array, pieces, place_of, real_array
 
 WIDTH: Final = 110
 

@@ -1,5 +1,5 @@
 """The self-test of a controller code in Structured Text: a block for the constants of each table, for the golden
-questions, and for the choices; one block runs them all, one a call.
+questions, and for the choice; and the whole code as an export, whatever form it is laid out in.
 
 Only questions that have a portable literal are in it: no NaN, no infinity, no denormal number (a controller may take
 those for 0), no -0.0.
@@ -14,26 +14,27 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.category_names import comment_text
+from tuning_tables.category_number import comment_text
+from tuning_tables.controller_code.c_self_test import test_stem
 from tuning_tables.controller_code.code import BEFORE, ControllerCode, Questions, Rule, kinds_of
-from tuning_tables.controller_code.st_choice_test import choice_tests
-from tuning_tables.controller_code.st_code import WIDTH, load_of, st_names, table_type
-from tuning_tables.controller_code.st_odd_test import odd_test
+from tuning_tables.controller_code.st_code import WIDTH, head, load_of, st_names, st_units, table_type
 from tuning_tables.controller_code.st_test_block import (
     TestBlock,
     check,
+    choice_tests,
     compared,
     loop,
+    odd_test,
     short_name,
     test_block,
     test_name,
 )
-from tuning_tables.exporter import generated
+from tuning_tables.export_names import ExportPrefix, generated
 from tuning_tables.language.records import Kind, st_name
-from tuning_tables.language.st_unit import Block, Declared, Variable
+from tuning_tables.language.st_data import LONGEST_ARRAY, bool_array, int_array, is_portable, real_array
+from tuning_tables.language.st_unit import Block, Declared, Export, Part, Variable, retold
 from tuning_tables.language.structured_text import broken
 from tuning_tables.language.tree import Parameter
-from tuning_tables.st_literals import LONGEST_ARRAY, bool_array, int_array, is_portable, real_array
 
 HEAD: Final = (
     "Self-test of {tables}, for the controller that is to run it. {generated}",
@@ -240,3 +241,22 @@ def self_test_head(code: ControllerCode) -> tuple[str, ...]:
 def calls(code: ControllerCode, line_checks: int) -> int:
     """How many calls the whole test takes."""
     return len(st_test_units(code, line_checks)) - 1
+
+
+def st_export(code: ControllerCode, prefix: ExportPrefix, line_checks: int = 0) -> Export:
+    """The tables with their blocks, and the self-test, with all names as `prefix` makes them.
+
+    `line_checks`: how many choices the self-test compares by every number.
+    """
+    tables = Part(f"retarder_{code.stem}", head(code), tuple(st_units(code)))
+    test_units = tuple(st_test_units(code, line_checks))
+    self_test = Part(f"retarder_{test_stem(code)}", self_test_head(code), test_units, is_test=True)
+    return tuple(
+        Part(
+            prefix.renamed(part.stem),
+            tuple(map(prefix.renamed, part.head)),
+            tuple(retold(unit, prefix.renamed) for unit in part.units),
+            part.is_test,
+        )
+        for part in (tables, self_test)
+    )

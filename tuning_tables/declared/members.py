@@ -1,16 +1,118 @@
-"""The members that a dataclass declares, read from its annotations."""
+"""The members that a dataclass declares, read from its annotations; what stands at a key without further keys
+below it (a text, a number, or numbers in rows); and where in a JSON document it stands, for the sentence that
+refuses it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
 from types import MappingProxyType, NoneType
-from typing import Annotated, Any, TypeAlias, cast, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, NoReturn, Protocol, TypeAlias, cast, get_args, get_origin, get_type_hints
 
-from tuning_tables.declared.leaf import Leaf
-from tuning_tables.errors import InvalidTable
-from tuning_tables.requirement import require_kind, require_tuple
+from tuning_tables.errors import DamagedTable, InvalidTable, excerpt, require_kind, require_tuple
+
+
+@dataclass(frozen=True)
+class Place:
+    """The value at `path` (dotted, "" for the document) of the file `source`."""
+
+    source: str
+    path: str = ""
+
+    def key(self, name: str) -> Place:
+        """The member `name` of the object here."""
+        return Place(self.source, f"{self.path}.{name}" if self.path else name)
+
+    def item(self, index: int) -> Place:
+        """The entry `index` of the array here."""
+        return Place(self.source, f"{self.path}[{index}]")
+
+    def refuse(self, value: object, wanted: str) -> NoReturn:
+        """Raise `DamagedTable`: `value` stands here, but it must be `wanted`."""
+        named = self.path or "the document"
+        raise DamagedTable(f"{self.source}: {named} is {excerpt(repr(value))}, but it must be {wanted}.")
+
+    def members(self, value: object, keys: Sequence[str]) -> dict[str, object]:
+        """`value`, an object with exactly these keys; raises `DamagedTable`."""
+        if not isinstance(value, dict):
+            self.refuse(value, "an object")
+        for key in keys:
+            if key not in value:
+                raise DamagedTable(f"{self.source}: {self.key(key).path} is missing; export the table again.")
+        for key in value:
+            if key not in keys:
+                named, found = self.path or "the document", excerpt(repr(key))
+                raise DamagedTable(
+                    f"{self.source}: {named} has the unknown key {found}; allowed are {', '.join(keys)}."
+                )
+        return value
+
+    def array(self, value: object) -> list[object]:
+        """`value`, an array; raises `DamagedTable`."""
+        if not isinstance(value, list):
+            self.refuse(value, "an array")
+        return value
+
+
+Json = dict[str, Any]
+
+
+class Leaf(Protocol):
+    """What stands at a key without further keys below it.
+
+    `dtype` and `axes` tell how a book holds it: a numpy type, "S" for text, and the axes beside those of its section.
+    """
+
+    @property
+    def meaning(self) -> str:
+        """What it is, without its unit, which its name tells."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """Its unit where its name does not tell it, else ""."""
+        ...
+
+    @property
+    def allowed(self) -> str:
+        """Its limits in words."""
+        ...
+
+    @property
+    def axes(self) -> tuple[str, ...] | None:
+        """The axes of its numbers; None where they are those of the whole table, so that no book holds it."""
+        ...
+
+    @property
+    def dtype(self) -> str:
+        """Its type in a book."""
+        ...
+
+    def check(self, value: Any, key: str) -> None:
+        """Raise `InvalidTable` unless `value`, which stands at `key`, is allowed."""
+        ...
+
+    def written(self, value: Any) -> object:
+        """`value` as JSON holds it."""
+        ...
+
+    def read(self, value: object, place: Place) -> Any:
+        """What the JSON `value` at `place` is; raises `DamagedTable` for another type."""
+        ...
+
+    def schema(self) -> Json:
+        """Its JSON Schema."""
+        ...
+
+    def cells(self, value: Any) -> Any:
+        """`value` as a book holds it: a number, a text, or numbers in rows."""
+        ...
+
+    def of_cells(self, cells: Any) -> Any:
+        """The value in the cells of a book, less what fills them up; raises `InvalidTable`."""
+        ...
 
 
 @dataclass(frozen=True)

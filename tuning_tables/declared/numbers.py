@@ -9,10 +9,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from tuning_tables.declared.leaf import Json
-from tuning_tables.declared.place import Place
-from tuning_tables.errors import InvalidTable
-from tuning_tables.requirement import (
+from tuning_tables.declared.members import Json, Place
+from tuning_tables.errors import (
+    InvalidTable,
     require_between,
     require_count,
     require_finite,

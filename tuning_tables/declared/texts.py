@@ -6,11 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Generic, TypeVar
 
-from tuning_tables.declared.leaf import Json
-from tuning_tables.declared.place import Place
-from tuning_tables.errors import InvalidTable
-from tuning_tables.excerpt import excerpt
-from tuning_tables.requirement import require_kind, require_match, require_text
+from tuning_tables.declared.members import Json, Place
+from tuning_tables.errors import InvalidTable, excerpt, require_kind, require_match, require_text
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,26 @@
-"""Units as IEC 61131-3 writes them: declarations, statements, comments."""
+"""Units as IEC 61131-3 writes them: declarations, statements, comments; and an export as bare Structured Text, a
+file each part or a file each unit.
+"""
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
-from typing import Final
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Final, TypeAlias
 
 from tuning_tables.language.records import Kind
 from tuning_tables.language.st_data import WIDTH, st_comment
-from tuning_tables.language.st_unit import ArrayOf, Block, Structure, Unit, Variable, VariableType, plain
+from tuning_tables.language.st_unit import (
+    ArrayOf,
+    Block,
+    Export,
+    Structure,
+    Unit,
+    Variable,
+    VariableType,
+    plain,
+    units_of,
+)
 
 LINE_LENGTH: Final = 100
 """Of the values of an array."""
@@ -102,3 +114,23 @@ def file_comment(lines: Sequence[str]) -> str:
     """The comment at the beginning of a file, and the empty line behind it."""
     first, *others = lines
     return "\n".join([f"(* {first}", *(f"   {line}".rstrip() for line in others)]) + " *)\n"
+
+
+Layout: TypeAlias = Callable[[Export], Mapping[str, bytes]]
+"""A form of an export: its files, by name. Equal exports give equal bytes."""
+
+
+def part_files(export: Export) -> Mapping[str, bytes]:
+    """A file for the tables with their blocks, and one for the self-test, ASCII with LF."""
+    return {
+        f"{part.stem}.st": "\n".join([file_comment(part.head), *map(unit_text, part.units)]).encode("ascii")
+        for part in export
+    }
+
+
+def unit_files(export: Export) -> Mapping[str, bytes]:
+    """Each unit as a file; by their names in the order in which they need each other."""
+    first, *others = units_of(export)
+    texts = {first.name: "\n".join([file_comment(export[0].head), unit_text(first)])}
+    texts |= {unit.name: unit_text(unit) for unit in others}
+    return {f"{place:04d}_{name}.st": texts[name].encode("ascii") for place, name in enumerate(texts, start=1)}

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 from tuning_tables.language.records import Kind, SizedRecord, st_name
 from tuning_tables.language.st_data import WIDTH, of_tables, real, st_comment
-from tuning_tables.language.st_rows import ArrayPlaces, Row, sum_of
 from tuning_tables.language.st_unit import MARK, Block, Declared, Variable, local, plain
 from tuning_tables.language.tree import (
     Ask,
@@ -32,7 +31,16 @@ from tuning_tables.language.tree import (
     Statement,
     While,
 )
-from tuning_tables.language.walking import expressions_in, names_in, statements_in, targets_in, variables_of
+from tuning_tables.language.walking import (
+    ArrayPlaces,
+    Row,
+    expressions_in,
+    names_in,
+    statements_in,
+    sum_of,
+    targets_in,
+    variables_of,
+)
 
 COMPARISONS: Mapping[str, str] = {"==": "=", "!=": "<>"}
 

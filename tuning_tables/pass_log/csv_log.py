@@ -19,9 +19,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.atomic_file import replacing
-from tuning_tables.errors import DamagedTable, InvalidLog
-from tuning_tables.excerpt import excerpt
+from tuning_tables.errors import DamagedTable, InvalidLog, excerpt
 from tuning_tables.pass_log.log_columns import (
     COLUMNS,
     LARGEST_FILE_BYTES,
@@ -36,7 +34,7 @@ from tuning_tables.pass_log.log_columns import (
 )
 from tuning_tables.pass_log.log_mapping import DELIMITERS, PATHS, LogMapping
 from tuning_tables.pass_log.pass_log import ROWS, PassLog
-from tuning_tables.regular_file import read_regular_file
+from tuning_tables.whole_file import read_regular_file, replacing
 
 FIRST_LINE: Final = "# retarder-synth pass log 1; path: "
 BLOCK_ROWS: Final = 100_000

@@ -13,15 +13,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.atomic_file import write_atomically
 from tuning_tables.errors import DamagedTable, InvalidLog
-from tuning_tables.pass_log.hdf5_child import columns_by_child
-from tuning_tables.pass_log.hdf5_columns import FORMAT, STORED, VERSION, StoredColumns, stored_columns
+from tuning_tables.pass_log.hdf5_child import FORMAT, STORED, VERSION, StoredColumns, columns_by_child, stored_columns
 from tuning_tables.pass_log.log_columns import LARGEST_FILE_BYTES, NUMBERS, TEXTS, LogColumns, TextRuns
 from tuning_tables.pass_log.log_mapping import PATHS, LogMapping
 from tuning_tables.pass_log.pass_log import PASSES, ROWS, PassLog
-from tuning_tables.regular_file import read_regular_file
-from tuning_tables.seal import is_sealed, seal_fits, seal_of
+from tuning_tables.whole_file import is_sealed, read_regular_file, seal_fits, seal_of, write_atomically
 
 
 def write_hdf5_log(log: PassLog, path: Path) -> None:

@@ -10,15 +10,13 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
-from tuning_tables.errors import InvalidLog
-from tuning_tables.excerpt import excerpt
+from tuning_tables.errors import InvalidLog, excerpt
 from tuning_tables.pass_log.checked_log import checked_log
 from tuning_tables.pass_log.csv_log import read_csv_log, write_csv_log
 from tuning_tables.pass_log.hdf5_log import read_hdf5_log, write_hdf5_log
-from tuning_tables.pass_log.join_logs import join_logs
 from tuning_tables.pass_log.log_columns import LONGEST_TEXT, FileFault, PassFault
 from tuning_tables.pass_log.log_mapping import LogMapping
-from tuning_tables.pass_log.pass_log import PassLog
+from tuning_tables.pass_log.pass_log import PassLog, join_logs
 
 READERS: Final = {".csv": read_csv_log, ".txt": read_csv_log, ".h5": read_hdf5_log, ".hdf5": read_hdf5_log}
 WRITERS: Final = {".csv": write_csv_log, ".h5": write_hdf5_log, ".hdf5": write_hdf5_log}

@@ -22,10 +22,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from tuning_tables.errors import DamagedTable, InvalidLog
-from tuning_tables.excerpt import excerpt
+from tuning_tables.errors import DamagedTable, InvalidLog, excerpt
 from tuning_tables.pass_log.log_columns import COLUMNS, LONGEST_TEXT, RANGES, TEXTS, WHOLE
-from tuning_tables.regular_file import read_regular_file
+from tuning_tables.whole_file import read_regular_file
 
 LARGEST_MAPPING_BYTES: Final = 100_000
 

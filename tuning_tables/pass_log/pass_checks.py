@@ -23,7 +23,7 @@ from tuning_tables.pass_log.log_columns import (
     LogColumns,
     TextRuns,
 )
-from tuning_tables.pass_log.path_resets import path_resets_m
+from tuning_tables.pass_log.pass_log import path_resets_m
 
 Rows = npt.NDArray[np.bool_]
 

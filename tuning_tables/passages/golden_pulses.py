@@ -16,11 +16,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.golden_vectors import LARGEST, SMALLEST
-from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.pulse_sequences import heard_cuts
+from tuning_tables.passages.rule import held_by
 from tuning_tables.programs.at_pulse import at_pulse
-from tuning_tables.programs.passage_table import NONE, HeldPassages
+from tuning_tables.programs.held import NONE, HeldPassages
 from tuning_tables.programs.tracker import LONGEST_WAIT_S, TRACKER, begin_cut, believed_passage
 
 State: TypeAlias = tuple[float, ...]

@@ -9,14 +9,10 @@ from typing import Annotated, Any, Final
 
 import numpy as np
 
-from tuning_tables.declared.leaf import Json
-from tuning_tables.declared.members import require_declared
+from tuning_tables.declared.members import Json, Place, require_declared
 from tuning_tables.declared.numbers import Count, Number, present_rows
-from tuning_tables.declared.place import Place
-from tuning_tables.errors import InvalidTable
-from tuning_tables.line_order import LARGEST_FLOAT32
-from tuning_tables.requirement import require_finite, require_tuple
-from tuning_tables.stage import MOST_STAGES
+from tuning_tables.errors import InvalidTable, require_finite, require_tuple
+from tuning_tables.stage import LARGEST_FLOAT32, MOST_STAGES
 
 PATH_RANGE_M: Final = (-100.0, 1e5)
 

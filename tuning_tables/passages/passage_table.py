@@ -9,16 +9,22 @@ from typing import Annotated, Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.approach import Approach
+from tuning_tables.decisions import Approach
 from tuning_tables.declared.members import Several, require_declared
 from tuning_tables.declared.numbers import Count, Number, Row
-from tuning_tables.errors import InvalidTable
-from tuning_tables.figures import Predicted, Validated, rms_in_words
+from tuning_tables.errors import InvalidTable, require_between, require_count, require_rising
 from tuning_tables.passages.passage_row import PassageRow
-from tuning_tables.passages.plausible_motion import PlausibleMotion
-from tuning_tables.passages.sensor_layout import SensorLayout
-from tuning_tables.provenance import CREATED, TABLE_NAME, CutId, Generator, RetarderId
-from tuning_tables.requirement import require_between, require_count, require_rising
+from tuning_tables.passages.sensor_layout import PlausibleMotion, SensorLayout
+from tuning_tables.provenance import (
+    CREATED,
+    TABLE_NAME,
+    CutId,
+    Generator,
+    Predicted,
+    RetarderId,
+    Validated,
+    rms_in_words,
+)
 from tuning_tables.stage import MOST_STAGES
 
 LONGEST_CUT_M: Final = 1e4

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
-from tuning_tables.exporter import EXPORTER, exporting_version
+from tuning_tables.export_names import EXPORTER, exporting_version
 from tuning_tables.language.records import Kind
 from tuning_tables.language.st_layout import statements
 from tuning_tables.language.st_unit import ArrayOf, Block, Export, Structure, Variable, VariableType, units_of

@@ -20,8 +20,7 @@ from typing import Annotated, Any, Final
 import numpy as np
 
 from tuning_tables.language.records import flag, reading, whole
-from tuning_tables.programs.numbers import LARGEST_NUMBER, MINUS_ONE, NOUGHT, Answer, Stage, f32
-from tuning_tables.programs.passage_table import HeldPassages
+from tuning_tables.programs.held import LARGEST_NUMBER, MINUS_ONE, NOUGHT, Answer, HeldPassages, Stage, f32
 from tuning_tables.programs.tracker import LONGEST_WAIT_S, Reading, Sensor, Since, Tracker, believed_passage
 
 SHORTEST_READING_S: Final = np.float32(2.0**-20)

@@ -14,8 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.language.records import reading, real, whole
-from tuning_tables.programs.line_table import LineTable
-from tuning_tables.programs.numbers import LARGEST_NUMBER, MINUS_ONE, NOUGHT, Answer, f32
+from tuning_tables.programs.held import LARGEST_NUMBER, MINUS_ONE, NOUGHT, Answer, LineTable, f32
 
 TUNED: Final = 0
 BETWEEN: Final = 1

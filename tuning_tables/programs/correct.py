@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.language.records import Record, flag, reading, real, record_of, whole
-from tuning_tables.programs.numbers import NOUGHT, ONE, Answer, ObservedSpeed, f32
+from tuning_tables.programs.held import NOUGHT, ONE, Answer, ObservedSpeed, f32
 
 LARGEST_ERROR_M_S: Final = np.float32(1.0)
 LEAST_ERROR_M_S: Final = np.float32(-1.0)

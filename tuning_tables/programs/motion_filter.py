@@ -7,7 +7,7 @@ from typing import Annotated, Any, Final
 import numpy as np
 
 from tuning_tables.language.records import real
-from tuning_tables.programs.estimate import (
+from tuning_tables.programs.held import (
     BEGUN,
     BELIEVED,
     CROSS_COVARIANCE,
@@ -18,20 +18,18 @@ from tuning_tables.programs.estimate import (
     FACTOR,
     FACTOR_COVARIANCE,
     FACTOR_VARIANCE,
+    NOUGHT,
+    ONE,
     PATH_M,
     READING_M_S,
     REPEATED,
     SPEED_M_S,
     SPEED_VARIANCE,
-    UNSEEN,
-    Estimate,
-)
-from tuning_tables.programs.line_table import LineTable
-from tuning_tables.programs.numbers import (
-    NOUGHT,
-    ONE,
     TWO,
+    UNSEEN,
     Answer,
+    Estimate,
+    LineTable,
     Path,
     Speed,
 )

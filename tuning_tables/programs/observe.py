@@ -26,25 +26,22 @@ from typing import Annotated, Any, Final
 import numpy as np
 
 from tuning_tables.language.records import flag, real
-from tuning_tables.programs.estimate import (
+from tuning_tables.programs.held import (
     BEGUN,
     BELIEVED,
     DOUBTED,
+    MINUS_ONE,
+    NOUGHT,
+    ONE,
     PATH_M,
     READING_M_S,
     REPEATED,
     SPEED_M_S,
     SPEED_VARIANCE,
     UNSEEN,
-    Estimate,
-)
-from tuning_tables.programs.line_table import LineTable
-from tuning_tables.programs.motion_filter import LEAST_SPEED_M_S, begin_at, correct, predict
-from tuning_tables.programs.numbers import (
-    MINUS_ONE,
-    NOUGHT,
-    ONE,
     Answer,
+    Estimate,
+    LineTable,
     MeasuredSpeed,
     Overpressure,
     Path,
@@ -52,6 +49,7 @@ from tuning_tables.programs.numbers import (
     Speed,
     f32,
 )
+from tuning_tables.programs.motion_filter import LEAST_SPEED_M_S, begin_at, correct, predict
 
 LARGEST_SPEED_M_S: Final = np.float32(40.0)
 LARGEST_OVERPRESSURE_KPA: Final = np.float32(2000.0)

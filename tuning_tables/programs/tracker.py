@@ -31,8 +31,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.language.records import Record, reading, real, whole
-from tuning_tables.programs.numbers import HALF, MINUS_ONE, NOUGHT, ONE, Answer, Speed, f32
-from tuning_tables.programs.passage_table import NONE, HeldPassages
+from tuning_tables.programs.held import HALF, MINUS_ONE, NONE, NOUGHT, ONE, Answer, HeldPassages, Speed, f32
 
 PASSAGE, SPEED_M_S, TIME_S, RIVAL, RIVAL_SPEED_M_S, RIVAL_TIME_S = range(6)
 

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from scripts.studies.aimed_braking.doubled_accuracy import Doubled
 from scripts.studies.aimed_braking.measuring import Measured
-from scripts.studies.aimed_braking.prototypes import Beside
-from scripts.studies.aimed_braking.published_figures import Line, OverSpeeds
+from scripts.studies.aimed_braking.published_figures import Beside, Doubled, Line, OverSpeeds
 from scripts.studies.aimed_braking.sensitivity import Moved, Sensitivity
 from scripts.studies.aiming.trial import Draws, Outcome, Value
-from scripts.studies.markdown_table import ABSENT, MarkdownTable, around, plus_minus, table
-from scripts.studies.study import Findings
+from scripts.studies.study import ABSENT, Findings, MarkdownTable, around, plus_minus, table
 
 
 @dataclass(frozen=True)

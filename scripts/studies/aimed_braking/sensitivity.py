@@ -10,14 +10,12 @@ import numpy as np
 from plant_models.frozen_arrays import Floats
 from plant_models.rolling.car_mix import CarMix
 from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
-from scripts.studies.aiming.hump import grades_of, weight_category, with_bends, with_grades, with_mix, with_weather
-from scripts.studies.aiming.norm_distance import norm_distance
-from scripts.studies.aiming.regression import ByRegression
-from scripts.studies.aiming.trial import Cuts, Draws, Value, value_of
-from scripts.studies.side_by_side import side_by_side
-from synth.aim.knowledge import ByCategory, Knowledge
+from scripts.studies.aiming.cuts import grades_of, weight_category, with_bends, with_grades, with_mix, with_weather
+from scripts.studies.aiming.refinements import ByRegression
+from scripts.studies.aiming.trial import Cuts, Draws, Value, norm_distance, value_of
+from scripts.studies.cases import side_by_side
+from synth.aim.knowledge import ByCategory, Knowledge, ResistanceByTwoSpeeds
 from synth.aim.position_models import NormalPosition
-from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene
 
 EXIT_STD_M_S = 0.1

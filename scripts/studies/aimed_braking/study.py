@@ -8,23 +8,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from scripts.studies.aimed_braking.doubled_accuracy import doubled_accuracy
 from scripts.studies.aimed_braking.findings import AimedBraking, Norm
 from scripts.studies.aimed_braking.measuring import WAYS, measured
-from scripts.studies.aimed_braking.prototypes import BEHIND_POSITION, FROM_CREST, beside
-from scripts.studies.aimed_braking.published_figures import Line, by_category, line, over_speeds
+from scripts.studies.aimed_braking.published_figures import (
+    BEHIND_POSITION,
+    FROM_CREST,
+    Line,
+    beside,
+    by_category,
+    doubled_accuracy,
+    line,
+    over_speeds,
+)
 from scripts.studies.aimed_braking.sensitivity import INPUTS, sensitivities
-from scripts.studies.aiming.hump import POINTS, large_hump, weight_category
-from scripts.studies.aiming.norm_distance import norm_distance
-from scripts.studies.aiming.readings import LightnessByWeigher
-from scripts.studies.aiming.recorded_cuts import NearestRecord
-from scripts.studies.aiming.regression import ByRegression
-from scripts.studies.aiming.trial import Cuts, Draws, value_of
-from scripts.studies.options import option
-from scripts.studies.study import Method, Tell
-from synth.aim.knowledge import ByCategory, ByReading, Knowledge
+from scripts.studies.aiming.cuts import POINTS, large_hump, weight_category
+from scripts.studies.aiming.refinements import ByRegression, LightnessByWeigher, NearestRecord
+from scripts.studies.aiming.trial import Cuts, Draws, norm_distance, value_of
+from scripts.studies.study import Method, Tell, option
+from synth.aim.knowledge import ByCategory, ByReading, Knowledge, ResistanceByTwoSpeeds
 from synth.aim.position_models import NormalPosition
-from synth.aim.readings import ResistanceByTwoSpeeds
 from synth.aim.scene import AimScene
 
 EXACT_WEIGHT = 1e-4

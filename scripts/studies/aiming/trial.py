@@ -1,22 +1,90 @@
-"""An aim tried several times: commands chosen on some cuts, judged on others, and both anew in each replicate."""
+"""An aim tried several times: commands chosen on some cuts at one probability of over-speed, judged on others, and
+both anew in each replicate; and how far from the crest a norm of the gap is met.
+
+Commands that keep the probability of over-speed over all cuts, whatever is known of them. A kind of knowledge gives
+commands for a level of probability. Cuts that no command serves are commanded the lowest one, and couple too fast more
+often than that level; so the level for all is lowered until the share over all cuts is kept. Every kind of knowledge is
+compared at the same share of over-speeds so.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from plant_models.frozen_arrays import Floats
+from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.library.weight_category import WeightCategory
-from scripts.studies.aiming.aimed_cuts import AimedCuts, RolledCuts, rolled_cuts
-from scripts.studies.aiming.levelled import levelled
-from scripts.studies.aiming.places import Places
-from synth.aim.knowledge import Knowledge
-from synth.aim.outcome import Couplings
-from synth.aim.position_models import PositionModel
+from scripts.studies.aiming.cuts import AimedCuts, FromCrest, Places, RolledCuts, rolled_cuts
+from scripts.studies.aiming.refinements import NearestRecord
+from synth.aim.knowledge import Commands, Knowledge, Requirement
+from synth.aim.position_models import Couplings, PositionModel
 from synth.aim.scene import AimScene, SceneCuts
 from synth.simulation.replicates import Interval, student_quantile
+
+BOUNDS_M_S = (0.5, 7.0)
+"""Commands that a park position is given."""
+
+NOT_SERVED_M_S = 0.4
+"""Stands for every threshold below the lowest command: no command serves such a cut, however far below it is."""
+
+TRIES = 12
+"""Levels tried at most; where cuts that nothing serves are many, the share jumps, and the best one below counts."""
+
+NEAR = 0.001
+"""A share that is so near below what is required is near enough."""
+
+
+@frozen_arrays
+class Commanded:
+    """What n cuts are commanded, `speed_m_s` (n,), and the share `unserved` that is commanded the lowest speed because
+    no command serves it."""
+
+    speed_m_s: Floats
+    unserved: float
+
+
+@dataclass(frozen=True)
+class LevelledCommands:
+    """Commands for one place; a cut that they do not serve is commanded the lowest."""
+
+    commands: Commands
+    level: float
+
+    def of(self, cuts: SceneCuts) -> Commanded:
+        """For each of these cuts."""
+        told = self.commands.of(cuts)[:, 0]
+        served = told >= BOUNDS_M_S[0]  # false for NaN, too
+        return Commanded(np.where(served, told, BOUNDS_M_S[0]), 1.0 - float(served.mean()))
+
+
+def levelled(knowledge: Knowledge, design: AimedCuts, place: int, p_overspeed: float) -> LevelledCommands | None:
+    """The commands for one place with which at most the share `p_overspeed` of `design` couples too fast; None where
+    no level gives so few."""
+    thresholds = np.maximum(design.thresholds_m_s[:, place : place + 1], NOT_SERVED_M_S)
+    others = slice(knowledge.records if isinstance(knowledge, NearestRecord) else 0, None)  # a record finds itself
+
+    def tried(level: float) -> tuple[LevelledCommands, float]:
+        requirement = Requirement(level, (NOT_SERVED_M_S, BOUNDS_M_S[1]))
+        commands = LevelledCommands(knowledge.commands(design.cuts, thresholds, requirement), level)
+        over = commands.of(design.cuts).speed_m_s > thresholds[:, 0]
+        return commands, float(over[others].mean())
+
+    found, low, high, level = None, 0.0, 2.0 * p_overspeed, p_overspeed
+    for _ in range(TRIES):
+        commands, share = tried(level)
+        if share <= p_overspeed:
+            found, low = commands, level
+            if share >= p_overspeed - NEAR:
+                break
+        else:
+            high = level
+        level += p_overspeed - 0.5 * NEAR - share  # the share follows the level nearly one to one
+        if not low < level < high:
+            level = 0.5 * (low + high)
+    return found
+
 
 HARD_M_S = (1.5, 2.0)
 """Coupling speeds that the dissertation counts besides the limit."""
@@ -139,3 +207,45 @@ def value_of(replicates: Floats) -> Value:
     half = student_quantile(count - 1) * float(replicates.std(ddof=1)) / count**0.5
     mean = float(replicates.mean())
     return Value(mean, (mean - half, mean + half))
+
+
+NORM_GAP_M = 3.0
+"""Mean gap a car that is allowed at a probability of over-speed of 0.1 ([kozachenko-aimed], its reference 1)."""
+
+BEYOND = 0.3
+"""Metres; the root is found so nearly."""
+
+
+def norm_distance(
+    cuts: Cuts, position: PositionModel, knowledge: Knowledge, p_overspeed: float, draws: Draws, last_m: float
+) -> Floats:
+    """Metres from the crest at which the mean gap a car reaches NORM_GAP_M, in each replicate, (replicates,); infinite
+    where it is met at `last_m` still."""
+    nearest = cuts.scene.exit_m + 1.0
+    rows = []
+    for drawn in cuts.unrolled(draws):
+
+        def beyond(metres: float, both: tuple[SceneCuts, SceneCuts] = drawn) -> float:
+            places = FromCrest((metres,))
+            chosen_on, judged_on = (rolled_cuts(each, places).at(position) for each in both)
+            gap = float(judged(chosen_on, judged_on, knowledge, p_overspeed)[0, 0])
+            return 1e3 if np.isnan(gap) else gap - NORM_GAP_M
+
+        rows.append(root(beyond, nearest, last_m))
+    return np.array(rows)
+
+
+def root(rising: Callable[[float], float], low: float, high: float) -> float:
+    """Where a function that rises passes 0; infinite if it is below at `high`, `low` if above at `low`."""
+    below, above = rising(low), rising(high)
+    if below >= 0.0 or above <= 0.0:
+        return low if below >= 0.0 else float("inf")
+    while high - low > BEYOND:
+        part = np.clip(-below / (above - below), 0.1, 0.9) if above < 100.0 else 0.5
+        middle = low + part * (high - low)
+        value = rising(middle)
+        if value < 0.0:
+            low, below = middle, value
+        else:
+            high, above = middle, value
+    return 0.5 * (low + high)

@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from scripts.studies.markdown_table import MarkdownTable, around, table
 from scripts.studies.near_target import NEAR_M_S
-from scripts.studies.study import Findings
+from scripts.studies.study import Findings, MarkdownTable, around, table
 from synth.retarder.permissions.permission import Permission
 from synth.simulation.replicates import Interval
 

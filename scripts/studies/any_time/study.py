@@ -27,17 +27,13 @@ from scripts.studies.any_time.findings import (
     StuckFigures,
     Told,
 )
-from scripts.studies.any_time.stuck_valves import where_stuck
-from scripts.studies.any_time.wrong_plants import ratios_to_rest, with_a_silent_gauge
-from scripts.studies.cases import OTHER_PLANTS, Case, named_cases
-from scripts.studies.entrance import from_the_entrance
+from scripts.studies.any_time.wrong_plants import ratios_to_rest, where_stuck, with_a_silent_gauge
+from scripts.studies.cases import OTHER_PLANTS, Case, from_the_entrance, lines_of_solution, named_cases, rounded
 from scripts.studies.near_target import near_ratio
-from scripts.studies.options import option
-from scripts.studies.study import Method, Tell
-from scripts.studies.tuned_table import lines_of_solution, rounded
+from scripts.studies.study import Method, Tell, option
 from synth.frame.workers.engine import Teller
-from synth.problem.aim import Aim
-from synth.problem.any_time_resolution import design_resolution
+from synth.problem.problem import Aim
+from synth.problem.resolution import design_resolution
 from synth.retarder.comparison.baselines import FAMILIES, tune
 from synth.retarder.configuration.config_file import load_config, parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
@@ -61,7 +57,7 @@ from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.any_time.surface_polish import polish_surfaces
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
-from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.switching_lines import PolynomialLines
 from tuning_tables import Decisions
 
 FRESH, TUNING, BASELINE_PASSES = 49979687, 67867967, 1000

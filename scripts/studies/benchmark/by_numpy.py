@@ -12,7 +12,7 @@ import numpy as np
 
 from plant_models.frozen_arrays import Floats, frozen_arrays
 from scripts.studies.benchmark.numpy_landings import Outcome, Stencil, outcomes, stencil_at
-from synth.problem.aim import Aim
+from synth.problem.problem import Aim
 from synth.solver.backward_induction import ROUNDINGS, TIE_M2_S2, hidden_prior, true_speed_weights
 from synth.solver.chain.chain import Chain
 

@@ -1,15 +1,96 @@
-"""What the benchmark has found."""
+"""What the benchmark has found, what a sweep cannot do without, counted on the chain itself, and what one core can
+do at most now.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 
-from scripts.studies.benchmark.work import SweepWork
-from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
-from scripts.studies.study import Findings
-from scripts.studies.timing.machine import Machine
-from scripts.studies.timing.turns import Times, speed_against, three_digits
+import numpy as np
+from numpy.typing import NDArray
+
+from scripts.studies.benchmark.by_numpy import Swept
+from scripts.studies.benchmark.kernels.roofline import loads, loads_a_turn, multiply_adds
+from scripts.studies.study import ABSENT, Findings, MarkdownTable, table
+from scripts.studies.timing import Call, Machine, Times, speed_against, three_digits
+from synth.kernels.vector.packs import SIXTEEN
+from synth.solver.chain.chain import Chain
+
+
+@dataclass(frozen=True)
+class SweepWork:
+    """Work for one target.
+
+    `states`: scenario, path node, resting mode, noise level, energy (stalls left out). `transitions`: a state, a
+    command, an outcome: a landing of a change (a noise level and a side of the law of the friction met), or a noise
+    level of a quantum rolled at a held stage on the way to the next sample. `products`: multiply-adds of values that
+    interpolating and mixing take; where landings lie, gains and lines are not counted. `value_floats`: the values of
+    one scenario that a node reads from, at a sample and before the noise level changes.
+    """
+
+    states: int
+    transitions: int
+    products: int
+    value_floats: int
+
+
+def sweep_work(chain: Chain, swept: Swept) -> SweepWork:
+    """Count; `swept` knows how many landings were no stalls."""
+    levels, reach = len(chain.path_noise.levels), len(chain.entry)
+    rows = len(chain.actuator.mode_stage) * levels
+    points, nodes = len(chain.grid.speed_m_s), len(chain.drive_m_s2)
+    states = nodes * len(chain.scenarios.factor) * rows * (points - 1)
+    rolled = states * (reach - 1)
+    ring = chain.transient_noise.probability.shape[1] + 3
+    return SweepWork(
+        states=states,
+        transitions=swept.landings + rolled * levels,
+        products=4 * swept.groups + rolled * (levels + 4) + states * levels,
+        value_floats=2 * ring * rows * points,
+    )
+
+
+SUMS_A_TURN = 12
+WORK = 2_500_000
+"""Operations of one loop: about a millisecond."""
+
+NEAREST_FLOATS = 4096
+"""16 KB: less than the first-level cache of any processor that this runs on."""
+
+CACHE_LINE_BYTES = 64
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A call, and how many operations on vectors of sixteen it makes."""
+
+    call: Call
+    operations: int
+
+
+def multiply_add_loop() -> Loop:
+    """Sums of products in registers."""
+    turns = WORK // SUMS_A_TURN
+    return Loop(partial(multiply_adds, turns, filled(SIXTEEN, 0.5), filled(SIXTEEN, 0.0)), SUMS_A_TURN * turns)
+
+
+def load_loop(floats: int = NEAREST_FLOATS) -> Loop:
+    """Loads from so many floats over and over."""
+    a_turn = int(loads_a_turn(floats))
+    turns = max(1, WORK // a_turn)
+    return Loop(partial(loads, turns, filled(floats, 1.0), filled(SIXTEEN, 0.0)), a_turn * turns)
+
+
+def filled(floats: int, number: float) -> NDArray[np.float32]:
+    """The same number so many times, from the beginning of a cache line on: a load across two lines takes longer."""
+    raw = np.empty(4 * floats + CACHE_LINE_BYTES, dtype=np.uint8)
+    start = -raw.ctypes.data % CACHE_LINE_BYTES
+    array = raw[start : start + 4 * floats].view(np.float32)
+    array[:] = number
+    return array
+
 
 LANES = 16
 ROUNDING = 1e-9

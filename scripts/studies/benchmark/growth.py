@@ -16,13 +16,10 @@ import numpy as np
 
 from plant_models import Plant
 from scripts.studies.benchmark.study import spread_aims
-from scripts.studies.entrance import from_the_entrance
-from scripts.studies.markdown_table import MarkdownTable, table
-from scripts.studies.options import option
-from scripts.studies.study import Findings, Method, Tell
-from scripts.studies.timing.machine import Machine, this_machine
-from scripts.studies.timing.turns import Call, Times, in_turns, three_digits
-from synth.problem.aim import Aim
+from scripts.studies.cases import from_the_entrance
+from scripts.studies.study import Findings, MarkdownTable, Method, Tell, option, table
+from scripts.studies.timing import Call, Machine, Times, in_turns, this_machine, three_digits
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve_all
 from synth.solver.chain.chain import persistent_chain

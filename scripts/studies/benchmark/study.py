@@ -14,16 +14,20 @@ import numpy as np
 
 from plant_models.frozen_arrays import Floats
 from scripts.studies.benchmark.by_numpy import Swept, sweep_by_numpy
-from scripts.studies.benchmark.findings import LANES, Benchmark, Limit, Way
-from scripts.studies.benchmark.machine_rates import load_loop, multiply_add_loop
-from scripts.studies.benchmark.work import SweepWork, sweep_work
-from scripts.studies.cases import of_masses
-from scripts.studies.entrance import from_the_entrance
-from scripts.studies.options import option
-from scripts.studies.study import Method, Tell
-from scripts.studies.timing.machine import this_machine
-from scripts.studies.timing.turns import Call, in_turns
-from synth.problem.aim import Aim
+from scripts.studies.benchmark.findings import (
+    LANES,
+    Benchmark,
+    Limit,
+    SweepWork,
+    Way,
+    load_loop,
+    multiply_add_loop,
+    sweep_work,
+)
+from scripts.studies.cases import from_the_entrance, of_masses
+from scripts.studies.study import Method, Tell, option
+from scripts.studies.timing import Call, in_turns, this_machine
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.solver.backward_induction import Solution, solve_all

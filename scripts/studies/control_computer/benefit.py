@@ -1,24 +1,118 @@
-"""What a more exact control brings the yard: the same trains today, with what is asked for, with the new control."""
+"""What a more exact control brings the yard, in hours, damages and money: the same trains today, with what is
+asked for, with the new control.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from scripts.studies.control_computer.assumed_yard import YARD
+import numpy as np
+
+from plant_models.errors import PlantError, require
+from plant_models.frozen_arrays import Floats
 from scripts.studies.control_computer.hump_runs import Humped, first_trains
-from scripts.studies.control_computer.regulator_benefit import Benefit, regulator_benefit
 from scripts.studies.humping.base_trial import FEEDBACK, OPEN, Day, with_planner
-from scripts.studies.humping.books import HIGHEST_M_S, Book
 from scripts.studies.humping.closed_loops import TABLES_STD_M_S
 from scripts.studies.humping.runs import Group
-from scripts.studies.humping.table_positions import table_positions
-from scripts.studies.markdown_table import MarkdownTable, table
-from scripts.studies.study import Tell
-from synth.computer.economics.hump_day_change import change_of_trains, figures_of_trains
+from scripts.studies.humping.table_positions import HIGHEST_M_S, Book, table_positions
+from scripts.studies.study import MarkdownTable, Tell, table
+from synth.computer.economics.economic_case import operating_savings, released_capital, total
+from synth.computer.economics.hump_day_change import TrainSums, change_of_trains, figures_of_trains, same_trains
+from synth.computer.economics.hump_work import HumpWork, hump_work
+from synth.computer.economics.traffic import Handling, HumpRates, Prices, Traffic
 from synth.frame.interval import Interval
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.trial import HumpTrial
+from synth.hump.rolling.outcomes import TrainOutcomes
+from synth.hump.trial.trial import HumpTrial
+
+FEWEST_REPLICATES = 100
+
+
+@dataclass(frozen=True)
+class Yard:
+    """What turns the figures of a hump into work and money."""
+
+    traffic: Traffic
+    handling: Handling
+    prices: Prices
+
+
+@dataclass(frozen=True)
+class Benefit:
+    """By how much `name` is less with the new control, in `unit`."""
+
+    name: str
+    unit: str
+    less: Interval
+
+
+FIGURES: tuple[tuple[str, str, Callable[[HumpWork], float]], ...] = (
+    ("humping of a train", "min", lambda work: 60.0 * work.humping_h),
+    ("wait of a train for humping", "min", lambda work: 60.0 * work.wait_h),
+    ("use of the hump", "1", lambda work: work.load),
+    ("cars waiting and being humped", "car h a day", lambda work: work.car_h),
+    ("locomotive, humping", "h a day", lambda work: work.locomotive_h_humping),
+    ("locomotive, pushing up gaps", "h a day", lambda work: work.locomotive_h_pushing_up),
+    ("locomotive, sorting again", "h a day", lambda work: work.locomotive_h_sorting_again),
+    ("couplings to 1.5 m/s", "a day", lambda work: work.over_speeds_to_1_5),
+    ("couplings to 2 m/s", "a day", lambda work: work.over_speeds_to_2),
+    ("couplings above 2 m/s", "a day", lambda work: work.over_speeds_above_2),
+    ("catch-ups", "a day", lambda work: work.catch_ups),
+    ("cuts on a wrong track", "a day", lambda work: work.misrouted),
+    ("gaps", "m a day", lambda work: work.gap_m),
+)
+SAVINGS = ("running costs", "released capital")
+
+
+def regulator_benefit(
+    today: TrainOutcomes, new: TrainOutcomes, yard: Yard, replicates: int = 2000, seed: int = 18
+) -> tuple[Benefit, ...]:
+    """Today less new in every figure of `FIGURES`, then in running costs (currency a year) and capital (currency).
+
+    Both must have humped the same trains (`PlantError` otherwise). Intervals: 2.5 and 97.5 % quantiles of bootstrap
+    samples of the trains, each drawn for both variants at once, so that what the trains have in common cancels and
+    waits, which are no linear function of the figures, need no linearisation. They allow for the trains, not for the
+    prices. They held the truth in 92 to 96 % of 600 sets of 100 trains. A replicate whose hump is overloaded is a
+    fault of the whole (`PlantError`).
+    """
+    require(replicates >= FEWEST_REPLICATES, f"replicates is {replicates}; intervals take {FEWEST_REPLICATES} or more")
+    one, other = same_trains(today, new)
+    trains = one.hits.shape[1]
+    value = benefits(one.rates(), other.rates(), yard)
+    random = np.random.default_rng(seed)
+    drawn = np.empty((replicates, len(value)))
+    for row in range(replicates):
+        weight = np.bincount(random.integers(trains, size=trains), minlength=trains).astype(float)
+        drawn[row] = resampled(one, other, weight, yard)
+    low, high = np.quantile(drawn, (0.025, 0.975), axis=0)
+    names = [(name, unit) for name, unit, _ in FIGURES]
+    names += [(SAVINGS[0], f"{yard.prices.currency} a year"), (SAVINGS[1], yard.prices.currency)]
+    return tuple(
+        Benefit(name, unit, Interval(v, min(float(a), v), max(float(b), v), trains))
+        for (name, unit), v, a, b in zip(names, value.tolist(), low, high, strict=True)
+    )
+
+
+def resampled(one: TrainSums, other: TrainSums, weight: Floats, yard: Yard) -> Floats:
+    """The benefits where each train counts `weight` times."""
+    try:
+        return benefits(one.rates(weight), other.rates(weight), yard)
+    except PlantError as fault:
+        raise PlantError(f"in a bootstrap sample of the trains {fault}") from fault
+
+
+def benefits(today: HumpRates, new: HumpRates, yard: Yard) -> Floats:
+    """Today less new, in the order of `FIGURES`, then running costs and capital."""
+    before, after = (hump_work(rates, yard.traffic, yard.handling) for rates in (today, new))
+    less = [figure(before) - figure(after) for _, _, figure in FIGURES]
+    less.append(total(operating_savings(before, after, yard.traffic, yard.prices)))
+    less.append(total(released_capital(before, after, yard.traffic, yard.prices)))
+    return np.array(less)
+
+
+YARD = Yard(traffic=Traffic(), handling=Handling(), prices=Prices())
+"""Every number of it is assumed; none was chosen to give a result. 40 cuts of 1.8 cars a train, as in the trials."""
+
 
 LEAST_S = {"today": 2.6, "asked": 0.3, "new": 0.3, "tables": 0.3}
 """Least interval of the programs: where the study `hump-day` has about 0.1 % catch-ups, on other trains than here."""

@@ -1,16 +1,66 @@
-"""A hump trial of which positions have failed without the control knowing it: same trains, same plan, same commands."""
+"""A hump trial of which positions have failed without the control knowing it (same trains, same plan, same
+commands), as one whose brake stays as it is whatever is commanded.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+import numpy as np
+
 from plant_models.errors import require, require_between
-from scripts.studies.control_computer.stuck_position import StuckPosition, StuckStage, released
-from synth.hump.trains.hump_position import HumpPosition
-from synth.hump.trains.normal_hump_position import LibraryBrake, NormalHumpPosition
-from synth.hump.trains.trial import HumpTrial
+from plant_models.frozen_arrays import Floats
+from synth.hump.rolling.hump_position import (
+    Arrivals,
+    HumpPosition,
+    LibraryBrake,
+    NormalHumpPosition,
+    Passed,
+    evenly_braked_s,
+)
+from synth.hump.trial.trial import HumpTrial
+
+
+@dataclass(frozen=True)
+class StuckPosition:
+    """It takes `taken_head_m` from every cut, metres, evenly along the path, and obeys no command.
+
+    A cut that has less energy stops. As all cuts that stop in a position (`humping`), it then stands at the exit. Held
+    by the last position it counts as having reached its track, all of which it leaves free; those behind run into it.
+    """
+
+    taken_head_m: Callable[[Arrivals], Floats]
+
+    def passed(self, arrivals: Arrivals) -> Passed:
+        """See `HumpPosition`."""
+        taken = 2.0 * arrivals.reduced_gravity_m_s2 * self.taken_head_m(arrivals)
+        exit_m_s = np.sqrt(np.maximum(arrivals.unbraked_exit_m_s**2 - taken, 0.0))
+        return Passed(exit_m_s, evenly_braked_s(arrivals, exit_m_s), np.zeros(len(arrivals), dtype=np.int64))
+
+
+def released(arrivals: Arrivals) -> Floats:
+    """What a brake takes that is stuck released: nothing."""
+    return np.zeros(len(arrivals))
+
+
+@dataclass(frozen=True)
+class StuckStage:
+    """What `brake` takes that is stuck at `stage`, whatever stages the cuts may be given, at mean friction."""
+
+    brake: LibraryBrake
+    stage: int
+
+    def __post_init__(self) -> None:
+        top = self.brake.position.top_stage
+        require(1 <= self.stage <= top, f"stuck stage: {self.stage}; the position has the stages 1 to {top}")
+
+    def __call__(self, arrivals: Arrivals) -> Floats:
+        """Energy head, m."""
+        stages = np.full(len(arrivals), self.stage)
+        return np.asarray(self.brake.share * self.brake.full.head_m(arrivals.mass_t, arrivals.axles, stages))
+
 
 BY_HAND_STD_M_S = 0.5
 """Error of exit speeds that an operator keeps by hand: engineering judgement, no figure was found in the sources."""

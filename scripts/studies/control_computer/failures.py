@@ -16,20 +16,20 @@ from scripts.studies.control_computer.failed_hump import (
     WeakSupply,
     failed_trial,
 )
-from scripts.studies.control_computer.failure_costs_of_hump import (
+from scripts.studies.control_computer.hump_runs import (
     ExtraFigure,
+    Humped,
     failure_figures,
     other_track_with_frozen_points,
 )
-from scripts.studies.control_computer.hump_runs import Humped
 from scripts.studies.humping.runs import Group
-from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
+from scripts.studies.study import ABSENT, MarkdownTable, table
 from synth.hump.configuration.trial_file import parse_trial_file
-from synth.hump.trains.made_trial import brake_of, made_trial
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.resolved_trial import resolve_trial
+from synth.hump.rolling.outcomes import TrainOutcomes
 from synth.hump.trains.train_figures import ratio
-from synth.hump.trains.trial import HumpTrial
+from synth.hump.trial.made_trial import brake_of, made_trial
+from synth.hump.trial.resolved_trial import resolve_trial
+from synth.hump.trial.trial import HumpTrial
 
 Interval = tuple[float, float, float]
 

@@ -5,22 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from plant_models.library.hump_entry import hump_names, load_hump
-from scripts.studies.markdown_table import MarkdownTable, table
-from synth.computer.sizing.inputs_outputs import (
+from scripts.studies.study import MarkdownTable, table
+from synth.computer.sizing.counted_needs import (
     ChannelRules,
     Channels,
-    counted_channels,
-    source_channels,
-    total_channels,
-)
-from synth.computer.sizing.memory_need import (
     ControllerCounts,
     Memory,
     MemoryTable,
+    Quantity,
     Stored,
+    common_word_bits,
     controller_memory,
+    counted_channels,
+    digits,
+    hump_quantities,
+    source_channels,
+    total_channels,
 )
-from synth.computer.sizing.word_length import Quantity, common_word_bits, digits, hump_quantities
 
 SOURCE_WORD_BITS = 16
 """What [hump-computer-1970s] chooses."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import count
 
-from scripts.studies.markdown_table import MarkdownTable, table
-from synth.computer.sizing.cyclic_service import Cycle, cyclic_speed, used_share
-from synth.computer.sizing.demand_service import Discipline, mean_waits
-from synth.computer.sizing.needed_speed import AllowedWait, largest_tail, longest_mean_s, needed_speed
-from synth.computer.sizing.service_law import Constant, Erlang, Exponential, Hyperexponential, ServiceLaw
-from synth.computer.sizing.task import Task, TaskMix
+from scripts.studies.study import MarkdownTable, table
+from synth.computer.sized_computer import AllowedWait, largest_tail, longest_mean_s, needed_speed
+from synth.computer.sizing.service import Cycle, Discipline, cyclic_speed, mean_waits, used_share
+from synth.computer.sizing.task import Constant, Erlang, Exponential, Hyperexponential, ServiceLaw, Task, TaskMix
 from synth.computer.sizing.waiting_tail import start_tail
-from synth.frame.settings.changed import changed
+from synth.frame.settings.settings_file import changed
 
 LAWS: dict[str, ServiceLaw] = {
     "constant": Constant(1.0),

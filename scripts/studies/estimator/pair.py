@@ -8,13 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plant_models import Plant
-from scripts.studies.tuned_table import rounded
-from synth.problem.aim import OVERSPEED_M_S
-from synth.problem.problem import Problem
+from scripts.studies.cases import rounded
+from synth.problem.problem import OVERSPEED_M_S, Problem
 from synth.retarder.class_setup import TRIM_PASSES, trim_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.estimation.estimate_chain import estimate_chain
-from synth.retarder.estimation.estimated_lines import estimated_lines
+from synth.retarder.estimation.estimated_lines import estimate_chain, estimated_lines
 from synth.retarder.estimation.estimated_table import controller_of
 from synth.retarder.estimation.estimator_design import decisions
 from synth.retarder.estimation.tuning_days import tuning_days, tuning_row
@@ -25,7 +23,7 @@ from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.replicates import Interval, share_of
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
-from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.switching_lines import PolynomialLines
 from synth.solver.tuned_lines import tuned_lines
 from tuning_tables import Estimator
 

@@ -11,15 +11,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 
-from scripts.studies.cases import Case, class_cases
+from scripts.studies.cases import THOROUGH, Case, class_cases, side_by_side, simulate_told, thorough, told_friction
 from scripts.studies.estimator.pair import FRESH, Compared, nominal, without_price
-from scripts.studies.markdown_table import MarkdownTable, around, table
-from scripts.studies.options import option
-from scripts.studies.side_by_side import side_by_side
-from scripts.studies.study import Findings, Method, Tell
-from scripts.studies.told_friction import THOROUGH, simulate_told, thorough, told_friction
-from synth.problem.aim import Aim
-from synth.problem.problem import Problem
+from scripts.studies.study import Findings, MarkdownTable, Method, Tell, around, option, table
+from synth.problem.problem import Aim, Problem
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.exit_statistics import exit_statistics

@@ -1,27 +1,77 @@
-"""One case as a tune does it: its table, the rules tuned for it, and all of them on the same passes."""
+"""One case as a tune does it: its table, the rules tuned for it, and all of them on the same passes; finished ones
+are kept in a file, so that a run that was stopped goes on where it was.
+
+Finished cases in a file, so that a run that was stopped goes on where it was. What is kept holds for this very software
+alone. Every case is a line, on the disk as soon as it is known; a line that a process was killed in is passed over.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-from functools import partial
+import hashlib
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, replace
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
 
-from scripts.studies.every_cut.cut_figures import Beside, BesideWithout, CutFigures, Outcome, Untuned
-from scripts.studies.every_cut.random_case import RandomCase
-from scripts.studies.plant_changes import friction
-from scripts.studies.tuned_table import CREATED
-from synth.problem.aim import Aim
-from synth.retarder.attempted_case import attempted
+from pydantic import TypeAdapter
+
+from scripts.studies.cases import CREATED
+from scripts.studies.changed_plants import friction
+from scripts.studies.every_cut.cut_figures import Beside, BesideWithout, CutFigures, Outcome, RandomCase, Untuned
+from scripts.studies.result import plain
+from synth.frame.workers.engine import software_sha256
+from synth.problem.problem import Aim
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
 from synth.retarder.comparison.baselines import TunedBaseline, tune_baselines
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.failed_case import FailedCase
+from synth.retarder.failed_case import FailedCase, attempted
+from synth.retarder.sweep.sweep_directory import DONE, LedgerWriter, read_ledger
 from synth.retarder.tuned_table import ValidatedLines, read_back, solutions, tuned_table, validated_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import common_passes
-from synth.simulation.exit_statistics import exit_statistics, rms_ratio
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio, unavoidable_error
 from synth.simulation.random_passes import random_passes
-from synth.simulation.unavoidable_error import unavoidable_error
+
+FILE = "every-cut.jsonl"
+
+
+class KeptCases:
+    """The cases in the file `path`, which need not be there; any thread may ask."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._lock = threading.Lock()
+        self._known: dict[str, Any] = {each["key"]: each["outcome"] for each in read_ledger(path).of(DONE)}
+
+    def outcome_of(self, text: str, make: Callable[[], Outcome]) -> Outcome:
+        """The outcome of the configuration `text` if it is kept, else what `make` finds; that is kept."""
+        key = key_of(text)
+        if key in self._known:
+            found: Outcome = TypeAdapter(Outcome).validate_python(self._known[key])
+            return found
+        found = make()
+        with self._lock, LedgerWriter(self._path) as ledger:
+            ledger.write(DONE, {"key": key, "outcome": plain(asdict(found))})
+        return found
+
+
+def key_of(text: str) -> str:
+    """64 hex digits of a configuration and of everything that its outcome depends on besides."""
+    return hashlib.sha256(f"{software_sha256()}\0{studies_sha256()}\0{text}".encode()).hexdigest()
+
+
+@cache
+def studies_sha256() -> str:
+    """64 hex digits that change with any source of a study: the software itself does not know of them."""
+    folder = Path(__file__).resolve().parents[1]
+    digest = hashlib.sha256()
+    for path in sorted(folder.rglob("*.py")):
+        content = path.read_bytes()
+        digest.update(f"\0{path.relative_to(folder).as_posix()}\0{len(content)}\0".encode() + content)
+    return digest.hexdigest()
+
 
 WEAK = 0.8
 """Share of the friction on a day that brakes badly."""

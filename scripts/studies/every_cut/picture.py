@@ -23,7 +23,7 @@ from synth.frame.picture.house_style import (
 
 if TYPE_CHECKING:
     from scripts.studies.every_cut.cut_figures import CutFigures
-    from scripts.studies.every_cut.findings import EveryCut
+    from scripts.studies.every_cut.study import EveryCut
 
 KINDS = (("1 car", 1, 1, "o", BLUE), ("2 to 4 cars", 2, 4, "s", GREEN), ("6 to 10 cars", 5, 10, "^", VERMILLION))
 """Name, fewest and most cars, marker, colour."""

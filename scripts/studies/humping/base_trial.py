@@ -6,16 +6,16 @@ from dataclasses import dataclass, replace
 
 from plant_models.frozen_arrays import Floats
 from synth.hump.configuration.trial_file import parse_trial_file
-from synth.hump.trains.forecast import Given
-from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod
-from synth.hump.trains.known_cuts import KnownCuts
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.normal_hump_position import LibraryBrake, NormalHumpPosition
-from synth.hump.trains.resolved_trial import resolve_trial
-from synth.hump.trains.route_rolling import rolling_on
-from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.train_source import TrainSource
-from synth.hump.trains.trial import Control, HumpTrial, Sensing
+from synth.hump.planning.forecast import Given
+from synth.hump.planning.known_cuts import KnownCuts
+from synth.hump.planning.speed_rules import HumpSpeedLimits, SpeedMethod
+from synth.hump.rolling.hump_position import LibraryBrake, NormalHumpPosition
+from synth.hump.rolling.list_trains import TrainSource
+from synth.hump.rolling.route_rolling import rolling_on
+from synth.hump.rolling.train_cuts import TrainCuts
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.resolved_trial import resolve_trial
+from synth.hump.trial.trial import Control, HumpTrial, Sensing
 
 NAME = "hump-day"
 

@@ -1,19 +1,39 @@
-"""What is run where positions work in their closed loop: curves by the least interval, and pairs at one of them."""
+"""What is run where positions work in their closed loop, and which curves are compared: what control, exactness
+and regulators bring.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
 from scripts.studies.humping.base_trial import Day, with_free, with_interval_std, with_stds
-from scripts.studies.humping.books import HIGHEST_M_S, Book, Regulator
-from scripts.studies.humping.couplings import FREE
 from scripts.studies.humping.day_figures import Pair, PairFigures
-from scripts.studies.humping.disturbances import OILED, WEAKER
-from scripts.studies.humping.frontier import OPEN_LOOP, WITH_FEEDBACK, WITH_SLOWING, Families, Family, sigma
-from scripts.studies.humping.table_positions import FRICTION, SUPPLY, TablePositions, table_positions
+from scripts.studies.humping.frontier import (
+    CONTROLS,
+    OPEN_LOOP,
+    WITH_FEEDBACK,
+    WITH_MEASURED,
+    WITH_SLOWING,
+    Families,
+    Family,
+    Frontier,
+    Gain,
+    Line,
+    sigma,
+)
+from scripts.studies.humping.pairs import FREE, OILED, WEAKER
+from scripts.studies.humping.table_positions import (
+    FRICTION,
+    HIGHEST_M_S,
+    SUPPLY,
+    Book,
+    Regulator,
+    TablePositions,
+    table_positions,
+)
 from scripts.studies.study import Tell
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.trial import HumpTrial
+from synth.hump.rolling.outcomes import TrainOutcomes
+from synth.hump.trial.trial import HumpTrial
 
 ENERGY_RULE, TABLES, TABLES_ESTIMATED = "energy rule", "our tables", "our tables, estimator"
 
@@ -99,3 +119,34 @@ def closed_loops(day: Day, stds_m_s: tuple[float, ...], tell: Tell) -> ClosedLoo
         made[name] = table_positions(base, regulator)
         tell(f"books tuned: {name}")
     return ClosedLoops(base, made, stds_m_s)
+
+
+Compared = tuple[Line, Line]
+"""A curve and the one that it is compared with."""
+
+
+def normal_gains(frontier: Frontier, stds_m_s: tuple[float, ...]) -> tuple[Gain, ...]:
+    """What feedback, measured resistance and exactness bring, at every limit."""
+    best, worst = min(stds_m_s), max(stds_m_s)
+    named = [sigma(std) for std in stds_m_s]
+    pairs = [((name, WITH_FEEDBACK), (name, OPEN_LOOP)) for name in named]
+    pairs += [((name, WITH_MEASURED), (name, WITH_FEEDBACK)) for name in named]
+    pairs += [((name, WITH_SLOWING), (name, WITH_FEEDBACK)) for name in named]
+    pairs += [((sigma(best), control), (sigma(worst), control)) for control in CONTROLS if best < worst]
+    return gains(frontier, pairs)
+
+
+def table_gains(frontier: Frontier, loops: ClosedLoops) -> tuple[Gain, ...]:
+    """What our tables bring beside normal positions and other regulators, and what feedback brings with them; what
+    their commands cost exact positions."""
+    others = [*map(sigma, sorted(loops.stds_m_s, reverse=True)), *(name for name in REGULATORS if name != TABLES)]
+    pairs = [((TABLES, control), (other, control)) for control in REGULATED for other in others]
+    pairs += [((TABLES, WITH_FEEDBACK), (loops.commanded, WITH_FEEDBACK))]
+    pairs += [((loops.commanded, WITH_FEEDBACK), (loops.best, WITH_FEEDBACK))]
+    pairs += [((TABLES, WITH_FEEDBACK), (TABLES, OPEN_LOOP)), ((TABLES, WITH_SLOWING), (TABLES, WITH_FEEDBACK))]
+    return gains(frontier, pairs)
+
+
+def gains(frontier: Frontier, pairs: list[Compared]) -> tuple[Gain, ...]:
+    """Of all pairs at every limit."""
+    return tuple(frontier.gain(more, than, limit) for limit in frontier.limits for more, than in pairs)

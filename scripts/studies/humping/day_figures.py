@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from scripts.studies.aiming.trial import Value
 from scripts.studies.humping.base_trial import FEEDBACK, OPEN
 from scripts.studies.humping.runs import Group
-from scripts.studies.markdown_table import ABSENT, plus_minus, span
-from synth.hump.trains.outcomes import TrainOutcomes
+from scripts.studies.study import ABSENT, plus_minus, span
+from synth.hump.rolling.outcomes import TrainOutcomes
 from synth.hump.trains.train_figures import TrainFigure, of_cuts, train_figures
-from synth.hump.trains.trial import HumpTrial, Sensing
+from synth.hump.trial.trial import HumpTrial, Sensing
 
 PERCENT = 100.0
 

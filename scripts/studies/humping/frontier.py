@@ -12,9 +12,9 @@ from scripts.studies.aiming.trial import Value
 from scripts.studies.humping.base_trial import FEEDBACK, MEASURED, OPEN, SLOWING, with_interval_std, with_planner
 from scripts.studies.humping.day_figures import DayFigures, day_figures, fewer_catch_ups
 from scripts.studies.humping.runs import Group
-from synth.hump.capacity.crossings import Sums, decided, drawn_weights, enough_for, sums_of
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.trial import HumpTrial
+from synth.hump.capacity.curves import Sums, decided, drawn_weights, enough_for, sums_of
+from synth.hump.rolling.outcomes import TrainOutcomes
+from synth.hump.trial.trial import HumpTrial
 
 CONTROLS = {
     "open loop": OPEN,

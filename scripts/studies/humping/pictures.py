@@ -23,8 +23,8 @@ from synth.frame.picture.house_style import (
 )
 
 if TYPE_CHECKING:
-    from scripts.studies.humping.findings import HumpDay
     from scripts.studies.humping.frontier import Curve
+    from scripts.studies.humping.study import HumpDay
 
 LEAST_SHARE = 2e-4
 """Shares below are drawn here: the axis is logarithmic."""

@@ -9,12 +9,12 @@ from typing import Any, Generic, TypeVar
 from scripts.studies.study import Tell
 from synth.frame.workers.engine import Answer, answered
 from synth.frame.workers.local_workers import LocalWorkers
-from synth.hump.trains.known_cuts import KnownCuts
-from synth.hump.trains.outcomes import TrainOutcomes, joined, outcomes
-from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.train_memory import TrainMemory
-from synth.hump.trains.train_plan import Planner, TrainPlan
-from synth.hump.trains.trial import BATCH, HumpTrial
+from synth.hump.planning.known_cuts import KnownCuts
+from synth.hump.planning.train_plan import Planner, TrainPlan
+from synth.hump.rolling.outcomes import TrainOutcomes, joined, outcomes
+from synth.hump.rolling.train_cuts import TrainCuts
+from synth.hump.rolling.train_memory import TrainMemory
+from synth.hump.trial.trial import BATCH, HumpTrial
 
 T = TypeVar("T")
 

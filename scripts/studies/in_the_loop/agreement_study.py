@@ -1,4 +1,5 @@
-"""Whether the exported C controller decides, chooses and estimates as Python does, however it is compiled.
+"""Whether the exported C controller decides, chooses and estimates as Python does, however it is compiled: on
+books as a tune makes them, without and with estimators.
 
 Half of the readings lie within two float32 steps of a line, a quarter are any bit patterns (NaN, infinities, denormals,
 stages out of range), the rest is what cuts give. Samples for the estimator come in tracks of 100: one reading in twelve
@@ -10,17 +11,44 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from plant_models import Plant
+from scripts.studies.cases import of_masses
 from scripts.studies.in_the_loop.agreement import Differences, Questions, Tracks, ask, differences, follow
-from scripts.studies.in_the_loop.books import tuned_book, with_estimators
-from scripts.studies.in_the_loop.builds import BUILDS, Build
-from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
-from scripts.studies.options import option
-from scripts.studies.study import Findings, Method, Tell
+from scripts.studies.in_the_loop.controller_process import BUILDS, Build
+from scripts.studies.study import ABSENT, Findings, MarkdownTable, Method, Tell, option, table
+from synth.frame.workers.engine import Teller
+from synth.retarder.asked_tune import RadarEpochs
+from synth.retarder.configuration.config_file import load_config
+from synth.retarder.tune import tune
+from synth.retarder.tuned_table import read_back
 from tuning_tables import read_book
 from tuning_tables.table_book import TableBook
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """A book, the plant that each of its tables was made for, and the digest of its configuration."""
+
+    book: TableBook
+    plants: tuple[Plant, ...]
+    config_sha256: str
+
+
+def tuned_book(config: Path | None, estimator: bool, masses_t: tuple[float, ...], tell: Tell) -> Tuned:
+    """The book of a configuration (the built-in one for None), of all its cuts or of those of these masses."""
+    loaded = of_masses(load_config(config), masses_t)
+    regulated = replace(loaded, regulator=loaded.regulator.model_copy(update={"estimator": estimator}))
+    cases = tune(regulated, RadarEpochs(), read_back, Teller(tell)).whole
+    book = TableBook(tuple(case.table for case in cases))
+    return Tuned(book, tuple(case.plant for case in cases), regulated.sha256)
+
+
+def with_estimators(book: TableBook) -> int:
+    """How many tables have one."""
+    return sum(table.estimator is not None for table in book.tables)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from typing import Any, Final
 
 from scripts.studies.in_the_loop.controller_process import TIMEOUT_S, compile_with
 from tuning_tables import from_json, read_book
-from tuning_tables.c_source import c_files
+from tuning_tables.exports import c_files
 from tuning_tables.table_book import TableBook
 
 RELEASES: Final = range(25, 17, -1)

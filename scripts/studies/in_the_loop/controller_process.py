@@ -1,7 +1,10 @@
-"""The exported C controller compiled for this or another processor, and asked through a pipe."""
+"""The exported C controller compiled for this or another processor, in all ways that it is proved with, and asked
+through a pipe; with the words that it holds of a table.
+"""
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,12 +18,48 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import Bools
-from scripts.studies.in_the_loop.held_words import table_words
 from synth.cli.qualification.c_code import CONTRACT as CONTRACT
-from tuning_tables.c_source import c_files
-from tuning_tables.export_prefix import RETARDER
+from tuning_tables.active_table import ActiveTable
+from tuning_tables.controller_code.code import crc32_of, words_of
+from tuning_tables.controller_code.line_code import held_values, room_of
+from tuning_tables.export_names import RETARDER
+from tuning_tables.exports import c_files
+from tuning_tables.language.records import SizedRecord
+from tuning_tables.programs.held import LINE_TABLE
 from tuning_tables.self_test_size import FULL, SelfTestSize
 from tuning_tables.table_book import TableBook
+
+
+def held_record(book: TableBook) -> SizedRecord:
+    """The table of the book's export."""
+    return LINE_TABLE.sized(room_of(book.tables))
+
+
+def table_words(book: TableBook) -> int:
+    """How many words of 32 bits each table of the book has, checksum included."""
+    return held_record(book).words() + 1
+
+
+def held_words(book: TableBook, number: int, lines: ActiveTable | None = None) -> NDArray[np.uint32]:
+    """The words of table `number`, or of `lines` made from it, uint32 (words,): the last is the checksum."""
+    record = held_record(book)
+    return sealed(words_of(record, held_values(book, number, record, lines)))
+
+
+def sealed(words: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """The words without a checksum, and theirs behind them."""
+    return np.append(words, np.uint32(crc32_of(words)))
+
+
+def places(book: TableBook) -> Mapping[str, slice]:
+    """Where the members of a table of the book's export lie among its words."""
+    record, found, begin = held_record(book), {}, 0
+    for name in record.members:
+        end = begin + int(np.prod(record.shape(name), dtype=int))
+        found[name] = slice(begin, end)
+        begin = end
+    return found
+
 
 EXPORTED = ("retarder_table.c", "retarder_self_test.c")
 TIMEOUT_S = 300.0
@@ -141,3 +180,50 @@ def compile_with(command: Sequence[str]) -> str:
     if ran.returncode != 0:
         raise BuildError(f"{' '.join(command)}: exit {ran.returncode}\n{ran.stdout}{ran.stderr}")
     return ran.stdout + ran.stderr
+
+
+FREELY = ("-Wall", "-Wextra", "-Werror")
+"""Without -std=c99, with which GCC never fuses a multiplication and an addition."""
+
+
+@dataclass(frozen=True)
+class Build:
+    """One way of compiling, `link` for the program around; `emulator` runs it where the processor is another."""
+
+    compiler: str
+    flags: tuple[str, ...]
+    contract: tuple[str, ...] = CONTRACT
+    link: tuple[str, ...] = ()
+    emulator: tuple[str, ...] = ()
+    order: Literal["<", ">"] = "<"
+
+    def __str__(self) -> str:
+        shown = " ".join((self.compiler, *self.flags))
+        return shown if self.contract is CONTRACT else f"{shown} without -std=c99"
+
+    def missing(self) -> tuple[str, ...]:
+        """The programs that this machine lacks for it."""
+        return tuple(name for name in (self.compiler, *self.emulator) if shutil.which(name) is None)
+
+    def controller(self, book: TableBook, directory: Path) -> Controller:
+        """The controller of `book`, built in `directory`; raises as `build_controller`."""
+        return build_controller(
+            book, directory, self.compiler, self.flags, self.contract, self.link, self.emulator, self.order
+        )
+
+
+SANITIZED = ("-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer")
+STATIC = ("-static",)
+
+BUILDS: tuple[Build, ...] = (
+    *(Build(compiler, (f"-O{level}",)) for compiler in ("gcc", "clang") for level in range(4)),
+    *(Build(compiler, ("-O3", "-mfma", "-ffp-contract=fast"), FREELY) for compiler in ("gcc", "clang")),
+    Build("gcc", ("-O2", "-mfpmath=387"), FREELY),  # 80-bit registers
+    *(Build(compiler, SANITIZED) for compiler in ("gcc", "clang")),
+    *(
+        Build("arm-linux-gnueabihf-gcc", flags, CONTRACT, STATIC, ("qemu-arm",))
+        for flags in (("-O0",), ("-O2", "-mthumb"), ("-O3", "-marm", "-mfpu=vfpv4", "-ffp-contract=fast"))
+    ),
+    Build("powerpc-linux-gnu-gcc", ("-O2",), CONTRACT, STATIC, ("qemu-ppc",), ">"),  # highest byte first
+)
+"""On an x86-64 machine with the programs of scripts/setup_toolchain."""

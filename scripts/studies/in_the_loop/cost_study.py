@@ -1,4 +1,5 @@
-"""What the exported C controller costs: instructions of the dearest call, bytes of code and data.
+"""What the exported C controller costs: instructions of the dearest call (callgrind), bytes of code and data in
+object files.
 
 Instructions are counted by callgrind over all golden vectors of the book, each call of its own: a decision has no loop
 whose length depends on the reading, so the dearest vector is the worst case of the compiled code. An estimate has one,
@@ -8,6 +9,9 @@ valgrind runs there; sizes also for a Cortex-M4. What needs a program that is no
 
 from __future__ import annotations
 
+import re
+import shutil
+import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,17 +19,83 @@ from pathlib import Path
 
 import numpy as np
 
-from scripts.studies.in_the_loop.books import tuned_book
-from scripts.studies.in_the_loop.code_cost import CodeSize, dearest_call, missing, object_size
-from scripts.studies.in_the_loop.controller_process import COMMAND, READING, SAMPLE, build_controller, compile_with
-from scripts.studies.in_the_loop.hard_readings import golden_readings, hard_commands
-from scripts.studies.in_the_loop.hard_samples import golden_samples
-from scripts.studies.in_the_loop.held_words import table_words
-from scripts.studies.markdown_table import MarkdownTable, table
-from scripts.studies.options import option
-from scripts.studies.study import Findings, Method, Tell
-from synth.frame.input_error import InputError
+from scripts.studies.in_the_loop.agreement_study import tuned_book
+from scripts.studies.in_the_loop.controller_process import (
+    COMMAND,
+    CONTRACT,
+    READING,
+    SAMPLE,
+    build_controller,
+    compile_with,
+    table_words,
+    write_sources,
+)
+from scripts.studies.in_the_loop.hard_questions import golden_readings, golden_samples, hard_commands
+from scripts.studies.study import Findings, MarkdownTable, Method, Tell, option, table
+from synth.frame.faults import InputError
 from tuning_tables.table_book import TableBook
+
+SECTIONS = (("code", ".text"), ("constants", ".rodata"), ("constants", ".data.rel.ro"), ("variables", ".data"),
+            ("variables", ".bss"))  # fmt: skip
+
+
+@dataclass(frozen=True)
+class CodeSize:
+    """Bytes."""
+
+    code: int
+    constants: int
+    variables: int
+
+
+def missing(*programs: str) -> tuple[str, ...]:
+    """Those that this machine lacks."""
+    return tuple(program for program in programs if shutil.which(program) is None)
+
+
+def dearest_call(command: Sequence[str], function: str, content: bytes, folder: Path) -> int:
+    """The most instructions that a single call of `function` takes in the program `command` fed with `content`."""
+    output = folder / "calls"
+    for old in folder.glob("calls*"):
+        old.unlink()
+    callgrind = ["valgrind", "--tool=callgrind", f"--toggle-collect={function}", f"--dump-after={function}",
+                 f"--callgrind-out-file={output}"]  # fmt: skip
+    ran = subprocess.run([*callgrind, *command], input=content, capture_output=True, check=True)
+    counts = [count for file in folder.glob("calls.*") for count in totals_in(file.read_text())]
+    if not counts:
+        raise RuntimeError(f"callgrind saw no call of {function}: {ran.stderr.decode()}")
+    return max(counts)
+
+
+def totals_in(dump: str) -> list[int]:
+    """The instructions that a dump of callgrind tells."""
+    return [int(count) for count in re.findall(r"^totals: (\d+)", dump, re.M)]
+
+
+def object_size(book: TableBook, compiler: str, flags: Sequence[str], folder: Path) -> CodeSize:
+    """Sizes of retarder_table.c alone, as a controller needs it."""
+    write_sources(book, folder)
+    made = folder / "retarder_table.o"
+    compile_with([compiler, *CONTRACT, *flags, "-c", str(folder / "retarder_table.c"), "-o", str(made)])
+    return size_in(compile_with([size_program(compiler), "-A", str(made)]))
+
+
+def size_program(compiler: str) -> str:
+    """The one that belongs to a cross compiler."""
+    return compiler.replace("gcc", "size") if "-" in compiler else "size"
+
+
+def size_in(listing: str) -> CodeSize:
+    """The sums over the sections that `size -A` lists."""
+    found = {"code": 0, "constants": 0, "variables": 0}
+    for line in listing.splitlines():
+        name, _, rest = line.partition(" ")
+        for kind, section in SECTIONS:
+            if name == section or name.startswith(f"{section}."):
+                found[kind] += int(rest.split()[0])
+                break
+    return CodeSize(**found)
+
 
 LEVELS = ("-O0", "-O1", "-O2", "-O3", "-Os")
 WORK = {

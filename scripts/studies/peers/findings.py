@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from scripts.studies.markdown_table import ABSENT, MarkdownTable, around, span, table
-from scripts.studies.study import Findings
+from scripts.studies.study import ABSENT, Findings, MarkdownTable, around, span, table
 from synth.simulation.replicates import Interval
 
 AT_REST, AT_ANY_TIME = "at rest", "at any time"

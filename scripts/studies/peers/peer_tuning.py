@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from plant_models.frozen_arrays import Floats
-from scripts.studies.peers.peer_loop import PeerLoop
-from scripts.studies.peers.regulators import PeerRegulator, PredictiveController, PulseController
+from scripts.studies.peers.peer_loop import PeerLoop, PeerRegulator, PredictiveController, PulseController
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.passes import ExitSample
 from tuning_tables import Decisions, Estimator

@@ -1,4 +1,5 @@
-"""Tables beside what a competent manufacturer would build: a predictive controller, and a PI with pulse width.
+"""Tables, as tunes write them at rest and at any time, with and without estimator, beside what a competent
+manufacturer would build: a predictive controller, and a PI with pulse width.
 
 All have the same permission (commands at rest, or at any time), the same passes and, but for one, the same estimator.
 Each is made twice: for the criterion of the tables, where a command has a price, and with commands that cost nothing.
@@ -7,13 +8,12 @@ Each is made twice: for the criterion of the tables, where a command has a price
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from scripts.studies.cases import Case, named_cases
-from scripts.studies.options import option
+from scripts.studies.cases import CREATED, Case, named_cases, rounded, side_by_side
 from scripts.studies.peers.findings import (
     AT_ANY_TIME,
     AT_REST,
@@ -27,15 +27,15 @@ from scripts.studies.peers.findings import (
     Figures,
     Peers,
 )
-from scripts.studies.peers.peer_loop import PeerLoop, peer_loop
+from scripts.studies.peers.peer_loop import PeerLoop, PeerRegulator, peer_loop
 from scripts.studies.peers.peer_tuning import FAMILIES, Aimed, Search, TunedPeer, tuned_peer
-from scripts.studies.peers.regulators import PeerRegulator
-from scripts.studies.peers.tables import TablePair, tables_of
-from scripts.studies.side_by_side import side_by_side
-from scripts.studies.study import Method, Tell
+from scripts.studies.study import Method, Tell, option
+from synth.problem.problem import Aim
+from synth.retarder.class_setup import Origin, class_setup
 from synth.retarder.configuration.config_file import load_config, parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.estimation.estimator_design import estimator_of
+from synth.retarder.tuned_table import TunedTable, read_back, solutions, tuned_table
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.controllers import fixed
@@ -43,7 +43,52 @@ from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
-from tuning_tables import ControllerTable, Decisions
+from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
+from synth.solver.switching_lines import PolynomialLines
+from tuning_tables import ControllerTable, Decisions, Estimator, Generator
+
+
+@dataclass(frozen=True)
+class TablePair:
+    """Without estimator and with it."""
+
+    without: ControllerTable
+    with_estimator: ControllerTable
+
+
+def tables_of(
+    config: ResolvedConfig, case: Case, passes: RandomPasses, at_any_time: bool, price_m2_s2: float
+) -> Mapping[Decisions, TablePair]:
+    """The tables of `case` for each permission; at any time where asked.
+
+    `price_m2_s2`: of a command, in the criterion.
+    """
+    origin = Origin(Generator("retarder-synth study", "0", config.sha256), CREATED)
+    criterion = replace(config.criterion, switching_tolerance_m2_s2=price_m2_s2)
+
+    def tuned(estimator: bool) -> Mapping[Decisions, ControllerTable]:
+        changes = {"estimator": estimator, "commands": "any_time" if at_any_time else "at_rest"}
+        asked = replace(config, regulator=config.regulator.model_copy(update=changes))
+        setup = class_setup(asked, case.label, case.plant, passes, origin)
+        (solution,) = solutions(setup.design, [Aim(case.target_m_s, criterion)])
+        return tables_from(config, case, tuned_table(setup, solution))
+
+    without, with_estimator = tuned(False), tuned(True)
+    return {decisions: TablePair(without[decisions], with_estimator[decisions]) for decisions in without}
+
+
+def tables_from(config: ResolvedConfig, case: Case, tuned: TunedTable) -> dict[Decisions, ControllerTable]:
+    """Every table that one tune has made on its way."""
+    estimator = tuned.table.estimator
+
+    def stored(lines: PolynomialLines | PolynomialSurfaces, of: Estimator | None) -> ControllerTable:
+        return read_back(rounded(config, case.plant, lines, case.target_m_s, of))
+
+    made = {Decisions.AT_REST: stored(tuned.at_rest.lines, estimator)}
+    if tuned.at_any_time is not None:
+        made[Decisions.AT_ANY_TIME] = stored(tuned.at_any_time.lines, estimator)
+    return made
+
 
 FRESH, TUNING = 15485863, 15487469
 """Added to the configured seed: passes that neither tables nor anything else have seen, and those of the peers."""

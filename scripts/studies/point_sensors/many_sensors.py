@@ -12,10 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plant_models import DopplerSensor, Plant, PointSensors, every_axle
+from scripts.studies.cases import rounded
 from scripts.studies.point_sensors.rows import ManyRow
-from scripts.studies.point_sensors.sensor_table import sensor_table
-from scripts.studies.point_sensors.sites import Site, single_stage, site_of
-from scripts.studies.tuned_table import rounded
+from scripts.studies.point_sensors.sites import Site, sensor_table, single_stage, site_of
 from synth.problem.resolution import Resolution
 from synth.retarder.sensors.layout import with_layout
 from synth.simulation.closed_loop import TableController

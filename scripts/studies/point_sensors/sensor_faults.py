@@ -15,11 +15,10 @@ import numpy as np
 
 from plant_models import PointSensors
 from plant_models.frozen_arrays import Bools, Floats
-from plant_models.rolling.keyed_numbers import keyed_uniform
-from plant_models.rolling.random_numbers import Purpose
+from plant_models.rolling.random_numbers import Purpose, keyed_uniform
 from synth.kernels.loop.passage_loop import WATCHED_FROM_S
 from synth.kernels.loop.passes import Draws
-from synth.simulation.heard_pairs import BY_THE_CLOCK, HeardPairs
+from synth.simulation.passage_controller import BY_THE_CLOCK, HeardPairs
 from synth.simulation.passage_loop import Faults
 
 KEY_COLUMNS = (222, 223)

@@ -11,17 +11,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from plant_models import PointSensors
-from scripts.studies.options import option
+from scripts.studies.cases import side_by_side
 from scripts.studies.point_sensors.fault_losses import fault_rows
 from scripts.studies.point_sensors.findings import PointSensorWorth
 from scripts.studies.point_sensors.many_sensors import many_rows
-from scripts.studies.point_sensors.missed_shares import missed_row
 from scripts.studies.point_sensors.rows import FaultRow, GridRow, RadarRow, SensorRow
-from scripts.studies.point_sensors.sensor_table import AXLES, sensor_table, tabulated
-from scripts.studies.point_sensors.sites import TEXTS, Site, sites
-from scripts.studies.point_sensors.worth import Compared, MadeLayout, radar_row, sensor_rows
-from scripts.studies.side_by_side import side_by_side
-from scripts.studies.study import Method, Tell
+from scripts.studies.point_sensors.sites import AXLES, TEXTS, Site, sensor_table, sites, tabulated
+from scripts.studies.point_sensors.worth import Compared, MadeLayout, missed_row, radar_row, sensor_rows
+from scripts.studies.study import Method, Tell, option
 from synth.problem.resolution import Resolution
 from synth.retarder.sensors.layout import equal_layout, first_sensor_m, with_layout
 from synth.simulation.exit_statistics import exit_statistics

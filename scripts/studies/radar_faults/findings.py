@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from statistics import median
 
 from scripts.studies.book import Measure
-from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
-from scripts.studies.study import Findings
+from scripts.studies.study import ABSENT, Findings, MarkdownTable, table
 
 MATTERS, RMS_MATTERS = 1e-3, 1.02
 """A share that is so much larger, an rms that is so many times as large, is worse."""

@@ -1,4 +1,5 @@
-"""What a controller does in faults of the radar, and whether it notices a wrong weight category.
+"""What a controller does in faults of the radar, and whether it notices a wrong weight category, with the tables
+of a case as a tune makes them, for the measured speed and for the estimated one.
 
 Every case with the table for the measured speed ("before") and that for the estimated one ("after"), on the same passes
 with the same faults. Then cuts that are told to be of each class: under the estimating table of that class alone, and
@@ -8,7 +9,7 @@ where the tables of other classes may take over.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,23 +17,57 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from plant_models.frozen_arrays import Floats
-from scripts.studies.cases import Case, of_masses
-from scripts.studies.options import option
-from scripts.studies.radar_faults.categories import CutClass, mistaken_rows, own_rows
+from scripts.studies.cases import CREATED, OTHER_PLANTS, Case, named_cases, of_masses, side_by_side
+from scripts.studies.changed_plants import FAULT_STREAM
+from scripts.studies.radar_faults.categories import CutClass, fault_row, mistaken_rows, own_rows
 from scripts.studies.radar_faults.faults import RADAR_FAULTS, RadarFault
-from scripts.studies.radar_faults.figures import fault_row
 from scripts.studies.radar_faults.findings import CaseRow, CategoryRow, RadarFaults
-from scripts.studies.radar_faults.tables import TunedCase, cases_of, table_of, tuned_case
 from scripts.studies.radar_faults.watched_passes import WatchedPasses, watched_passes
-from scripts.studies.sensor_fault import FAULT_STREAM
-from scripts.studies.side_by_side import side_by_side
-from scripts.studies.study import Method, Tell
-from synth.retarder.configuration.config_file import load_config
+from scripts.studies.study import Method, Tell, option
+from synth.problem.problem import Aim
+from synth.retarder.class_setup import class_setup, origin_of, validation_passes
+from synth.retarder.configuration.config_file import load_config, parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.tuned_table import solutions, tuned_table
 from synth.simulation.closed_loop import TableController, close_loop, simulate
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
+
+
+@dataclass(frozen=True)
+class TunedCase:
+    """A case, its table without estimator and the one with it."""
+
+    case: Case
+    before: TableController
+    after: TableController
+
+
+def tuned_case(config: ResolvedConfig, case: Case) -> TunedCase:
+    """Both tables of `case`, one of `config`."""
+    made = (table_of(config, case.label, case.plant, case.target_m_s, estimator) for estimator in (False, True))
+    return TunedCase(case, *made)
+
+
+def table_of(config: ResolvedConfig, label: str, plant: Plant, target_m_s: float, estimator: bool) -> TableController:
+    """The table of the class `label`, rounded as a controller has it."""
+    regulated = replace(config, regulator=config.regulator.model_copy(update={"estimator": estimator}))
+    origin = origin_of(config.sha256, CREATED)
+    setup = class_setup(regulated, label, plant, validation_passes(config).part(0, 1), origin)
+    (solution,) = solutions(setup.design, [Aim(target_m_s, config.criterion)])
+    return TableController(tuned_table(setup, solution).table)
+
+
+def cases_of(config: ResolvedConfig, words: Sequence[str], long_cut: bool) -> tuple[tuple[ResolvedConfig, Case], ...]:
+    """The cases of `config` that `words` name; with `long_cut` the three gondolas of another configuration too."""
+    found = [(config, case) for case in named_cases(config, words)]
+    if long_cut:
+        other = parse_config(dict(OTHER_PLANTS)["three cars"], "three cars")
+        ((label, plant),) = other.plants()
+        found.append((other, Case(label, plant, min(other.targets_of(label)))))
+    return tuple(found)
+
 
 FRESH = 15485863
 """Added to the configured seed: passes that no tuning has seen."""

@@ -31,8 +31,8 @@ from synth.simulation.closed_loop import (
 )
 from synth.simulation.passes import ExitSample
 from tuning_tables.estimator import STATE_SIZE
-from tuning_tables.programs.alarms import alarms, table_after
-from tuning_tables.programs.line_table import LineTable
+from tuning_tables.programs.decide import alarms, table_after
+from tuning_tables.programs.held import LineTable
 
 
 class FreezingSensor(NamedTuple):

@@ -12,8 +12,7 @@ from plant_models.library import load_car, load_weight_categories
 from plant_models.rolling.car_mix import CarMix, MixedCar
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
-from plant_models.rolling.roll_track import Bend, RollTrack
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Bend, RollTrack, Weather
 from synth.simulation.free_roll import RollingCuts, rolling_cuts
 
 SHARES_AND_DRAG: dict[str, tuple[float, float]] = {

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
-from scripts.studies.study import Findings
-from scripts.studies.timing.machine import Machine
-from scripts.studies.timing.turns import Times, speed_against, three_digits
+from scripts.studies.study import ABSENT, Findings, MarkdownTable, table
+from scripts.studies.timing import Machine, Times, speed_against, three_digits
 
 LARGEST_SPEED_ERROR_M_S, LARGEST_STOP_ERROR_M = 1e-3, 0.1
 SLOW_M_S = 0.3

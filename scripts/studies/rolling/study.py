@@ -9,14 +9,11 @@ from functools import partial
 import numpy as np
 
 from plant_models.frozen_arrays import Floats
-from scripts.studies.options import option
-from scripts.studies.rolling.by_numpy import NumpyRoll
-from scripts.studies.rolling.by_scipy import LOOSE, TIGHT, Accuracy, Motion, acceleration, solved
+from scripts.studies.rolling.beside import LOOSE, TIGHT, Accuracy, Motion, NumpyRoll, acceleration, solved
 from scripts.studies.rolling.cases import CASES, COUPLING_M_S, PARK_EXIT_M, RollCase
 from scripts.studies.rolling.findings import SLOW_M_S, RollingFindings, StepError, Way
-from scripts.studies.study import Method, Tell
-from scripts.studies.timing.machine import this_machine
-from scripts.studies.timing.turns import Call, in_turns
+from scripts.studies.study import Method, Tell, option
+from scripts.studies.timing import Call, in_turns, this_machine
 from synth.simulation.free_roll import STEP_M, RollingCuts, arrays_of, way_of
 
 REFERENCE_STEP_M, REFERENCE_NODE_M = 0.1, 0.02

@@ -15,22 +15,23 @@ import numpy as np
 
 from plant_models import Approach, Plant, PointSensors
 from plant_models.point_sensors import deciding_passages
-from scripts.studies.markdown_table import ABSENT, MarkdownTable, table
-from scripts.studies.options import option
+from scripts.studies.cases import tuned_table
 from scripts.studies.structure.signals import SIGNALS
 from scripts.studies.structure.wired_passages import wired_passage_pass
 from scripts.studies.structure.wired_radar import wired_radar_pass
-from scripts.studies.study import Findings, Method, Tell
-from scripts.studies.tuned_table import tuned_table
+from scripts.studies.study import ABSENT, Findings, MarkdownTable, Method, Tell, option, table
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.sensors.passage_table import plausible_motion
 from synth.simulation.controllers import TableController
-from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant, one_pass
 from synth.simulation.nominal_response import (
     SAME_PASSAGE_S,
     NominalResponse,
     commands_of,
+    nominal_entry_m_s,
+    nominal_pass,
+    nominal_plant,
     nominal_response,
+    one_pass,
     response_difference,
 )
 from synth.simulation.passage_controller import PassageController, of_speeds
@@ -38,8 +39,7 @@ from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.passage_response import passage_response
 from synth.simulation.passes import PassTrace
 from synth.simulation.structure.diagram import Diagram, Sketch
-from synth.simulation.structure.passage_diagram import passage_diagram
-from synth.simulation.structure.radar_diagram import radar_diagram
+from synth.simulation.structure.regulators import passage_diagram, radar_diagram
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -275,8 +275,8 @@ METHOD = Method(Options, Options(entries=(0.5,)), Structure, run)
 
 def figures(found: Structure) -> Mapping[str, Figure]:
     """A diagram for each measuring system."""
-    from synth.retarder.pictures.block_diagram import block_diagram
-    from synth.retarder.pictures.block_layout import POINT_SENSOR_ROUTES, RADAR_ROUTES
+    from synth.retarder.loops.block_diagram import block_diagram
+    from synth.retarder.loops.block_layout import POINT_SENSOR_ROUTES, RADAR_ROUTES
 
     return {
         "radar": block_diagram(found.radar_sketch, RADAR_ROUTES),

@@ -8,8 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from plant_models.stage_regulator import stage_locked_actuator
-from scripts.studies.structure.wired_pressure import Signals, WiredPressure
-from scripts.studies.structure.wired_radar import INTEGRATORS, Runner, begin, point, response_of, send
+from scripts.studies.structure.wired_radar import (
+    INTEGRATORS,
+    Runner,
+    Signals,
+    WiredPressure,
+    begin,
+    point,
+    response_of,
+    send,
+)
 from synth.kernels.loop.motion import MOVING, STALLED
 from synth.kernels.loop.passage_loop import ON_COIL, WATCHED_FROM_S
 from synth.kernels.loop.passage_regulator import DECIDED, outcome_of

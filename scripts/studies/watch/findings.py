@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from scripts.studies.markdown_table import Interval, MarkdownTable, span, table
-from scripts.studies.study import Findings
+from scripts.studies.study import Findings, Interval, MarkdownTable, span, table
 
 WANTED_SHARE = 0.95
 

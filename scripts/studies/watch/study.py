@@ -11,19 +11,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import beta, chi2
 
-from scripts.studies.options import option
-from scripts.studies.side_by_side import side_by_side
-from scripts.studies.study import Method, Tell
-from scripts.studies.tuned_table import tuned_table
+from scripts.studies.cases import side_by_side, tuned_table
+from scripts.studies.study import Method, Tell, option
 from scripts.studies.watch.findings import FalseAlarms, Found, Watched
-from scripts.studies.watch.night import night
-from scripts.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, Change, Judge, joined, simulated
+from scripts.studies.watch.night import CHANGES, GAUGE, IN_ORDER, Change, Judge, joined, night, simulated
 from synth.hump.watching.settings import WatchedPositionSettings, YardWatchSettings
-from synth.logs.drift.baseline import configured
 from synth.logs.drift.causes import causes_of
 from synth.logs.drift.charts import RUN_LENGTH, charts_of, kinds_of, limit_of, steps_of
 from synth.logs.drift.diagnosis import diagnosed
-from synth.logs.drift.evidence import Evidence
+from synth.logs.drift.evidence import Evidence, configured
 from synth.logs.fitting_passes import fitting_passes
 from synth.retarder.configuration.config_file import load_config
 

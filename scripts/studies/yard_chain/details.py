@@ -1,4 +1,6 @@
-"""How many records, how long a stretch, which error of the speeds; faults; and whether the approach tells enough."""
+"""How many records, how long a stretch, which error of the speeds; what goes wrong in a yard (wrong records, cuts
+braked by hand, missed passages); and whether the approach tells enough.
+"""
 
 from __future__ import annotations
 
@@ -6,18 +8,82 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import ndtri
 
-from scripts.studies.aiming.hump import POINTS
-from scripts.studies.aiming.places import FreeDistance
-from scripts.studies.aiming.readings import ResistanceByRadar
-from scripts.studies.aiming.recorded_cuts import NearestRecord
+from plant_models.frozen_arrays import Bools, Floats, frozen_arrays
+from plant_models.rolling.random_numbers import Purpose
+from scripts.studies.aiming.cuts import POINTS, FreeDistance
+from scripts.studies.aiming.refinements import NearestRecord, ResistanceByRadar
 from scripts.studies.aiming.trial import Cuts, Draws, Outcome, judged, outcomes, tried
 from scripts.studies.yard_chain.chain import Kind
-from scripts.studies.yard_chain.faults import HandBraked, WithMissing
-from synth.aim.knowledge import ByCategory, ByReading, Knowledge
-from synth.aim.position_models import NormalPosition, PositionModel
-from synth.aim.readings import ResistanceByTwoSpeeds
-from synth.aim.scene import AimScene
+from synth.aim.knowledge import ByCategory, ByReading, Commands, Knowledge, Requirement, ResistanceByTwoSpeeds
+from synth.aim.position_models import ExitSpeeds, NormalPosition, PositionModel
+from synth.aim.scene import AimScene, SceneCuts
+
+BY_HAND, HAND_SIZE = 1, 2
+"""Columns of the numbers for exit errors: which cuts are braked by hand, and how far that misses."""
+
+
+@frozen_arrays
+class HandBrakedExits:
+    """`exits`, but for the cuts `by_hand` (n,): they leave with the command and `error_m_s` (n,)."""
+
+    exits: ExitSpeeds
+    by_hand: Bools
+    error_m_s: Floats
+
+    def at(self, commanded_m_s: Floats) -> Floats:
+        """Never less than 0."""
+        return np.where(self.by_hand, np.maximum(commanded_m_s + self.error_m_s, 0.0), self.exits.at(commanded_m_s))
+
+    def threshold(self, critical_m_s: Floats) -> Floats:
+        """Critical speed less error where a hand brakes."""
+        by_hand = np.where(critical_m_s > 0.0, critical_m_s - self.error_m_s, -np.inf)
+        return np.where(self.by_hand, by_hand, self.exits.threshold(critical_m_s))
+
+
+@dataclass(frozen=True)
+class HandBraked:
+    """A position of which a person brakes the share `share` of the cuts, with a normal exit error of `std_m_s`."""
+
+    position: PositionModel
+    share: float
+    std_m_s: float
+
+    def exits(self, cuts: SceneCuts) -> HandBrakedExits:
+        """Those of the position, and of the person."""
+        numbers = cuts.numbers(Purpose.EXIT_ERROR, 3)
+        return HandBrakedExits(
+            self.position.exits(cuts), numbers[:, BY_HAND] < self.share, self.std_m_s * ndtri(numbers[:, HAND_SIZE])
+        )
+
+
+@dataclass(frozen=True)
+class CommandsWithMissing:
+    """`known` for cuts whose passage was told, `unknown` for the share `missing`."""
+
+    known: Commands
+    unknown: Commands
+    missing: float
+
+    def of(self, cuts: SceneCuts) -> Floats:
+        """For these cuts, (n, k)."""
+        missed = cuts.numbers(Purpose.RECORDS, 2)[:, 1:] < self.missing
+        return np.where(missed, self.unknown.of(cuts), self.known.of(cuts))
+
+
+@dataclass(frozen=True)
+class WithMissing:
+    """A kind of knowledge that falls back to the category where a passage was missed."""
+
+    knowledge: Knowledge
+    missing: float
+
+    def commands(self, cuts: SceneCuts, thresholds_m_s: Floats, requirement: Requirement) -> CommandsWithMissing:
+        """Both kinds of commands, each for the same share of over-speeds."""
+        known = self.knowledge.commands(cuts, thresholds_m_s, requirement)
+        return CommandsWithMissing(known, ByCategory().commands(cuts, thresholds_m_s, requirement), self.missing)
+
 
 EXIT_STD_M_S = 0.03
 """Of the exit speed where lengths and errors of sensors are compared: what our tables leave, nearly."""

@@ -9,8 +9,7 @@ import numpy as np
 from plant_models.library import load_car
 from plant_models.rolling.car_mix import mass_limits_t
 from scripts.studies.aiming.trial import Cuts
-from scripts.studies.side_by_side import side_by_side
-from scripts.studies.tuned_table import CREATED
+from scripts.studies.cases import CREATED, side_by_side
 from synth.aim.table_position import TablePosition, entry_speeds_m_s
 from synth.retarder.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
 from synth.retarder.comparison.baselines import FAMILIES, tune

@@ -21,7 +21,7 @@ from synth.frame.picture.house_style import (
 
 if TYPE_CHECKING:
     from scripts.studies.aiming.trial import Value
-    from scripts.studies.yard_chain.findings import YardChain
+    from scripts.studies.yard_chain.study import YardChain
 
 
 def practices(found: YardChain) -> Figure:

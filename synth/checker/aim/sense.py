@@ -7,9 +7,8 @@ from itertools import pairwise
 from statistics import NormalDist
 from typing import Final
 
-from synth.checker.aim.reading import Aim, NodeValues
-from synth.checker.category_number import OWN, YARD
-from synth.checker.document_shape import origin_faults
+from synth.checker.aim.table import Aim, NodeValues
+from synth.checker.document_shape import OWN, YARD, origin_faults
 from synth.checker.float32 import rounded
 
 MOST_NODES_OF_A_CUT: Final = 999

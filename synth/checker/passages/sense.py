@@ -9,8 +9,7 @@ from typing import Final
 
 from synth.checker.document_shape import origin_faults
 from synth.checker.float32 import is_float32
-from synth.checker.passages.reading import PassageTable
-from synth.checker.passages.rule import passages_heard, wanted
+from synth.checker.passages.table import PassageTable, passages_heard, wanted
 
 PATH_ERROR_M: Final = 1e-6
 PLAUSIBLE_SPEED_M_S: Final = 30.0

@@ -23,9 +23,8 @@ from synth.checker.coarse_simulation import (
     resting_kpa,
     start_speed_m_s,
 )
-from synth.checker.low_friction import friction_numbers
-from synth.checker.passages.reading import PassageTable
-from synth.checker.passages.rule import wanted
+from synth.checker.drawn_cuts import friction_numbers
+from synth.checker.passages.table import PassageTable, wanted
 from synth.checker.plant import Plant
 
 ROUNDING_S: Final = 1e-9

@@ -8,8 +8,7 @@ from dataclasses import replace
 from typing import Final
 
 from synth.cli.qualification.c_code import COMPILERS, SOUND, self_test
-from synth.cli.qualification.check import Check, checked, not_checked
-from synth.cli.qualification.program import program
+from synth.cli.qualification.check import Check, checked, not_checked, program
 from synth.cli.qualification.second_program import findings
 from synth.cli.qualification.tuned import Tuned
 from tuning_tables import Approach, ControllerTable, Decisions, Stage, from_json, to_json

@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-from synth.cli.qualification.check import Check, checked, not_checked
-from synth.cli.qualification.program import Ran, process
+from synth.cli.qualification.check import Check, Ran, checked, not_checked, process
 from synth.cli.qualification.second_program import CODE, with_other_number
 from synth.cli.qualification.tuned import Tuned
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from synth.cli.qualification.options import QualifyOptions
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.frame.settings.output import OutputSettings
+from synth.frame.settings.section import OutputSettings
 from synth.retarder.exit_figures import NOT_CERTIFIED
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def resolve(asked: Asked[Nothing, QualifyOptions]) -> Nothing:
 def head(asked: Nothing) -> Head:
     """What is said: the problem is the same for all."""
     from synth.cli.qualification.tuned import KINDS, problem
-    from tuning_tables.canonical import canonical_json
+    from tuning_tables.json_text import canonical_json
 
     told = canonical_json({kind: problem(kind) for kind in KINDS}).decode()
     return Head("Qualification of this installation", told, (), OutputSettings())
@@ -65,14 +65,14 @@ def compute(asked: Nothing, work: Work) -> Qualified:
 
 def limits(found: Qualified) -> Iterable[Limit]:
     """Whether a check failed."""
-    from synth.cli.qualification import shown
+    from synth.cli.qualification import qualified
 
-    return shown.limits(found)
+    return qualified.limits(found)
 
 
 def show(found: Qualified) -> Iterator[Chapter]:
     """What is shown of it."""
-    from synth.cli.qualification.shown import chapters
+    from synth.cli.qualification.qualified import chapters
 
     return chapters(found)
 

@@ -1,4 +1,5 @@
-"""The installed program and its libraries: are their files those that were installed?
+"""The installed program and its libraries: are their files those that were installed? And the machine and the
+software that a qualification holds for.
 
 pip notes the SHA-256 of every file of a package in `RECORD`. A checkout that is installed editable has no such notes;
 there git tells whether the files are those of a commit.
@@ -9,6 +10,8 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import os
+import platform
 import re
 import shutil
 from collections.abc import Iterator, Mapping
@@ -19,9 +22,10 @@ from typing import Final
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
-from synth.cli.qualification.check import Check, checked, not_checked
-from synth.cli.qualification.program import process
-from synth.frame.known_defects import Defect
+from synth.cli.qualification.check import Check, checked, not_checked, process
+from synth.frame.exhibits import Row
+from synth.frame.machine import available, processor_name
+from synth.frame.version import Defect
 
 PROGRAM: Final = "retarder-synth"
 PACKAGES: Final = ("plant_models", "synth", "tuning_tables")
@@ -172,3 +176,35 @@ def git(root: Path, *words: str) -> str | None:
         return None
     ran = process([path, "-C", str(root), *words], root)
     return ran.out if ran.code == 0 else None
+
+
+SETTINGS: Final = ("NUMBA_", "OPENBLAS_", "MKL_", "OMP_", "NPY_", "RETARDER_SYNTH_PLAIN", "PYTHONOPTIMIZE")
+"""Beginnings of the names of environment variables that change what is computed, or how."""
+
+OWN: Final = ("NUMBA_CACHE_DIR", "OPENBLAS_NUM_THREADS")
+"""Those that the program sets for itself."""
+
+
+def machine_rows() -> Iterator[Row]:
+    """What it is, a fact a row."""
+    facts = {
+        "name": platform.node(),
+        "processor": processor_name(),
+        "processors to work on": str(available()),
+        "system": platform.platform(),
+        "Python": f"{platform.python_implementation()} {platform.python_version()}",
+        "settings": " ".join(settings()) or "none that change a computation",
+    }
+    yield from ({"fact": fact, "value": value} for fact, value in facts.items())
+
+
+def settings() -> Iterator[str]:
+    """Environment variables of the user that change what is computed."""
+    named = (name for name in sorted(os.environ) if name.startswith(SETTINGS) and name not in OWN)
+    return (f"{name}={os.environ[name]}" for name in named)
+
+
+def version_rows(found: tuple[Installed, ...]) -> Iterator[Row]:
+    """Packages, a row each."""
+    for each in found:
+        yield {"name": each.name, "version": each.version, "files": each.files, "sha256": each.sha256}

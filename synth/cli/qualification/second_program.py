@@ -9,8 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from synth.cli.qualification.check import Check, checked, not_checked
-from synth.cli.qualification.program import Ran, program
+from synth.cli.qualification.check import Check, Ran, checked, not_checked, program
 from synth.cli.qualification.tuned import Tuned
 from synth.frame.printed_numbers import counted
 from tuning_tables import from_json, to_json

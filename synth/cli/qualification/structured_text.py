@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from synth.cli.qualification.c_code import first_complaint
-from synth.cli.qualification.check import Check, checked, not_checked
-from synth.cli.qualification.program import process, program
+from synth.cli.qualification.check import Check, checked, not_checked, process, program
 from synth.cli.qualification.tuned import Tuned
 
 TRANSLATOR: Final = "iec2c"

@@ -11,7 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
-from synth.cli.qualification.program import Ran, program
+from synth.cli.qualification.check import Ran, program
 from synth.kernels.plain import VARIABLE
 
 ESTIMATED, MEASURED = "estimated", "measured"

@@ -13,13 +13,12 @@ import numpy as np
 
 from plant_models.errors import require
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
-from synth.computer.economics.hump_rates import RATES, HumpChange, HumpRates
-from synth.computer.economics.uncertainty.ranges import Range, range_of
+from synth.computer.economics.ranges import Range, range_of
+from synth.computer.economics.traffic import RATES, HumpChange, HumpRates
 from synth.frame.interval import Interval
-from synth.frame.settings.changed import made
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.shift_sums import longer_shifts, shift_sums
-from synth.hump.trains.train_figures import FEWEST_TRAINS, share, train_figures
+from synth.frame.settings.settings_file import made
+from synth.hump.rolling.outcomes import TrainOutcomes
+from synth.hump.trains.train_figures import FEWEST_TRAINS, longer_shifts, share, shift_sums, train_figures
 
 SECONDS_PER_H = 3600.0
 

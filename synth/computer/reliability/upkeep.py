@@ -9,13 +9,19 @@ from pydantic import model_validator
 from plant_models.errors import require
 from plant_models.library.sourced_value import JUDGEMENT
 from synth.computer.origins import MONEY
-from synth.computer.reliability.duplex import Duplex
-from synth.computer.reliability.failure_losses import HOURS_PER_YEAR, HourPrices, YearlyLoss, yearly_loss
-from synth.computer.reliability.four_states import FourStates, State
+from synth.computer.reliability.four_states import (
+    HOURS_PER_YEAR,
+    FourStates,
+    HourPrices,
+    State,
+    YearlyLoss,
+    yearly_loss,
+)
+from synth.computer.reliability.maintenance import Duplex
 from synth.frame.settings.section import Section, choice, setting
 
 if TYPE_CHECKING:
-    from synth.computer.reliability.maintenance_interval import CheckedComputer
+    from synth.computer.reliability.maintenance import CheckedComputer
 
 
 class Upkeep(Section):
@@ -80,7 +86,7 @@ class Upkeep(Section):
     @property
     def checked(self) -> CheckedComputer | None:
         """One computer with checks at even times; None where an hour costs nothing, so no interval is best."""
-        from synth.computer.reliability.maintenance_interval import CheckedComputer
+        from synth.computer.reliability.maintenance import CheckedComputer
 
         if min(self.by_hand_per_h, self.unnoticed_per_h) <= 0.0:
             return None

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from plant_models.errors import require
 from plant_models.frozen_arrays import Floats, frozen_arrays
-from synth.computer.sizing.demand_service import Discipline
+from synth.computer.sizing.service import Discipline
 from synth.computer.sizing.task import Stream, require_not_overloaded
 from synth.frame.interval import Interval
 

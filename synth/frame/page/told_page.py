@@ -1,9 +1,12 @@
-"""The page of a run: verdict, what to do first and tiles, then the chapters, the origin of every number, the limits."""
+"""The page of a run: verdict, what to do first and tiles, then the chapters, the origin of every number, the
+limits. And what a command prints that only reads, as a page: the same sentences, verdict and tables.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from importlib.metadata import version
 from itertools import groupby
 from typing import Final
@@ -11,10 +14,10 @@ from typing import Final
 from synth.frame.exhibits import Chapter, Chart, Exhibit, File, Sentence, Table, Tile, Tiles, exhibits_of
 from synth.frame.page.document import Stamp, document, figure, file_table
 from synth.frame.page.markup import Markup, element, fold, joined
-from synth.frame.page.page_table import table_or_words
-from synth.frame.page.parameter_table import parameter_section
+from synth.frame.page.page_table import parameter_section, shown_table, table_or_words
 from synth.frame.picture.picture import Picture
 from synth.frame.printed_numbers import counted
+from synth.frame.terminal.printed_page import Printed, PrintedTable, PrintedVerdict
 from synth.frame.told import Told
 
 VERDICTS = {True: ("Accepted", "accepted"), False: ("Not accepted", "refused"), None: ("Not decidable", "undecided")}
@@ -114,3 +117,43 @@ def tile(of: Tile) -> Markup:
     """A figure at a glance."""
     style = "tile" if of.kept is None else f"tile {VERDICTS[of.kept][1]}"
     return element("div", element("strong", of.figure), element("p", of.of), class_=style)
+
+
+INDENT: Final = "  "
+"""A sentence that begins so is a fact of the one before it."""
+
+
+def printed_document(stamp: Stamp, page: Sequence[Printed], steps: Sequence[str] = ()) -> str:
+    """One HTML document of `page`: its verdicts, and `steps` to take first, above all else."""
+    verdicts = (sentence_box(each) for each in page if isinstance(each, PrintedVerdict))
+    shown = joined(parts([each for each in page if not isinstance(each, PrintedVerdict)]))
+    return document(stamp, joined((*verdicts, to_do_box(steps))), (("found", "What was found", shown),))
+
+
+def sentence_box(verdict: PrintedVerdict) -> Markup:
+    """The verdict in a sentence."""
+    word, style = VERDICTS[verdict.kept]
+    head, sentence = element("p", element("strong", word)), element("p", verdict.sentence)
+    return element("section", head, sentence, class_=f"verdict {style}", id="verdict")
+
+
+def parts(page: Sequence[Printed]) -> Iterator[Markup]:
+    """Sentences, facts in a list below the sentence that they belong to, and tables."""
+    for is_fact, group in groupby(page, lambda each: isinstance(each, str) and each.startswith(INDENT)):
+        if is_fact:
+            yield element("ul", *(fact(str(each)) for each in group), class_="facts")
+        else:
+            yield from map(sentence_or_table, group)
+
+
+def fact(text: str) -> Markup:
+    """A fact; what it is about stands apart from it by two spaces or more."""
+    name, _, told = text.strip().partition(INDENT)
+    return element("li", element("strong", name), f" {told.strip()}") if told else element("li", name)
+
+
+def sentence_or_table(each: Printed) -> Markup:
+    """What is no fact of a sentence before it."""
+    if isinstance(each, PrintedTable):
+        return shown_table(replace(each.table, title=each.table.title or each.elsewhere), each.columns)
+    return element("p", str(each))

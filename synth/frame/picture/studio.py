@@ -92,7 +92,7 @@ def drawing_process() -> Connection:
 
 def draw_chart(chart: Chart) -> bytes:
     """The drawing of one chart."""
-    from synth.frame.picture.figure_file import draw  # matplotlib only where it is needed
+    from synth.frame.picture.house_style import draw  # matplotlib only where it is needed
 
     return draw(chart.draw())
 

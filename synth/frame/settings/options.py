@@ -1,4 +1,5 @@
-"""What is typed behind a command as a declared model: flag, unit, range, meaning and default stand once.
+"""What is typed behind a command as a declared model: flag, unit, range, meaning and default stand once; and words
+for values that are at fault, in files and on command lines.
 
 A word of the command line is checked as a key of a file is, and refused in the same kind of sentence.
 """
@@ -12,8 +13,27 @@ from typing import Any, Final, TypeVar
 from pydantic import ConfigDict, Field, JsonValue, ValidationError
 from pydantic.fields import FieldInfo
 
-from synth.frame.settings.fault_words import ALLOWED, shown
 from synth.frame.settings.section import Section, extra_of, setting_limits
+
+ALLOWED = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "string_type": "a string in quotes",
+    "bool_type": "true or false",
+    "finite_number": "a finite number",
+    "model_type": "a table",
+    "dict_type": "a table",
+    "tuple_type": "a list",
+    "string_pattern_mismatch": "made of at most 61 letters, digits, dots, hyphens and underscores",
+}
+"""What a value must be, by pydantic's error type."""
+
+
+def shown(value: Any) -> str:
+    """A value as the file writes it, cut off if long."""
+    text = str(value).lower() if isinstance(value, bool) else repr(value)
+    return text if len(text) <= 80 else text[:77] + "…"
+
 
 BY_PLACE: Final = ""
 """The flag of files that have none: where they are typed says which they are, in the order of the fields."""
@@ -95,7 +115,7 @@ def takes_several(field: FieldInfo) -> bool:
 
 def read_options(model: type[O], words: Mapping[str, Words]) -> O:
     """The options from the words that were typed, by the keys of the model. `InputError`."""
-    from synth.frame.input_error import InputError
+    from synth.frame.faults import InputError
 
     typed = {key: word for key, word in words.items() if word is not None and word != []}
     try:

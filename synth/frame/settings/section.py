@@ -1,4 +1,5 @@
-"""A table of a configuration file, and the declaration of a setting in it.
+"""A table of a configuration file, the declaration of a setting in it, and the section that says what is written
+besides figures.
 
 A setting is declared once: value, unit, range, meaning, source. The commented template, the check of a file, the list
 of parameters, the options of the command line and the JSON Schema follow from the declaration.
@@ -92,7 +93,7 @@ class Section(BaseModel):
         written = [key for key, value in given.items() if key in fields and isinstance(value, str | list | dict)]
         if not written:
             return given
-        from plant_models.library.written_units import in_unit, unit_in_name  # the package of the plant has numpy
+        from plant_models.library.hump_forms import in_unit, unit_in_name  # the package of the plant has numpy
 
         units = {key: setting_unit(fields[key]) or unit_in_name(key) for key in written}
         return {key: in_unit(value, units[key]) if key in units else value for key, value in given.items()}
@@ -145,3 +146,11 @@ def parts_of(annotation: Any) -> Iterator[Any]:
     yield annotation
     for part in get_args(annotation):
         yield from parts_of(part)
+
+
+class OutputSettings(Section):
+    """What is written besides figures; changes no result and no hash."""
+
+    plots: bool = choice(True, "draw the pictures")
+    report: bool = choice(True, "write report.html")
+    workbook: bool = choice(False, "write sheets.xlsx, all tables in one workbook")

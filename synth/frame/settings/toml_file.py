@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from synth.frame.input_error import InputError
-from synth.frame.machine_fault import MACHINE_FAULTS
+from synth.frame.faults import MACHINE_FAULTS, InputError
 from synth.frame.settings.toml_syntax import syntax_faults
 from tuning_tables import DamagedTable
-from tuning_tables.excerpt import excerpt
-from tuning_tables.regular_file import read_regular_file
+from tuning_tables.errors import excerpt
+from tuning_tables.whole_file import read_regular_file
 
 Tree = dict[str, Any]
 

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
-from tuning_tables.excerpt import excerpt
+from tuning_tables.errors import excerpt
 
 MOST_FAULTS: Final = 50
 LONGEST_MENDED: Final = 200_000

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.terminal.printed_page import Printed, PrintedVerdict, print_page
 from synth.frame.terminal.telling import say
 

@@ -39,7 +39,7 @@ def say_each(sentences: Sequence[str]) -> None:
 
 def say(sentence: str) -> None:
     """One line on stderr; long words, as paths can be, and long lines show their beginning and their end."""
-    from tuning_tables.excerpt import excerpt
+    from tuning_tables.errors import excerpt
 
     words = (excerpt(printable(word), LONGEST_WORD) for word in sentence.split())
     print(f"retarder-synth: {excerpt(' '.join(words), LONGEST_LINE)}", file=sys.stderr, flush=True)

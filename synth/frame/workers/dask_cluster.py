@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.workers.engine import Answer, Begun, Order, Work
 
 ANSWER_WITHIN_S = 15

@@ -1,15 +1,23 @@
-"""What a worker is asked and what it answers, of any kind: units of a sweep, batches of trains."""
+"""Long work in parts: what a worker is asked and answers, what a result depends on besides its configuration, and
+which results of earlier runs are there and whole.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import os
 import platform
 import time
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from synth.frame.unforeseen import unforeseen
+from synth.frame.faults import unforeseen
+from synth.kernels.cache import compiling_facts
+from tuning_tables import TableError
 
 
 class Order(Protocol):
@@ -114,3 +122,59 @@ def sentence_of(fault: Exception) -> str:
 def worker_name() -> str:
     """This process on this machine."""
     return f"{platform.node()}:{os.getpid()}"
+
+
+SHOWING = frozenset({"checker", "cli", "page", "picture", "pictures", "shown", "terminal"})
+"""Folders and files of what shows or checks results and makes none."""
+
+PATTERNS = ("plant_models/**/*.py", "plant_models/**/*.toml", "synth/**/*.py", "tuning_tables/**/*.py")
+
+
+@cache
+def software_sha256() -> str:
+    """64 hex digits that change with any source that can change a table, the versions that compute it, the processor.
+
+    The processor counts because compiled kernels are made for it: another one may round otherwise.
+    """
+    root = Path(__file__).resolve().parents[3]
+    digest = hashlib.sha256(f"{version('retarder-synth')}\0{version('scipy')}\0{compiling_facts()}".encode())
+    names = {path.relative_to(root).as_posix(): path for pattern in PATTERNS for path in root.glob(pattern)}
+    for name in sorted(names):
+        if SHOWING.isdisjoint(Path(name).with_suffix("").parts):
+            content = names[name].read_bytes()
+            digest.update(f"\0{name}\0{len(content)}\0".encode() + content)
+    return digest.hexdigest()
+
+
+def require_software(sha256: str) -> None:
+    """`ValueError` unless this process runs the very software that has asked."""
+    if software_sha256() != sha256:
+        raise ValueError(
+            f"the worker {worker_name()} has another version of retarder-synth or of its libraries, or another "
+            "processor, than the run that asked; its results might differ"
+        )
+
+
+def missing_of(
+    orders: Sequence[OrderOfKind],
+    file_of: Callable[[str], Path],
+    read: Callable[[OrderOfKind], object],
+    watcher: Watcher,
+) -> tuple[OrderOfKind, ...]:
+    """The orders without a whole result of their own.
+
+    `file_of`: the file of a result by the key of its order; `read`: reads the result of an order, and raises
+    `TableError` where that is damaged or another one's, which is told.
+    """
+
+    def is_whole(order: OrderOfKind) -> bool:
+        try:
+            read(order)
+        except FileNotFoundError:
+            return False
+        except TableError:
+            watcher.note(f"{file_of(order.key)} is damaged; what it held is computed again")
+            return False
+        return True
+
+    return tuple(order for order in orders if not is_whole(order))

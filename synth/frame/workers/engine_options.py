@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.settings.options import Options, number_option, word_option
 
 

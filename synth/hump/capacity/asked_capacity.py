@@ -9,12 +9,12 @@ from math import prod
 from typing import Final
 
 from synth.frame.command import Asked
-from synth.frame.input_error import InputError
-from synth.hump.capacity.curve import Axis, Curve
-from synth.hump.capacity.options import MOST_POINTS, CapacityOptions
+from synth.frame.faults import InputError
+from synth.hump.capacity.curves import Axis, Curve
 from synth.hump.capacity.variants import KeyValues, Variant, changed_text, key_values, variants
 from synth.hump.configuration.trial_file import TrialFile, parse_trial_file
-from synth.hump.trains.asked_trial import AskedTrial, asked_trial
+from synth.hump.options import MOST_POINTS, CapacityOptions
+from synth.hump.trial.asked_trial import AskedTrial, asked_trial
 
 MOST_CURVES: Final = 50
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any, Final
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
+from synth.frame.settings.template import toml_text, value_text
 from synth.frame.settings.toml_file import Tree, toml_tree
-from synth.frame.settings.toml_text import toml_text, value_text
 
 Changes = Mapping[str, Any]
 """New values by key: 'weather.head_wind_mean_m_s', 'position.2.exit_std_m_s' of the position with that number."""

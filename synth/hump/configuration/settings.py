@@ -9,15 +9,12 @@ from pydantic import Field, model_validator
 from plant_models.errors import PlantError, require
 from plant_models.library.hump_entry import hump_names
 from plant_models.library.sourced_value import JUDGEMENT
-from synth.aim.configuration.mix_settings import MixSettings
 from synth.aim.configuration.settings import ResistanceSettings, WeatherSettings
-from synth.frame.settings.output import OutputSettings
-from synth.frame.settings.section import Section, choice, many, optional, setting
-from synth.hump.configuration.counted_trains import CountedTrains
-from synth.hump.configuration.coupling_limits import CouplingLimits
-from synth.hump.configuration.design_settings import DesignSettings
-from synth.hump.configuration.position_settings import HumpPositionSettings
-from synth.retarder.configuration.top_keys import TopKeys
+from synth.aim.configuration.shared_settings import MixSettings
+from synth.frame.settings.section import OutputSettings, Section, choice, many, optional, setting
+from synth.hump.configuration.sections import CouplingLimits, DesignSettings, HumpPositionSettings
+from synth.hump.options import CountedTrains
+from synth.retarder.configuration.own_types import TopKeys
 
 DEFAULT_HUMP = "large"
 

@@ -1,6 +1,5 @@
-"""Reading a hump trial configuration: TOML → `TrialFile`, with the hump and the user's own types.
-
-A hump by itself, by path or name, stands for the default trial on it.
+"""A hump trial as a file: a commented one to start from, and reading it, TOML → `TrialFile`, with the hump and the
+user's own types. A hump by itself, by path or name, stands for the default trial on it.
 """
 
 from __future__ import annotations
@@ -9,15 +8,28 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from plant_models.library import Library
-from plant_models.library.hump_entry import HumpEntry, hump_names
-from synth.frame.input_error import InputError
+from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
+from synth.aim.configuration.shared_settings import usual_mix
+from synth.frame.faults import InputError
+from synth.frame.settings.numbers import Usual
 from synth.frame.settings.settings_file import BUILT_IN, settings_in
+from synth.frame.settings.template import template, toml_text
 from synth.frame.settings.toml_file import read_text, toml_tree
-from synth.frame.settings.toml_text import toml_text
-from synth.hump.configuration.settings import HumpTrialSettings
-from synth.hump.file_kind import FileKind, kind_of, require_kind
-from synth.hump.hump_file import OTHER_SUFFIXES, read_graph
+from synth.hump.configuration.settings import DEFAULT_HUMP, HumpTrialSettings
+from synth.hump.hump_file import OTHER_SUFFIXES, FileKind, kind_of, read_graph, require_kind
 from synth.retarder.configuration.own_types import with_own_types
+
+
+def default_trial_toml() -> str:
+    """The defaults as TOML; it reads back to the same hump trial."""
+    notes = load_hump(DEFAULT_HUMP).notes
+    return template(HumpTrialSettings(), "Hump trial", "hump simulate", usual_trial(), notes)
+
+
+def usual_trial() -> Usual:
+    """What the built-in mix has for keys that are left out."""
+    return usual_mix("cars")
+
 
 INPUTS = "inputs"
 """Folder of copies of all that a trial was read from, in the directory of its results."""

@@ -1,9 +1,9 @@
+from synth.hump.control.cut_record import machine_record as machine_record
+from synth.hump.control.cut_record import record_of_word as record_of_word
+from synth.hump.control.cut_routes import RouteTable as RouteTable
+from synth.hump.control.events import replayed as replayed
 from synth.hump.control.hump_control import HumpControl as HumpControl
 from synth.hump.control.hump_control import Operation as Operation
-from synth.hump.control.hump_state import replayed as replayed
-from synth.hump.control.practice_rules import PracticeRules as PracticeRules
-from synth.hump.control.record_word import machine_record as machine_record
-from synth.hump.control.record_word import record_of_word as record_of_word
-from synth.hump.control.route_table import RouteTable as RouteTable
+from synth.hump.control.models import PracticeRules as PracticeRules
 from synth.hump.control.sorting_list_file import load_sorting_list as load_sorting_list
 from synth.hump.control.train_population import TrainPopulation as TrainPopulation

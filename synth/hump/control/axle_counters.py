@@ -6,11 +6,9 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 
 from synth.hump.control.cut_record import CutRecord, Mark
-from synth.hump.control.event import Kind
-from synth.hump.control.models import ENTRY, AxlePass
-from synth.hump.control.practice_rules import PracticeRules
-from synth.hump.control.route_store import RouteStore
-from synth.hump.control.route_table import RouteTable
+from synth.hump.control.cut_routes import RouteStore, RouteTable
+from synth.hump.control.events import Kind
+from synth.hump.control.models import ENTRY, AxlePass, PracticeRules
 from synth.hump.control.section_counter import Finding, SectionCounter
 
 Tell = Callable[[float, int, Finding], None]

@@ -1,15 +1,45 @@
-"""What a retarder is to do with a cut: the modes of the published model, and an exported table."""
+"""What a retarder is to do with a cut: the modes of the published model, and an exported table. Strobing: a computed
+speed is compared with the greatest and the least that is possible ([hump-computer-1970s]).
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import ClassVar, Protocol
 
 from plant_models.cut import GRAVITY_M_S2
-from plant_models.errors import require_between
+from plant_models.errors import require, require_between
 from synth.hump.control.models import Braking, ExitSpeed, Resistance
-from synth.hump.control.strobe import Strobe
+
+
+@dataclass(frozen=True)
+class Strobe:
+    """The least and the greatest possible speed, m/s."""
+
+    least_m_s: float = 0.5
+    greatest_m_s: float = 8.5
+
+    def __post_init__(self) -> None:
+        require_between("strobe: least_m_s", self.least_m_s, 0.0, 20.0)
+        require_between("strobe: greatest_m_s", self.greatest_m_s, 0.0, 20.0)
+        require(
+            self.least_m_s < self.greatest_m_s,
+            f"strobe: least_m_s is {self.least_m_s:g}; it must be less than greatest_m_s, {self.greatest_m_s:g}",
+        )
+
+    def holds(self, speed_m_s: float) -> bool:
+        """Whether `speed_m_s` is possible; NaN and infinity are not."""
+        return math.isfinite(speed_m_s) and self.least_m_s <= speed_m_s <= self.greatest_m_s
+
+    def bounded(self, speed_m_s: float) -> float:
+        """The possible speed next to `speed_m_s`; the least where it is no number, since a slow cut does the least
+        harm."""
+        if math.isnan(speed_m_s):
+            return self.least_m_s
+        return min(max(speed_m_s, self.least_m_s), self.greatest_m_s)
+
 
 STRONGEST_N_PER_KN = 200.0
 HEAVIEST_DEGREE = 1.0

@@ -7,21 +7,13 @@ from dataclasses import dataclass, field
 
 from plant_models.errors import require
 from synth.hump.control.axle_counters import AxleCounters
-from synth.hump.control.brake_task import BrakeTask, LeastInterval
-from synth.hump.control.event import Aspect, Event, Kind, Why
-from synth.hump.control.hump_state import MOVING, HumpState
-from synth.hump.control.journal import Journal
-from synth.hump.control.misrouting import Misrouting
-from synth.hump.control.models import Technology, TrackGeometry
-from synth.hump.control.practice_rules import PracticeRules
-from synth.hump.control.retarder_control import RetarderControl
-from synth.hump.control.route_store import RouteStore
-from synth.hump.control.route_table import RouteTable
+from synth.hump.control.brake_task import BrakeTask, LeastInterval, Strobe
+from synth.hump.control.cut_record import SortingList
+from synth.hump.control.cut_routes import Misrouting, RouteStore, RouteTable
+from synth.hump.control.element_control import RetarderControl, SwitchControl
+from synth.hump.control.events import MOVING, Aspect, Event, HumpState, Journal, Kind, Why
+from synth.hump.control.models import PracticeRules, Technology, TrackGeometry, leader_track
 from synth.hump.control.section_counter import Finding
-from synth.hump.control.sorting_list import SortingList
-from synth.hump.control.strobe import Strobe
-from synth.hump.control.switch_control import SwitchControl
-from synth.hump.control.technology import leader_track
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from synth.hump.control.event import Kind
-from synth.hump.control.practice_rules import PracticeRules
+from synth.hump.control.events import Kind
+from synth.hump.control.models import PracticeRules
 
 
 class Finding(NamedTuple):

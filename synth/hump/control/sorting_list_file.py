@@ -19,18 +19,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from plant_models.errors import PlantError
+from plant_models.errors import PlantError, near_miss
 from plant_models.library import load_weight_categories
-from plant_models.library.near_miss import near_miss
 from plant_models.library.weight_category import WeightCategories
-from synth.frame.input_error import InputError
-from synth.frame.machine_fault import MACHINE_FAULTS
-from synth.frame.workbook import first_sheet_csv
-from synth.hump.control.cut_record import USUAL_CAR_M, USUAL_HUMP_SPEED_M_S, CutRecord, Mark, Rolling
-from synth.hump.control.sorting_list import SortingList
-from tuning_tables.errors import DamagedTable
-from tuning_tables.excerpt import excerpt
-from tuning_tables.regular_file import read_regular_file
+from synth.frame.faults import MACHINE_FAULTS, InputError
+from synth.frame.sheet import first_sheet_csv
+from synth.hump.control.cut_record import USUAL_CAR_M, USUAL_HUMP_SPEED_M_S, CutRecord, Mark, Rolling, SortingList
+from tuning_tables.errors import DamagedTable, excerpt
+from tuning_tables.whole_file import read_regular_file
 
 NEEDED = ("cut", "cars", "axles", "mass_t", "track")
 COLUMNS = (

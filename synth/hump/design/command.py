@@ -1,24 +1,47 @@
-"""The command `hump design`: the design test of a hump, by single cars that run badly and well."""
+"""The command `hump design`: the design test of a hump, by single cars that run badly and well; the numbers that it
+depends on, and all of that in one text.
+"""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Final
 
+from plant_models.library import SourcedValue
 from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
+from synth.frame.settings.numbers import numbers_of
+from synth.hump.configuration.sections import DesignSettings
 from synth.hump.configuration.trial_file import TrialFile, parse_trial_file, trial_text
-from synth.hump.design.design_limits import design_limits
-from synth.hump.design.design_parameters import design_json, design_parameters
-from synth.hump.design.found_design import FoundDesign, found_design
+from synth.hump.design.found_design import FoundDesign, design_limits, found_design
 from synth.hump.design.hump_under_test import hump_under_test
 from synth.hump.design.options import DesignOptions
 from synth.hump.design.shown import design, fall_and_brakes, triple
-from synth.hump.limits_of_use import MODEL_ONLY, NO_SAFETY
-from synth.hump.trains.asked_trial import AskedTrial
-from synth.hump.trains.resolved_trial import resolve_trial
+from synth.hump.trial.asked_trial import MODEL_ONLY, NO_SAFETY, AskedTrial
+from synth.hump.trial.resolved_trial import ResolvedTrial, resolve_trial
 from synth.kernels.cache import guarded
+from tuning_tables.json_text import canonical_json
+
+OF_TRIAL: Final = ("hump.", "position.", "exit_speeds.usable_share", "couplings.allowed_m_s", "hump_speed.early_s")
+"""Beginnings of the keys of a trial that count for its hump."""
+
+
+def design_parameters(config: ResolvedTrial) -> tuple[SourcedValue, ...]:
+    """Those of hump, positions and runners."""
+    of_hump = (each for each in config.parameters if each.key.startswith(OF_TRIAL))
+    return (*of_hump, *numbers_of(config.settings.design, "design", DesignSettings()))
+
+
+def design_json(config: ResolvedTrial) -> str:
+    """What the figures depend on, in one form."""
+    names = json.loads(config.trains_json)
+    numbers = {each.key: each.value for each in design_parameters(config) if not each.key.startswith("hump.")}
+    kept = {key: names[key] for key in ("hump_sha256", "lead", "categories", "positions", "roles")}
+    return canonical_json({"format": "hump-design", **kept, "numbers": numbers}).decode("utf-8")
+
 
 LIMITS_OF_USE = (
     MODEL_ONLY,

@@ -10,10 +10,10 @@ import numpy as np
 
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.frame.settings.section import setting_limits
-from synth.hump.configuration.design_settings import DesignSettings
+from synth.hump.configuration.sections import DesignSettings
 from synth.hump.design.hump_under_test import HumpUnderTest
 from synth.hump.design.triples import Triples, margins_s, pairs_of, triples
-from synth.hump.trains.hump_routes import HumpRoutes
+from synth.hump.rolling.hump_routes import HumpRoutes
 
 NEARLY_M_S: Final = 0.01
 """How exactly the highest hump speed is found."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from synth.frame.settings.options import BY_PLACE, Options, configured, word_option
-from synth.hump.configuration.design_settings import DesignSettings
+from synth.hump.configuration.sections import DesignSettings
 
 
 class DesignOptions(Options):

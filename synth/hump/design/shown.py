@@ -10,11 +10,10 @@ import numpy as np
 
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import decimals
-from synth.hump.design.design_limits import BETWEEN, tightest_element
-from synth.hump.design.found_design import FoundDesign
+from synth.hump.design.found_design import BETWEEN, FoundDesign, tightest_element
 from synth.hump.design.intervals import NEARLY_M_S
 from synth.hump.design.triples import CARS, PAIRS
-from synth.hump.trains.hump_routes import Mark
+from synth.hump.rolling.hump_routes import Mark
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -259,7 +258,7 @@ def finite(value: float) -> float | None:
 
 def profile_picture(found: FoundDesign) -> Figure:
     """Plan and profile."""
-    from synth.hump.control.pictures.hump_picture import hump_picture
+    from synth.hump.hump_picture import hump_picture
 
     return hump_picture(found.asked.config.hump, found.unbraked.fall.route, found.unbraked.rolls)
 

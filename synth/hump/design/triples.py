@@ -10,18 +10,17 @@ import numpy as np
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
 from synth.hump.design.hump_under_test import HumpUnderTest
 from synth.hump.design_runners import DesignRunner, bad_runner, good_runner, single_cars
-from synth.hump.trains.asked import Asked
-from synth.hump.trains.forecast import Given
-from synth.hump.trains.hump_routes import HumpRoutes
-from synth.hump.trains.humping import Hump, humped
-from synth.hump.trains.interval_control import ProgramSpeeds
-from synth.hump.trains.known_cuts import KnownCuts, Runners, known_as
-from synth.hump.trains.route_rolling import RouteRolling, rolling_on
-from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.train_memory import TrainMemory
-from synth.hump.trains.train_plan import TrainPlan, shared_needs
+from synth.hump.planning.forecast import Given
+from synth.hump.planning.interval_control import ProgramSpeeds
+from synth.hump.planning.known_cuts import KnownCuts, Runners, known_as
+from synth.hump.planning.train_plan import TrainPlan, shared_needs
+from synth.hump.rolling.hump_routes import HumpRoutes
+from synth.hump.rolling.humping import Hump, humped
+from synth.hump.rolling.route_rolling import RouteRolling, rolling_on
+from synth.hump.rolling.train_cuts import TrainCuts
+from synth.hump.rolling.train_memory import Asked, TrainMemory
 from synth.hump.trains.train_trace import TrainTrace, train_trace
-from synth.hump.trains.trial import reduced_gravity_m_s2
+from synth.hump.trial.trial import reduced_gravity_m_s2
 
 CARS: Final = 3
 """Of a triple."""

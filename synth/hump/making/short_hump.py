@@ -20,9 +20,8 @@ from plant_models.hump.ranges import (
 )
 from plant_models.library import BUILT_IN, POSITIONS
 from plant_models.library.sourced_value import JUDGEMENT
-from synth.frame.settings.output import OutputSettings
-from synth.frame.settings.section import Section, choice, many, needed, optional, setting
-from synth.frame.settings.value_forms import Pairs, Title
+from synth.frame.settings.numbers import Pairs, Title
+from synth.frame.settings.section import OutputSettings, Section, choice, many, needed, optional, setting
 
 PLACE_M: Final = Range(1.0, 3000.0)
 """From the crest."""

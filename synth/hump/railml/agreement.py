@@ -15,11 +15,10 @@ from typing import Final, NamedTuple
 from xml.etree import ElementTree as Xml
 
 from plant_models.library.hump_entry import HumpEntry
-from synth.frame.input_error import InputError
-from synth.hump.railml.names import OWN, RAILML, net_relation
-from synth.hump.railml.tree import RailmlTree, local
+from synth.frame.faults import InputError
+from synth.hump.railml.tree import OWN, RAILML, RailmlTree, local, net_relation
 from synth.hump.railml.write import railml_of
-from tuning_tables.excerpt import excerpt
+from tuning_tables.errors import excerpt
 
 FREE: Final = ("id", "language")
 """Attributes that mean nothing for a hump."""

@@ -25,11 +25,10 @@ from plant_models.hump import (
 )
 from plant_models.library.hump_elements import zones_of
 from plant_models.library.hump_entry import HumpEntry
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.hump.railml.agreement import require_agreement
-from synth.hump.railml.names import OWN_ZONES, SIDES, net_element, own
-from synth.hump.railml.tree import RailmlTree, railml_tree
-from tuning_tables.excerpt import excerpt
+from synth.hump.railml.tree import OWN_ZONES, SIDES, RailmlTree, net_element, own, railml_tree
+from tuning_tables.errors import excerpt
 
 _T = TypeVar("_T")
 

@@ -8,8 +8,8 @@ from xml.etree import ElementTree as Xml
 
 from plant_models.hump import Edge, HumpGraph, Retarder, Signal, Switch, TrackSection, Vertex
 from plant_models.library.hump_entry import HumpEntry
-from synth.hump.forms.hump_tree import is_of_library
-from synth.hump.railml.names import LIBRARY, OWN, OWN_ZONES, RAILML, SIDES, net_element, net_relation, own, railml
+from synth.hump.hump_forms import is_of_library
+from synth.hump.railml.tree import LIBRARY, OWN, OWN_ZONES, RAILML, SIDES, net_element, net_relation, own, railml
 
 LANGUAGE: Final = "en"
 

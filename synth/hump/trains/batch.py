@@ -6,10 +6,9 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from synth.frame.workers.engine import Answer, answered
-from synth.frame.workers.software import require_software, software_sha256
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.trial import BATCH, HumpTrial
+from synth.frame.workers.engine import Answer, answered, require_software, software_sha256
+from synth.hump.rolling.outcomes import TrainOutcomes
+from synth.hump.trial.trial import BATCH, HumpTrial
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from plant_models.frozen_arrays import Floats, Ints, frozen_arrays
-from synth.hump.trains.hump_routes import OF_FIRST_AXLE
-from synth.hump.trains.humping import Hump
-from synth.hump.trains.motion import even_speed_m_s
-from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.rolling.hump_routes import OF_FIRST_AXLE
+from synth.hump.rolling.humping import Hump
+from synth.hump.rolling.motion import even_speed_m_s
+from synth.hump.rolling.train_cuts import TrainCuts
+from synth.hump.rolling.train_memory import TrainMemory
 
 SAMPLE_M = 1.0
 """Samples are so far apart at most; more stand where axles pass the marks of elements."""

@@ -1,4 +1,5 @@
-"""Outcomes of trains as a file of numpy: an array a field, rows by train, as `TrainOutcomes` describes them.
+"""Outcomes of trains as a file of numpy: an array a field, rows by train, as `TrainOutcomes` describes them; and such a
+file with its configuration, as `hump simulate` has left both in a directory.
 
 A zip archive may expand to a thousand times its size, and numpy believes the shapes that stand in it. So a file is
 under a seal, its directory must name exactly what belongs there, in the size that it has, and no more is expanded.
@@ -10,19 +11,20 @@ import io
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synth.frame.damaged_archive import NO_ARCHIVE
-from synth.hump.trains.hump_routes import HumpRoutes
-from synth.hump.trains.outcomes import GAP_BINS_M, SPEED_BINS_M_S, USUAL_COUPLINGS, TrainOutcomes
+from synth.frame.faults import InputError
+from synth.hump.configuration.trial_file import INPUTS
+from synth.hump.rolling.hump_routes import HumpRoutes
+from synth.hump.rolling.outcomes import GAP_BINS_M, SPEED_BINS_M_S, USUAL_COUPLINGS, TrainOutcomes
+from synth.hump.trial.resolved_trial import ResolvedTrial, load_trial
 from tuning_tables import DamagedTable
-from tuning_tables.seal import seal_of, unsealed
-
-if TYPE_CHECKING:
-    from synth.hump.trains.resolved_trial import ResolvedTrial
+from tuning_tables.whole_file import seal_of, unsealed
 
 TRAINS = "trains.npz"
 """The file of all trains of a trial, in its directory."""
@@ -136,3 +138,27 @@ def npy_head(array: NDArray[Any]) -> bytes:
     told = {"descr": np.lib.format.dtype_to_descr(array.dtype), "fortran_order": False, "shape": array.shape}
     np.lib.format.write_array_header_1_0(head, told)
     return head.getvalue()
+
+
+CONFIG: Final = f"{INPUTS}/config.toml"
+
+
+@dataclass(frozen=True)
+class StoredTrains:
+    """Trains, their configuration, and the bytes of their file."""
+
+    config: ResolvedTrial
+    found: TrainOutcomes
+    content: bytes
+
+
+def stored_trains(directory: Path, said: str) -> StoredTrains:
+    """The trains in `directory`, which messages call `said`; `InputError` for a file that is not there, or a
+    configuration that does not fit, `DamagedTable` for trains that are damaged or of another trial."""
+    for name in (CONFIG, TRAINS):
+        if not (directory / name).is_file():
+            raise InputError(f"{said}: there is no {name} in it; give what 'hump simulate' left")
+    config = load_trial(directory / CONFIG)
+    content = (directory / TRAINS).read_bytes()
+    found = from_npz(content, str(directory / TRAINS), trains_of(config), config.settings.trains.number)
+    return StoredTrains(config, found, content)

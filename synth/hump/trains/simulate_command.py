@@ -10,29 +10,21 @@ from functools import cache, partial
 from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter
 from synth.hump.configuration.trial_file import INPUTS, TrialFile, parse_trial_file, trial_text
-from synth.hump.limits_of_use import CHANCE_ONLY, MODEL_ONLY, NO_SAFETY
-from synth.hump.trains.asked_trial import AskedTrial, asked_trial
+from synth.hump.options import SimulateOptions
+from synth.hump.rolling.outcomes import TrainOutcomes
 from synth.hump.trains.batch import batches
-from synth.hump.trains.chosen_trains import chosen_trains
-from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.shift_sums import in_shifts
-from synth.hump.trains.shown.figures import figures
+from synth.hump.trains.humped_trial import HumpedTrial, trial_limits
+from synth.hump.trains.shown.figures import catch_ups, couplings, figures, shift
 from synth.hump.trains.shown.first_screen import first_screen
 from synth.hump.trains.shown.one_train import one_train_exhibits
-from synth.hump.trains.shown.places import catch_ups, couplings
 from synth.hump.trains.shown.positions import positions
-from synth.hump.trains.shown.program import program_exhibits, pushed_chart
-from synth.hump.trains.shown.shift import shift
-from synth.hump.trains.speed_program import speed_program
-from synth.hump.trains.traced_train import one_train
-from synth.hump.trains.train_engine import engine_for
-from synth.hump.trains.train_run import run_of, run_trials
-from synth.hump.trains.trial import HumpTrial
-from synth.hump.trains.trial_inputs import write_inputs
-from synth.hump.trains.trial_limits import trial_limits
-from synth.hump.trains.trial_options import SimulateOptions
+from synth.hump.trains.speed_program import program_exhibits, pushed_chart, speed_program
+from synth.hump.trains.traced_train import chosen_trains, one_train
+from synth.hump.trains.train_figures import in_shifts
+from synth.hump.trains.train_run import engine_for, run_of, run_trials
+from synth.hump.trial.asked_trial import CHANCE_ONLY, MODEL_ONLY, NO_SAFETY, AskedTrial, asked_trial, write_inputs
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.trial import HumpTrial
 from synth.kernels.cache import guarded
 
 LIMITS_OF_USE = (

@@ -1,19 +1,46 @@
-"""Figures of many trains with their 95 % intervals: a shift of trains, which may be a single one, is drawn, and
-what is in it is not independent."""
+"""Figures of many trains with their 95 % intervals, and whether the brake of a position is strong enough for them.
+
+Trains of one shift come to the same tracks, so they are not independent: a shift, which may be a single train, is
+drawn, and is what intervals count.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import betaincinv, stdtrit
 
 from plant_models.frozen_arrays import Floats, Ints
 from synth.frame.interval import Interval
-from synth.hump.trains.outcomes import TrainOutcomes
-from synth.hump.trains.shift_sums import in_shifts, longer_shifts, shift_sums
+from synth.hump.rolling.outcomes import TrainOutcomes
+
+
+def in_shifts(found: TrainOutcomes) -> bool:
+    """Whether some of the trains are of one shift."""
+    return shifts_in(found) < len(found)
+
+
+def shifts_in(found: TrainOutcomes) -> int:
+    """How many shifts the trains are of."""
+    return len(np.unique(found.shift))
+
+
+def shift_sums(found: TrainOutcomes, values: NDArray[Any], shift: Ints | None = None) -> Floats:
+    """The sum of `values` (n, …) of the trains `found` over each shift, (shifts, …); `shift` (n,): other shifts that
+    the trains are counted in."""
+    numbers = found.shift if shift is None else shift
+    begins = np.flatnonzero(np.diff(numbers, prepend=numbers[:1] - 1))
+    return np.asarray(np.add.reduceat(values.astype(float), begins, axis=0))
+
+
+def longer_shifts(one: TrainOutcomes, other: TrainOutcomes) -> Ints:
+    """The shifts of two runs of the same trains in which both are independent: the longer ones of both."""
+    return one.shift if shifts_in(one) <= shifts_in(other) else other.shift
+
 
 CONFIDENCE = 0.95
 FEWEST_TRAINS = 2
@@ -215,3 +242,22 @@ def figures_told(found: TrainOutcomes) -> tuple[FigureOf, ...]:
 def train_figures(found: TrainOutcomes, wanted_share: float = WANTED) -> tuple[TrainFigure, ...]:
     """The figures of trains; `wanted_share`: for `enough_n` of shares."""
     return tuple(each.figure(found, wanted_share) for each in figures_told(found))
+
+
+MOST_SHORT: Final = 0.01
+"""A position with a larger share of cuts that left too fast for want of brake is too weak for them: assumed."""
+
+
+def weak(short: TrainFigure) -> bool:
+    """Whether the share is for sure above the limit."""
+    return short.low95 > MOST_SHORT
+
+
+def strengths(found: TrainOutcomes) -> tuple[TrainFigure, ...]:
+    """Of all positions, in order from the crest: the share of the passes that ended faster than commanded for want of
+    brake; NaN where there was no pass."""
+    sums = (
+        [shift_sums(found, each[:, place]) for each in (found.short, found.passes)]
+        for place in range(found.passes.shape[1])
+    )
+    return tuple(TrainFigure("short", "1", *share(short, passes)[:3], int(passes.sum())) for short, passes in sums)

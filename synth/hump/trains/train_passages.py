@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant_models.frozen_arrays import Floats
-from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
-from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.rolling.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
+from synth.hump.rolling.train_cuts import TrainCuts
+from synth.hump.rolling.train_memory import TrainMemory
 
 
 @dataclass(frozen=True)

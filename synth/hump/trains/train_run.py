@@ -1,4 +1,6 @@
-"""A run of hump trials: batches that are not there yet are humped, and stored one by one; then all are joined."""
+"""A run of hump trials: batches that are not there yet are humped by a cluster, processes, or this process, and stored
+one by one; then all are joined.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +11,29 @@ from pathlib import Path
 from typing import Protocol
 
 from synth.frame.command import Unfinished
+from synth.frame.machine import available
 from synth.frame.results_directory import ResultsDirectory
-from synth.frame.workers.engine import Engine, Watcher
-from synth.frame.workers.stored_results import missing_of
-from synth.hump.trains.batch import BatchOrder, orders_of
+from synth.frame.workers.engine import Engine, InThisProcess, Watcher, missing_of
+from synth.frame.workers.engine_options import EngineOptions
+from synth.hump.rolling.outcomes import TrainOutcomes, joined
+from synth.hump.trains.batch import BatchOrder, answer_batch, answer_batch_here, orders_of
 from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz, trains_of
-from synth.hump.trains.outcomes import TrainOutcomes, joined
-from synth.hump.trains.resolved_trial import ResolvedTrial
-from synth.hump.trains.trial import HumpTrial
+from synth.hump.trial.resolved_trial import ResolvedTrial
+from synth.hump.trial.trial import HumpTrial
+
+
+def engine_for(options: EngineOptions, tell: Callable[[str], None], batches: int) -> Engine:
+    """The cluster that was named, which `tell` is told, processes, or this process for a single batch: workers load."""
+    if options.scheduler is not None:
+        from synth.frame.workers.dask_cluster import connect
+
+        return connect(options.scheduler, answer_batch, tell)
+    if options.workers is None and min(batches, available()) < 2:
+        return InThisProcess(answer_batch_here)
+    from synth.frame.workers.local_workers import LocalWorkers
+
+    return LocalWorkers(max(1, min(options.workers or available(), batches)), answer_batch)
+
 
 FOLDER = "batches"
 

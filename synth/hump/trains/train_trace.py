@@ -8,13 +8,13 @@ from enum import Enum
 
 import numpy as np
 
+from synth.hump.rolling.hump_routes import HumpRoutes, Mark
+from synth.hump.rolling.humping import Hump
+from synth.hump.rolling.meeting import first_of
+from synth.hump.rolling.outcomes import USUAL_COUPLINGS
+from synth.hump.rolling.train_cuts import TrainCuts
+from synth.hump.rolling.train_memory import TrainMemory
 from synth.hump.trains.cut_trace import CutTrace, TracedTrain
-from synth.hump.trains.hump_routes import HumpRoutes, Mark
-from synth.hump.trains.humping import Hump
-from synth.hump.trains.meeting import first_of
-from synth.hump.trains.outcomes import USUAL_COUPLINGS
-from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.train_memory import TrainMemory
 
 
 class AlarmKind(Enum):

@@ -10,19 +10,18 @@ from typing import Final
 
 from plant_models.library import SourcedValue
 from synth.frame.command import Asked, Head
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.settings.numbers import numbers_of
 from synth.hump.configuration.trial_file import read_trial_file
-from synth.hump.trains.asked_trial import AskedTrial
-from synth.hump.trains.position_choice import retarders_at
-from synth.hump.trains.resolved_trial import ResolvedTrial, resolve_trial
-from synth.hump.trains.trial_inputs import files_read
-from synth.hump.watching.options import YardWatchOptions
+from synth.hump.options import YardWatchOptions
+from synth.hump.trial.asked_trial import AskedTrial, files_read
+from synth.hump.trial.position_choice import retarders_at
+from synth.hump.trial.resolved_trial import ResolvedTrial, resolve_trial
 from synth.hump.watching.settings import WatchedPositionSettings, YardWatchSettings
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from tuning_tables.canonical import canonical_json
 from tuning_tables.errors import InvalidLog
+from tuning_tables.json_text import canonical_json
 from tuning_tables.pass_log.log_mapping import LogMapping, read_mapping
 
 FEWEST_SHIFTS: Final = 10

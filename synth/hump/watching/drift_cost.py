@@ -1,4 +1,5 @@
-"""What a drift of one retarder costs over the hump: the same trains with the exits of before and with those of now.
+"""What a drift of one retarder costs over the hump: the same trains with the exits of before and with those of now; and
+how cuts left, mean and spread of exit speed less target.
 
 Exits are those that were measured, whatever law they have: a cut leaves with its command and a measured error. Each
 train has errors drawn anew, with replacement, from those measured, so that few passes tell a cost less well.
@@ -6,23 +7,47 @@ train has errors drawn anew, with replacement, from those measured, so that few 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Final
 
 import numpy as np
 from scipy.special import stdtrit
+from scipy.stats import chi2
 
 from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.frame.interval import Interval
+from synth.hump.rolling.hump_position import Arrivals, HumpPosition, LibraryBrake, Passed, error_uniform, passed_with
+from synth.hump.rolling.outcomes import TrainOutcomes, joined
 from synth.hump.trains.batch import trains_of_batch
-from synth.hump.trains.hump_position import Arrivals, HumpPosition, Passed
-from synth.hump.trains.normal_hump_position import LibraryBrake, error_uniform, passed_with
-from synth.hump.trains.outcomes import TrainOutcomes, joined
-from synth.hump.trains.shift_sums import shift_sums
-from synth.hump.trains.train_figures import Of
-from synth.hump.trains.trial import HumpTrial
+from synth.hump.trains.train_figures import Of, shift_sums
+from synth.hump.trial.trial import HumpTrial
 from synth.hump.watching.settings import CostSettings
+
+FEWEST = 3
+"""Passes; fewer have no spread."""
+
+
+@dataclass(frozen=True)
+class ExitLaw:
+    """Mean and standard deviation of exit errors; intervals are Student's, and that of χ² for a normal law."""
+
+    mean_m_s: Interval
+    std_m_s: Interval
+
+
+def exit_law(errors_m_s: Floats) -> ExitLaw | None:
+    """Of the errors that are known; None for fewer than `FEWEST`."""
+    known = errors_m_s[np.isfinite(errors_m_s)]
+    n = len(known)
+    if n < FEWEST:
+        return None
+    mean, std = float(known.mean()), float(known.std(ddof=1))
+    half = float(stdtrit(n - 1, 0.975)) * std / math.sqrt(n)
+    low, high = (std * math.sqrt((n - 1) / float(chi2.ppf(q, n - 1))) for q in (0.975, 0.025))
+    return ExitLaw(Interval(mean, mean - half, mean + half, n), Interval(std, low, high, n))
+
 
 FEWEST_ERRORS: Final = 10
 """Passes on each side of the beginning of a drift; fewer do not tell how cuts leave."""

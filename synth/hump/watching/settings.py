@@ -7,13 +7,12 @@ from typing import Annotated, Final
 from pydantic import AfterValidator, Field, model_validator
 
 from plant_models.errors import require
-from plant_models.hump.element_number import RETARDERS
+from plant_models.hump.ranges import RETARDERS
 from plant_models.library.sourced_value import JUDGEMENT
-from synth.frame.settings.output import OutputSettings
-from synth.frame.settings.section import Section, choice, many, optional, setting
+from synth.frame.settings.numbers import Title, printable
+from synth.frame.settings.section import OutputSettings, Section, choice, many, optional, setting
 from synth.frame.settings.template import NOTHING, template
-from synth.frame.settings.value_forms import Title, printable
-from synth.hump.configuration.counted_trains import CountedTrains
+from synth.hump.options import CountedTrains
 
 MOST_POSITIONS: Final = 1000
 

@@ -10,17 +10,16 @@ from typing import Final
 
 import numpy as np
 
-from synth.frame.input_error import InputError
-from synth.frame.processors import available
+from synth.frame.faults import InputError
+from synth.frame.machine import available
 from synth.frame.results_directory import ResultsDirectory
 from synth.frame.terminal.progress import Progress
-from synth.hump.trains.made_trial import brake_of, made_trial
-from synth.hump.trains.resolved_trial import ResolvedTrial
-from synth.hump.trains.trial import HumpTrial
+from synth.hump.trial.made_trial import brake_of, made_trial
+from synth.hump.trial.resolved_trial import ResolvedTrial
+from synth.hump.trial.trial import HumpTrial
 from synth.hump.watching.asked_yard import AskedPosition, AskedYard
 from synth.hump.watching.drift_cost import Difference, DriftCost, Retarder, drift_cost
-from synth.logs.drift.kept_file import from_npz, to_npz
-from synth.logs.drift.kept_watch import KeptWatch, WatchedNight, watched_night
+from synth.logs.drift.kept_watch import KeptWatch, WatchedNight, from_npz, to_npz, watched_night
 from synth.logs.drift.watch import Drift, Watch
 from tuning_tables.errors import InvalidLog
 from tuning_tables.pass_log.log_files import read_logs

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import Floats, Ints
 from synth.kernels.compiling import part, part_inline
 from synth.kernels.vector import packs
-from tuning_tables.programs.estimate import (
+from tuning_tables.programs.held import (
     BEGUN,
     BELIEVED,
     CROSS_COVARIANCE,
@@ -21,11 +21,14 @@ from tuning_tables.programs.estimate import (
     FACTOR,
     FACTOR_COVARIANCE,
     FACTOR_VARIANCE,
+    NOUGHT,
+    ONE,
     PATH_M,
     READING_M_S,
     REPEATED,
     SPEED_M_S,
     SPEED_VARIANCE,
+    TWO,
     UNSEEN,
 )
 from tuning_tables.programs.motion_filter import (
@@ -36,7 +39,6 @@ from tuning_tables.programs.motion_filter import (
     LEAST_SPEED_M_S,
     LEAST_STEP_M,
 )
-from tuning_tables.programs.numbers import NOUGHT, ONE, TWO
 from tuning_tables.programs.observe import (
     FEW_READINGS,
     GATE_SQUARED,

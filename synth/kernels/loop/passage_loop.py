@@ -32,7 +32,7 @@ from synth.kernels.loop.passage_pulses import (
 from synth.kernels.loop.passage_regulator import NOT_HEARD, begin_cut, outcome_of, stage_after_pair
 from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.trace import note
-from tuning_tables.programs.passage_table import HeldPassages
+from tuning_tables.programs.held import HeldPassages
 
 Outcomes = NDArray[np.uint8]
 

@@ -15,7 +15,7 @@ from synth.kernels.compiled_rules import compiled_rule
 from synth.kernels.compiling import borrowing_inline
 from synth.kernels.loop.passage_pulses import Pair
 from tuning_tables.programs import at_pulse, tracker
-from tuning_tables.programs.passage_table import HeldPassages
+from tuning_tables.programs.held import HeldPassages
 
 Tracked = NDArray[np.float32]
 

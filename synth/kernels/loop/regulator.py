@@ -13,7 +13,7 @@ from plant_models.frozen_arrays import Floats
 from synth.kernels.compiled_rules import compiled_rule
 from synth.kernels.compiling import borrowing_inline, part_inline
 from tuning_tables.programs.decide import decide, pressure_above
-from tuning_tables.programs.line_table import LineTable
+from tuning_tables.programs.held import LineTable
 from tuning_tables.programs.observe import observe
 
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.logs.drift.options import WatchOptions
+from synth.logs.log_options import WatchOptions
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 
 if TYPE_CHECKING:
     from synth.frame.terminal.progress import Progress
-    from synth.logs.asked_passes import AskedPasses
     from synth.logs.drift.watch import Watch
+    from synth.logs.fitting_passes import AskedPasses
 
 LIMITS_OF_USE = (
     "One drift at a time: the first alarm is explained. After a repair or new tables watch again.",
@@ -35,14 +35,14 @@ class AskedWatch:
 
 def resolve(asked: Asked[ResolvedConfig, WatchOptions]) -> AskedWatch:
     """The passes of both kinds of logs."""
-    from synth.logs.asked_passes import asked_passes
+    from synth.logs.fitting_passes import asked_passes
 
     config, options = asked.settings, asked.options
     watched = asked_passes(options, config, asked.place)
     if not options.reference:
         return AskedWatch(watched, None)
     reference = asked_passes(options.model_copy(update={"logs": options.reference}), config, asked.place)
-    from synth.logs.drift.baseline import require_enough  # scipy: a log that is refused needs none
+    from synth.logs.drift.evidence import require_enough  # scipy: a log that is refused needs none
 
     require_enough(reference.passes)
     return AskedWatch(watched, reference)
@@ -67,8 +67,8 @@ def compute(asked: AskedWatch, work: Work) -> Watch:
 
 def watched(asked: AskedWatch, progress: Progress) -> Watch:
     """The same with kernels that may have to be compiled anew."""
-    from synth.frame.processors import available
-    from synth.logs.drift.baseline import configured, of_reference
+    from synth.frame.machine import available
+    from synth.logs.drift.evidence import configured, of_reference
     from synth.logs.drift.watch import watch
 
     passes, parameters = asked.watched.passes, asked.watched.config.parameters

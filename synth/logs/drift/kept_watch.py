@@ -1,27 +1,31 @@
-"""A watch that goes on from run to run: what is kept of a position, and what the passes of a night make of it."""
+"""A watch that goes on from run to run: what is kept of a position, its file (arrays of numpy under a seal), and
+what the passes of a night make of it.
+"""
 
 from __future__ import annotations
 
 import hashlib
+import io
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import Floats, frozen_arrays
-from synth.logs.drift.baseline import configured
+from synth.frame.damaged_archive import NO_ARCHIVE
 from synth.logs.drift.causes import Cause, causes_of
 from synth.logs.drift.charts import Charts, kinds_of, limit_of, page_sums, steps_of
 from synth.logs.drift.diagnosis import BACK, FURTHER
-from synth.logs.drift.evidence import evidence_of
+from synth.logs.drift.evidence import configured, evidence_of
 from synth.logs.drift.watch import Watch, explained
 from synth.logs.fitting_passes import fitting_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from tuning_tables.pass_log.join_logs import join_logs
-from tuning_tables.pass_log.pass_log import ROWS, PassLog
+from tuning_tables import DamagedTable
+from tuning_tables.pass_log.pass_log import ROWS, PassLog, join_logs
+from tuning_tables.whole_file import seal_of, unsealed
 
 LEAST_KEPT: Final = 100
 """Passes that are kept at least: those ahead of a drift tell what exits were in order."""
@@ -178,3 +182,71 @@ def trimmed(kept: KeptWatch) -> KeptWatch:
     begin = max(0, count - MOST_KEPT, min(int(last_zero.min()) + 1 - BACK, count - LEAST_KEPT))
     log = kept.log.taken(np.arange(begin, count))
     return replace(kept, log=log, first=kept.first + begin, sums=kept.sums[begin:])
+
+
+DEPENDS: Final = "config_sha256"
+OF_LOG: Final = "log."
+WHOLE: Final = ("first", "run", "new", "repaired")
+
+
+def to_npz(kept: KeptWatch, config_sha256: str) -> bytes:
+    """The content of the file; `config_sha256`: of the configuration that drifts are counted from."""
+    arrays: dict[str, Any] = {
+        DEPENDS: np.array(config_sha256),
+        "seen": kept.seen,
+        "value_keys": np.array(list(kept.values), dtype=np.str_),
+        "values": np.array(list(kept.values.values()), dtype=np.float64),
+        **{name: np.array(getattr(kept, name)) for name in WHOLE},
+        "names": np.array(kept.names, dtype=np.str_),
+        "sums": kept.sums,
+        "limit": np.array(kept.limit),
+    }
+    if kept.log is not None:
+        arrays |= {f"{OF_LOG}{each.name}": np.array(getattr(kept.log, each.name)) for each in fields(PassLog)}
+    content = io.BytesIO()
+    np.savez(content, **arrays)
+    body = content.getvalue()
+    return body + seal_of(body)
+
+
+def from_npz(content: bytes, source: str, config_sha256: str) -> KeptWatch:
+    """What the file keeps; counted from another configuration, only which passes were read. `DamagedTable`."""
+    body = io.BytesIO(unsealed(content, source))
+    try:
+        with np.load(body, allow_pickle=False) as arrays:
+            kept = KeptWatch(
+                seen=arrays["seen"],
+                values=MappingProxyType(
+                    dict(zip(arrays["value_keys"].tolist(), arrays["values"].tolist(), strict=True))
+                ),
+                log=log_in(arrays),
+                names=tuple(arrays["names"].tolist()),
+                sums=arrays["sums"],
+                limit=float(arrays["limit"]),
+                **{name: int(arrays[name]) for name in WHOLE},
+            )
+            require_fitting(kept)
+            return kept if str(arrays[DEPENDS]) == config_sha256 else kept.anew()
+    except (KeyError, TypeError, *NO_ARCHIVE) as fault:
+        raise DamagedTable(
+            f"{source}: this is not what a watch keeps of a position ({str(fault)[:100]}); remove it, and the watch on "
+            "this position begins anew."
+        ) from None
+
+
+def require_fitting(kept: KeptWatch) -> None:
+    """`ValueError` where the arrays do not belong together: a sum for each pass and chart, a hash for each pass."""
+    passes = 0 if kept.log is None else len(kept.log)
+    if kept.sums.shape != (passes, len(kept.names)) or kept.sums.dtype != np.float64:
+        raise ValueError(f"{passes} passes and {len(kept.names)} charts have sums of the shape {kept.sums.shape}")
+    if kept.seen.ndim != 1 or kept.seen.dtype != np.uint64 or kept.first < 0:
+        raise ValueError("the hashes of passes, or their count, are none")
+
+
+def log_in(arrays: Any) -> PassLog | None:
+    """The passes of the file, None where there are none."""
+    if f"{OF_LOG}time_s" not in arrays:
+        return None
+    found: dict[str, Any] = {each.name: arrays[f"{OF_LOG}{each.name}"] for each in fields(PassLog)}
+    texts = {name: tuple(found[name].tolist()) for name in ("cut_id", "category")}
+    return PassLog(**{**found, **texts, "path_is_independent": bool(found["path_is_independent"])})

@@ -12,11 +12,10 @@ from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.logs import unknowns as asked
 from synth.logs.drift.causes import causes_of
 from synth.logs.drift.charts import CategoryExits, Charts, charts_of, running_medians
-from synth.logs.drift.diagnosis import FURTHER, Diagnosis, diagnosed
-from synth.logs.drift.drift_size import DriftSize, drift_size
+from synth.logs.drift.diagnosis import FURTHER, Diagnosis, DriftSize, diagnosed, drift_size
 from synth.logs.drift.evidence import Evidence, evidence_of
 from synth.logs.fitting_passes import FittingPasses
-from synth.problem.aim import OVERSPEED_M_S
+from synth.problem.problem import OVERSPEED_M_S
 
 
 @dataclass(frozen=True)

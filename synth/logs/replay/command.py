@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.logs.replay.options import ReplayOptions
-from synth.retarder.attempted_case import require_a_table, tables_refused
+from synth.logs.log_options import ReplayOptions
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.failed_case import require_a_table, tables_refused
 
 if TYPE_CHECKING:
     from synth.frame.terminal.progress import Progress
-    from synth.logs.asked_passes import AskedPasses
+    from synth.logs.fitting_passes import AskedPasses
     from synth.logs.replay.replay import Replay
     from synth.retarder.failed_case import FailedCase
     from tuning_tables import ControllerTable
@@ -53,7 +53,7 @@ def resolve(asked: Asked[ResolvedConfig, ReplayOptions]) -> AskedReplay:
     config, options = asked.settings, asked.options
     other = tables_at(options.table).only_lines("replay --table")
     own = None if options.own is None else tables_at(options.own).only_lines("replay --own")
-    from synth.logs.asked_passes import asked_passes
+    from synth.logs.fitting_passes import asked_passes
 
     passes = asked_passes(options, config, asked.place)
     from synth.logs.retune.tuned_books import tables_by_case  # numba: a log that is refused needs none
@@ -85,8 +85,8 @@ def compute(asked: AskedReplay, work: Work) -> FoundReplay:
 
 def own_tables(asked: AskedPasses, progress: Progress) -> tuple[tuple[ControllerTable, ...], tuple[FailedCase, ...]]:
     """The tables that a tune of the configuration makes, and the cases without one; `PlantError` for no table."""
-    from synth.frame.creation_time import creation_time
-    from synth.frame.processors import available
+    from synth.frame.machine import available
+    from synth.frame.version import creation_time
     from synth.logs.retune.tuned_books import class_setups, tuned_tables
 
     config = asked.config

@@ -1,17 +1,129 @@
-"""What a table would have commanded at every logged reading, beside what was commanded."""
+"""What a table would have commanded at every logged reading, beside what was commanded: where the drive rests, so
+that the regulator may command, and which table of a book a controller regulates each pass with.
+"""
 
 from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
+from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.logs.fitting_passes import FittingPasses
-from synth.logs.replay.drive_states import DriveStates, drive_states
-from synth.logs.replay.logged_tables import NO_TABLE, LoggedTables
+from synth.simulation.closed_loop import SUBSTEP_S
+from tuning_tables import ControllerTable
 from tuning_tables.active_table import ActiveTable
 from tuning_tables.estimator import begin
 from tuning_tables.pass_log.pass_log import PassLog
 from tuning_tables.rule import decide_many, speed_for
+from tuning_tables.table_book import Choice, Status, TableBook
+
+
+@frozen_arrays
+class DriveStates:
+    """Of n rows: `resting`: the command before has come to rest, by the model; `stage_before` in force until the row;
+    `overpressure_kpa`: mean of max(0, P − P0) since the sample before, 0 at the first."""
+
+    resting: Bools
+    stage_before: Ints
+    overpressure_kpa: Floats
+
+
+def drive_states(passes: FittingPasses) -> DriveStates:
+    """The drive along the passes. Rows are samples of the regulator; where some are missing, the clock counts on."""
+    log, plant = passes.log, passes.plant
+    period = plant.sensor.sample_period_s
+    substeps = math.ceil(period / SUBSTEP_S)
+    actuator = stage_locked_actuator(plant.position, plant.sensor, plant.position.top_stage, substeps)
+    n = len(log.time_s)
+    found = Columns(np.zeros(n, dtype=np.bool_), np.zeros(n, dtype=np.int64), np.zeros(n))
+    for number in range(len(log)):
+        fill_in(log, number, actuator, (period, plant.approach.initial_stage), found)
+    return DriveStates(*found)
+
+
+class Columns(NamedTuple):
+    """Memory for `DriveStates`, while it is filled."""
+
+    resting: Bools
+    stage_before: Ints
+    overpressure_kpa: Floats
+
+
+def fill_in(log: PassLog, number: int, actuator: Actuator, begin: tuple[float, int], found: Columns) -> None:
+    """The rows of pass `number`; `begin`: sampling period, and the stage in which the drive rests before."""
+    period, stage = begin
+    rows = log.rows(number)
+    sample = np.rint((log.time_s[rows] - log.time_s[rows.start]) / period).astype(np.int64).tolist()
+    parts = actuator.chain_overpressure_kpa.reshape(len(actuator.chain_mode), -1, actuator.substeps).mean(axis=2)
+    mode, chain, since = actuator.mode_of(stage), -1, 0
+    for row, at, told in zip(range(rows.start, rows.stop), sample, log.stage[rows].tolist(), strict=True):
+        played = at - since
+        if row > rows.start:
+            found.overpressure_kpa[row] = (
+                parts[chain, played - 1]
+                if chain >= 0 and 0 < played <= actuator.chain_samples[chain]
+                else actuator.mode_overpressure_kpa[mode]
+            )
+        found.stage_before[row] = stage
+        found.resting[row] = chain < 0 or played >= actuator.chain_samples[chain]
+        if told != stage:
+            # A command that did not wait for rest is taken as if it had: the model has no other.
+            chain, since, stage = int(actuator.command[mode, told]), at, told
+            mode = int(actuator.chain_mode[chain])
+
+
+NO_TABLE = -1
+
+
+@frozen_arrays
+class LoggedTables:
+    """`tables` that passes are regulated with; `of_pass` (m,): number of that of each pass, `NO_TABLE` for none, and
+    then `reason` (m of them) says why; '' otherwise."""
+
+    tables: tuple[ActiveTable, ...]
+    of_pass: Ints
+    reason: tuple[str, ...]
+
+
+def logged_tables(passes: FittingPasses, tables: Sequence[ControllerTable]) -> LoggedTables:
+    """The lines that a book of `tables` chooses for category, axles and target of each pass (`table_book`).
+
+    A single table stands for its own target only. Without a category in the log, that of the class counts.
+    """
+    log, book = passes.log, TableBook(tuple(tables))
+    chosen: dict[tuple[str, int, float], tuple[int, str]] = {}
+    found: list[ActiveTable] = []
+    of_pass, reasons = np.full(len(log), NO_TABLE, dtype=np.int64), []
+    for number in range(len(log)):
+        category = log.category[number] or passes.plants[passes.class_of[number]][1].cut.category
+        key = (category, int(log.axles[number]), float(log.target_m_s[number]))
+        if np.isnan(key[2]):
+            reasons.append("no target is logged")
+            continue
+        if key not in chosen:
+            choice = book.choose(*key)
+            why = refusal(choice, key, alone=len(tables) == 1)
+            if not why and choice.table is not None:
+                found.append(choice.table)
+            chosen[key] = (NO_TABLE if why else len(found) - 1, why)
+        of_pass[number], why = chosen[key]
+        reasons.append(why)
+    return LoggedTables(tuple(found), of_pass, tuple(reasons))
+
+
+def refusal(choice: Choice, key: tuple[str, int, float], alone: bool) -> str:
+    """Why the choice for (category, axles, target) is not used; '' where it is."""
+    category, axles, target = key
+    if choice.status is Status.NO_CLASS:
+        return f"no table is for {category} on {axles} axles"
+    if choice.table is None or (alone and choice.status is not Status.TUNED):
+        return f"no table of {category} on {axles} axles is for {target:g} m/s"
+    return ""
+
 
 NOT_ASKED = -1
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.logs.retune.options import RetuneOptions
+from synth.logs.log_options import RetuneOptions
 from synth.retarder.configuration.config_file import ConfigSource, source_of_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from synth.logs.asked_passes import AskedPasses
+    from synth.logs.fitting_passes import AskedPasses
     from synth.logs.retune.retune import Retuned
     from synth.logs.retune.tuned_books import Case
     from tuning_tables import ControllerTable
@@ -43,7 +43,7 @@ def resolve(asked: Asked[ConfigSource, RetuneOptions]) -> AskedRetune:
 
     config, options = asked.settings.resolved(), asked.options
     given = None if options.table is None else tables_at(options.table).only_lines("retune --table")
-    from synth.logs.asked_passes import asked_passes
+    from synth.logs.fitting_passes import asked_passes
 
     passes = asked_passes(options, config, asked.place)
     if given is None:
@@ -65,11 +65,11 @@ def steps(asked: AskedRetune) -> Steps:
 
 def compute(asked: AskedRetune, work: Work) -> Retuned:
     """The new tables, and what they gain."""
-    from synth.frame.creation_time import creation_time
-    from synth.frame.processors import available
+    from synth.frame.machine import available
+    from synth.frame.version import creation_time
     from synth.kernels.cache import guarded
     from synth.logs.retune.retune import RetuneOrder, retune
-    from synth.retarder.attempted_case import tables_refused
+    from synth.retarder.failed_case import tables_refused
 
     order = RetuneOrder(asked.old, creation_time(), threads=available())
     with tables_refused(asked.asked.place, asked.asked.config):

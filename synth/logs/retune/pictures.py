@@ -15,8 +15,7 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.logs.retune.predicted_gain import CaseGain
-from synth.logs.retune.retune import Retuned
+from synth.logs.retune.retune import CaseGain, Retuned
 from synth.solver.tabulate import lines_of
 
 NODES = 201

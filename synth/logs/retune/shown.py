@@ -9,8 +9,7 @@ from typing import Any, Final
 from synth.frame.exhibits import Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, four_figures
-from synth.logs.retune.predicted_gain import CaseGain
-from synth.logs.retune.retune import Retuned
+from synth.logs.retune.retune import CaseGain, Retuned
 from synth.retarder.failed_case import FailedCase
 from tuning_tables import to_json
 from tuning_tables.hdf5_file import book_bytes

@@ -8,17 +8,15 @@ from dataclasses import dataclass, replace
 
 from plant_models import Plant
 from synth.frame.workers.engine import Watcher
-from synth.retarder.attempted_case import attempted
 from synth.retarder.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.estimation.simulated_prediction import simulated_prediction
-from synth.retarder.failed_case import FailedCase, require_none
-from synth.retarder.rounded_table import with_prediction
+from synth.retarder.estimation.tuning_days import simulated_prediction
+from synth.retarder.failed_case import FailedCase, attempted, require_none
 from synth.retarder.served_class import plant_for
-from synth.retarder.tuned_table import read_back, solutions, tuned_table, validated_table
+from synth.retarder.tuned_table import read_back, solutions, tuned_table, validated_table, with_prediction
 from synth.simulation.controllers import TableController
 from synth.solver.backward_induction import Solution
-from synth.solver.one_blas_thread import one_blas_thread
+from synth.solver.descent import one_blas_thread
 from tuning_tables import ControllerTable
 
 Case = tuple[str, float]

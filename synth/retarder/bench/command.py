@@ -11,14 +11,12 @@ from synth.frame.command import Asked, Command, Limit, Steps, Unfinished, Work
 from synth.frame.exhibits import Chapter
 from synth.retarder.bench.options import Address, BenchOptions
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.configured import head_of
+from synth.retarder.configured import configuration_of, given_config, head_of, made_elsewhere
 from synth.retarder.exit_figures import MODEL_ONLY
-from synth.retarder.tables_configuration import configuration_of, given_config, made_elsewhere
 
 if TYPE_CHECKING:
-    from synth.retarder.bench.bench_pass import BenchPass
-    from synth.retarder.bench.cases import BenchCase
-    from synth.retarder.bench.clock import Clock
+    from synth.retarder.bench.bench_pass import BenchCase, BenchPass
+    from synth.retarder.bench.exchange import Clock
     from synth.retarder.bench.score import Errors, FoundBench
     from synth.retarder.served_class import ServedClass
     from tuning_tables import ControllerTable
@@ -77,9 +75,8 @@ def compute(asked: AskedBench, work: Work) -> FoundBench:
 
 def benched(asked: AskedBench, work: Work) -> FoundBench:
     """The same, where kernels are loaded."""
-    from synth.retarder.bench.cases import class_seeds, coming_cuts
-    from synth.retarder.bench.clock import Cycles, InStep, RealTime, before_all_others
-    from synth.retarder.bench.exchange import Exchange
+    from synth.retarder.bench.bench_pass import class_seeds, coming_cuts
+    from synth.retarder.bench.exchange import Cycles, Exchange, InStep, RealTime, before_all_others
     from synth.retarder.bench.live_run import PAGE, LiveRun, live_page
     from synth.retarder.bench.run import Bench, Patience
     from synth.retarder.bench.score import FoundBench
@@ -118,7 +115,7 @@ def benched(asked: AskedBench, work: Work) -> FoundBench:
 
 def cases_of(asked: AskedBench, seeds: Sequence[int]) -> list[BenchCase]:
     """The cuts of each table, as many as can come."""
-    from synth.retarder.bench.cases import bench_case
+    from synth.retarder.bench.bench_pass import bench_case
 
     rounds = -(-asked.passes // len(asked.tables))
     return [

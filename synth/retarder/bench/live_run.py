@@ -9,10 +9,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from synth.frame.page.document import SCRIPT_POLICY, scripted_document
 from synth.frame.page.markup import Markup, element
-from synth.frame.page.scripted_document import SCRIPT_POLICY, scripted_document
-from synth.retarder.bench.bench_pass import BenchPass
-from synth.retarder.bench.cases import BenchCase
+from synth.retarder.bench.bench_pass import BenchCase, BenchPass
 from synth.retarder.bench.exchange import Exchange
 from synth.simulation.sampled_pass import Reading
 from synth.solver.tabulate import lines_of

@@ -8,7 +8,7 @@ from typing import Final
 from pydantic import field_validator
 
 from synth.frame.settings.options import flag_option, number_option, word_option
-from synth.retarder.tables_options import TablesOptions
+from synth.retarder.options import TablesOptions
 
 NONE: Final = "none"
 MOST_PORT: Final = 65_535

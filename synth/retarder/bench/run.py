@@ -7,10 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from synth.frame.workers.engine import Tell
-from synth.retarder.bench.bench_pass import AskedSample, BenchPass
-from synth.retarder.bench.cases import BenchCase
-from synth.retarder.bench.clock import Clock
-from synth.retarder.bench.exchange import Answer, Exchange, next_count
+from synth.retarder.bench.bench_pass import AskedSample, BenchCase, BenchPass
+from synth.retarder.bench.exchange import Answer, Clock, Exchange, next_count
 from synth.retarder.bench.live_run import LiveRun
 from synth.simulation.sampled_pass import Reading, sampled_pass
 from tuning_tables import ControllerTable, begin, decide_for, speed_for

@@ -13,13 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant_models.frozen_arrays import Floats, frozen_arrays
-from synth.retarder.bench.bench_pass import BenchPass
-from synth.retarder.bench.cases import BenchCase
-from synth.retarder.bench.clock import Cycles
-from synth.retarder.bench.exchange import Traffic
+from synth.retarder.bench.bench_pass import BenchCase, BenchPass
+from synth.retarder.bench.exchange import Cycles, Traffic
 from synth.retarder.class_setup import TUNING_PASSES
-from synth.retarder.comparison.baselines import tune_baselines
-from synth.retarder.comparison.compared_laws import permitted
+from synth.retarder.comparison.baselines import permitted, tune_baselines
 from synth.simulation.closed_loop import TableController
 from synth.simulation.random_passes import BLOCK_PASSES, random_passes
 from synth.simulation.replicates import UPPER_TAIL, Interval

@@ -13,7 +13,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib import import_module
 from typing import Any, Final
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.retarder.bench.exchange import Exchange
 from synth.retarder.bench.options import Address
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Final
 from synth.frame.command import Limit
 from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import counted, decimals
-from synth.retarder.bench.clock import TOLERANCE
+from synth.retarder.bench.exchange import TOLERANCE
 from synth.retarder.bench.score import GROUPS, FoundBench, Score, score_of
 from synth.retarder.bench.wires import c_header
+from synth.retarder.comparison.measured import interval_text
 from synth.retarder.exit_figures import CASE, PREDICTED, SWITCHINGS
-from synth.retarder.judgement import interval_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -196,7 +196,7 @@ def row_of(found: FoundBench, count: int) -> Row:
 
 def drawn(found: FoundBench) -> Figure:
     """Drawn by a module that needs matplotlib."""
-    from synth.retarder.pictures.bench_cuts import bench_cuts
+    from synth.retarder.pictures.exits import bench_cuts
 
     rows = [row_of(found, count) for count in range(len(found.passes))]
     errors, by_table = (

@@ -7,10 +7,9 @@ import numpy as np
 from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.retarder.tuned_case import Feasibility
 from synth.simulation.closed_loop import picked
-from synth.simulation.common_passes import CommonPasses
+from synth.simulation.common_passes import CommonPasses, ExitRange, exit_range
 from synth.simulation.controllers import fixed
-from synth.simulation.exit_range import ExitRange, exit_range
-from synth.simulation.unavoidable_error import excess_and_lack_m_s
+from synth.simulation.exit_statistics import excess_and_lack_m_s
 
 ENTRY_POINTS, ENTRY_PASSES = 24, 500
 """Entry speeds that are looked at, and passes at each of them: the same, but for the speed."""

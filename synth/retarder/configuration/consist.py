@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from plant_models.cut import Car
 from plant_models.library import CARS, CarEntry, Library, SourcedValue, load_car
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.settings.numbers import sourced
 from synth.retarder.configuration.plant_fault import in_file, require_held
 from synth.retarder.configuration.plant_settings import CutSettings

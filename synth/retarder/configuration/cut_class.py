@@ -11,7 +11,7 @@ from plant_models.library import Library, PositionEntry, SourcedValue, WeightCat
 from plant_models.library.data_file import keyed
 from plant_models.library.entry_values import entry_law, with_entry
 from plant_models.library.sourced_value import SET_BY_USER, SourcedTable
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.retarder.configuration.consist import Consist, consist_values, resolve_consist
 from synth.retarder.configuration.plant_fault import in_file
 from synth.retarder.configuration.plant_settings import DEFAULT_CUTS, CutSettings

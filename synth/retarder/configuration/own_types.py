@@ -1,4 +1,5 @@
-"""The user's own types: the files that a configuration names by path, and those in the folders of its `library`.
+"""The user's own types: the keys that name them, at the top of every configuration of tables and trains, the files
+that it names by path, and those in the folders of its `library`.
 
 Paths in a file begin at its folder. What is found is a plain value, and the configuration is left with names only: so a
 unit of a sweep can be sent to another machine without any file.
@@ -14,7 +15,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from plant_models import PlantError
+from plant_models.errors import close_name
 from plant_models.library import (
+    BUILT_IN,
     CAR_MIXES,
     CARS,
     KINDS,
@@ -24,16 +27,35 @@ from plant_models.library import (
     TRACKS,
     WEIGHT_CATEGORIES,
     WHEEL_SENSORS,
+    YARD_CATEGORIES,
     Kind,
     Library,
     TypeFile,
     TypeFileError,
 )
 from plant_models.library.data_file import parse_toml
-from plant_models.library.near_miss import close_name
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
+from synth.frame.settings.numbers import Title
+from synth.frame.settings.section import Section, choice, many
 from synth.frame.settings.toml_file import Tree, read_text
-from tuning_tables.excerpt import excerpt
+from tuning_tables.errors import excerpt
+
+
+def named_type(default: str | None, kind: Kind, meaning: str) -> Any:
+    """A key that names a type, of the library or the user's own; `default` None: what it is then is told elsewhere."""
+    names = BUILT_IN.names(kind)
+    return choice(default, f"{meaning}; one of {', '.join(names)}, or the path of your own file", names[0])
+
+
+class TopKeys(Section):
+    """Title, and where types are from."""
+
+    title: Title | None = choice(None, "title of the page", "…")
+    library: tuple[str, ...] = many(
+        (), 0, 20, "folders", "folders with your own types (docs/how-to/own-types.md)", example=["my-types/"]
+    )
+    weight_categories: str = named_type(YARD_CATEGORIES, WEIGHT_CATEGORIES, "the weight categories")
+
 
 SUFFIX: Final = ".toml"
 

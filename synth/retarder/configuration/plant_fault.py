@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from typing import Final
 
 from plant_models import PlantError
+from plant_models.errors import near_miss
 from plant_models.library import Kind, Library, TypeFileError
 from plant_models.library.data_file import keyed
-from plant_models.library.near_miss import near_miss
-from synth.frame.input_error import InputError
-from tuning_tables.excerpt import excerpt
+from synth.frame.faults import InputError
+from tuning_tables.errors import excerpt
 
 LONGEST_SENTENCE: Final = 400
 """Characters of what the plant says of a value, which it repeats."""

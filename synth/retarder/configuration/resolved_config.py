@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from plant_models import EntryLaw, Plant, PlantError
+from plant_models.errors import near_miss
 from plant_models.library import (
     BUILT_IN,
     WEIGHT_CATEGORIES,
@@ -15,18 +16,14 @@ from plant_models.library import (
     SourcedValue,
     load_weight_categories,
 )
-from plant_models.library.near_miss import near_miss
 from plant_models.library.position_entry import MEAN_CV, REGULATOR
 from plant_models.library.retarder_entry import DAY_SPREAD
 from plant_models.library.sourced_value import SET_BY_USER
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.settings.numbers import numbers_of, range_warnings
-from synth.problem.aim import Aim
-from synth.problem.any_time_resolution import design_resolution
 from synth.problem.criterion import Criterion
-from synth.problem.estimator_resolution import estimator_resolution
-from synth.problem.problem import Problem
-from synth.problem.resolution import Resolution, finer_for_check
+from synth.problem.problem import Aim, Problem
+from synth.problem.resolution import Resolution, design_resolution, estimator_resolution, finer_for_check, grid_warnings
 from synth.retarder.configuration.cut_class import (
     CutClass,
     Surroundings,
@@ -34,10 +31,13 @@ from synth.retarder.configuration.cut_class import (
     resolve_cut,
     resolve_targets,
 )
-from synth.retarder.configuration.grid_warnings import grid_warnings
 from synth.retarder.configuration.plant_fault import in_file, require_held
-from synth.retarder.configuration.point_sensors.resolved_sensors import ResolvedSensors, require_served, resolve_sensors
-from synth.retarder.configuration.position_choice import resolve_position
+from synth.retarder.configuration.resolved_position import (
+    ResolvedSensors,
+    require_served,
+    resolve_position,
+    resolve_sensors,
+)
 from synth.retarder.configuration.settings import (
     NUMERICAL_SECTIONS,
     AcceptanceSettings,
@@ -49,8 +49,8 @@ from synth.retarder.configuration.settings import (
     TuneOutputSettings,
     ValidationSettings,
 )
-from tuning_tables.canonical import canonical_json
-from tuning_tables.excerpt import excerpt
+from tuning_tables.errors import excerpt
+from tuning_tables.json_text import canonical_json
 
 
 @dataclass(frozen=True)

@@ -14,27 +14,24 @@ from pydantic import Field, model_validator
 from plant_models import Plant
 from plant_models.errors import require
 from plant_models.library import Value
-from synth.frame.settings.numbers import library_values
-from synth.frame.settings.output import OutputSettings
-from synth.frame.settings.section import Section, choice, many, of_library, setting
-from synth.frame.settings.value_forms import Source
-from synth.problem.criterion import Criterion
+from synth.frame.settings.numbers import Source, library_values
+from synth.frame.settings.section import OutputSettings, Section, choice, many, of_library, setting
+from synth.problem.criterion import AsymmetricSquare, Criterion, SquaredError
 from synth.problem.requirement import FrictionRange, OverspeedLimit, Requirement
 from synth.problem.resolution import LONG_PASS_M, Resolution
-from synth.problem.terminal_cost import AsymmetricSquare, SquaredError
+from synth.retarder.configuration.own_types import TopKeys
 from synth.retarder.configuration.plant_settings import (
     DEFAULT_CUTS,
     CutSettings,
     EntrySettings,
     FrictionSettings,
+    PointSensorSettings,
     PositionSettings,
     RetarderSettings,
     SensorSettings,
     TargetSettings,
     TrackSettings,
 )
-from synth.retarder.configuration.point_sensors.settings import PointSensorSettings
-from synth.retarder.configuration.top_keys import TopKeys
 
 
 class GridSettings(Section):

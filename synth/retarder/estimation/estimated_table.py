@@ -18,12 +18,11 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from plant_models.frozen_arrays import Floats
-from synth.problem.criterion import SQUARED_ERROR, Criterion
-from synth.problem.terminal_cost import TerminalCost
+from synth.problem.criterion import SQUARED_ERROR, Criterion, TerminalCost
 from synth.retarder.estimation.tuning_days import TuningDays
 from synth.simulation.closed_loop import Controller, LineController
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
-from synth.solver.polynomial_lines import PolynomialLines, opened
+from synth.solver.switching_lines import PolynomialLines, opened
 from tuning_tables.estimator import Estimator
 
 FIRST_TRIM_M_S = 0.02

@@ -15,7 +15,7 @@ from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import Controller
 from synth.simulation.passes import PassTrace
-from synth.solver.any_time.estimate_error import EstimateError, error_along_path
+from synth.solver.any_time.sampled_chain import EstimateError, error_along_path
 from tuning_tables.estimator import MOST_BREAKS, MOST_READINGS, Estimator
 
 REPEATED_BY_CHANCE = 1e-4

@@ -9,16 +9,15 @@ from typing import TYPE_CHECKING, Final
 
 from synth.frame.command import Asked, Command, Head, Steps, Work
 from synth.frame.exhibits import Chapter, File, Sentence
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.configured import head_of
+from synth.retarder.configured import configuration_of, given_config, head_of, made_elsewhere
 from synth.retarder.exit_figures import MODEL_ONLY
-from synth.retarder.tables_configuration import configuration_of, given_config, made_elsewhere
-from synth.retarder.tables_options import TablesOptions
+from synth.retarder.options import TablesOptions
 
 if TYPE_CHECKING:
     from synth.retarder.explore.explore_page import PlayedTable
-    from tuning_tables.table_kinds import StageTable
+    from tuning_tables.document import StageTable
 
 LARGEST_PAGE_BYTES: Final = 3_000_000
 """A page goes by mail, and a telephone opens it."""
@@ -75,7 +74,7 @@ def played_tables(
     `PlantError` for a table at any time whose drive or delays are modelled for commands at rest alone.
     """
     from synth.retarder.explore.explore_page import PlayedTable
-    from synth.retarder.forms.table_file import is_infeasible, summary_beside
+    from synth.retarder.forms.tables_at import is_infeasible, summary_beside
     from synth.retarder.served_class import served_class
     from tuning_tables import ControllerTable
     from tuning_tables.decisions import Decisions
@@ -105,8 +104,7 @@ def head(asking: Asking) -> Head:
 
 def compute(asking: Asking, work: Work) -> ExplorePage:
     """Each table and the best rule on the passes of its case, then the page of all."""
-    from synth.retarder.explore.beside import beside
-    from synth.retarder.explore.explore_page import PAGE
+    from synth.retarder.explore.explore_page import PAGE, beside
 
     played = []
     for each in asking.tables:

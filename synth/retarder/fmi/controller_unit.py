@@ -9,7 +9,7 @@ from synth.retarder.fmi.unit import Unit, c_part
 from synth.retarder.fmi.variables import Causality, Kind, Variable
 from tuning_tables.controller_code.c_code import c_header, c_source
 from tuning_tables.controller_code.line_code import NAMED, line_code
-from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.export_names import ExportPrefix
 from tuning_tables.self_test_size import SMALL
 from tuning_tables.stage import MOST_STAGES
 from tuning_tables.table_book import TableBook

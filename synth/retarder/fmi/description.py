@@ -1,15 +1,18 @@
-"""The documents of a unit: modelDescription.xml (FMI 3.0.1, section 2.4; FMI 2.0.4, sections 2.2 and 4.3), and of
-FMI 3.0 buildDescription.xml (section 2.5)."""
+"""The versions of the Functional Mock-up Interface that a unit is made for, and its documents in each of them:
+modelDescription.xml (FMI 3.0.1, section 2.4; FMI 2.0.4, sections 2.2 and 4.3), and of FMI 3.0 buildDescription.xml
+(section 2.5).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeAlias
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from synth.retarder.fmi.variables import UNITS, Causality, Kind, Variable, shown
+from synth.retarder.fmi.variables import UNITS, Causality, Kind, Variable, scalars, shown
+from synth.retarder.forms.code_options import FMU_NAMES
 
 VERSION: Final = "3.0"
 NAME: Final = {"fmiVersion": VERSION}
@@ -162,3 +165,47 @@ def model_description_2(head: Head, variables: Sequence[Variable], sources: Sequ
             if variable.causality is Causality.OUTPUT:
                 SubElement(unknowns, "Unknown", index=str(index))
     return text_of(root)
+
+
+Documents: TypeAlias = Mapping[str, bytes]
+"""Documents of a unit by their paths in it."""
+
+
+@dataclass(frozen=True)
+class Interface:
+    """`c`: its files of C; `listed`: the variables that have a value reference each, which is their place.
+
+    `documents`: of the head of a unit, these variables and the names of the files to compile. `folders`: of libraries,
+    by platform.
+    """
+
+    c: tuple[str, ...]
+    listed: Callable[[Sequence[Variable]], tuple[Variable, ...]]
+    documents: Callable[[Head, Sequence[Variable], Sequence[str]], Documents]
+    folders: Mapping[str, str]
+
+
+def documents_3(head: Head, variables: Sequence[Variable], sources: Sequence[str]) -> Documents:
+    """Of FMI 3.0."""
+    return {
+        "modelDescription.xml": model_description(head, variables),
+        "sources/buildDescription.xml": build_description(head, sources),
+    }
+
+
+def documents_2(head: Head, variables: Sequence[Variable], sources: Sequence[str]) -> Documents:
+    """Of FMI 2.0."""
+    return {"modelDescription.xml": model_description_2(head, variables, sources)}
+
+
+FMI_3: Final = Interface(
+    ("fmi3.h", "unit.h", "interface.c", "not_offered.c"),
+    tuple,
+    documents_3,
+    {name: name for name in ("x86_64-linux", "aarch64-linux")},
+)
+FMI_2: Final = Interface(
+    ("fmi3.h", "unit.h", "interface.c", "fmi2.h", "fmi2.c"), scalars, documents_2, {"x86_64-linux": "linux64"}
+)
+INTERFACES: Final[Mapping[str, Interface]] = dict(zip(FMU_NAMES, (FMI_3, FMI_2), strict=True))
+"""By the name of the form that tables are exported in."""

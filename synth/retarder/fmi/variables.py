@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
 
-from tuning_tables.exporter import generated
+from tuning_tables.export_names import generated
 
 Value = float | int | bool
 

@@ -1,4 +1,6 @@
-"""What may be asked of an export of controller code, from the words of the command line."""
+"""What may be asked of an export of controller code, from the words of the command line; and the forms of Structured
+Text: how each is laid out, and for which tools its names must be legal.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +8,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from tuning_tables.correction import LARGEST_LIMIT_M_S, LEAST_LIMIT_M_S
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.errors import IllegalName
+from tuning_tables.export_names import RETARDER, ExportPrefix
+from tuning_tables.language.st_layout import Layout, part_files, unit_files
+from tuning_tables.language.st_unit import Export
+from tuning_tables.plc_forms.makers import scl_files, twincat_files
+from tuning_tables.plc_forms.names import CODESYS, IEC, MATIEC, TIA, TWINCAT, Tool, require_legal
+from tuning_tables.plc_forms.plcopen import plcopen_files
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
 SELF_TESTS: Mapping[str, SelfTestSize] = {"full": FULL, "small": SMALL}
@@ -70,3 +78,28 @@ def code_options(
             f"{LARGEST_LIMIT_M_S:g} m/s; give 0.15"
         )
     return CodeOptions(named, SELF_TESTS[self_test or "full"], split, correction_m_s)
+
+
+@dataclass(frozen=True)
+class PlcForm:
+    """How an export is laid out: whole, and with a file each unit where `--split` asks for that."""
+
+    tools: tuple[Tool, ...]
+    whole: Layout
+    split: Layout | None = None
+
+    def files(self, export: Export, options: CodeOptions) -> Mapping[str, bytes]:
+        """The files by name; `InputError` where the prefix gives a name that a tool does not take."""
+        try:
+            require_legal(export, *self.tools)
+        except IllegalName as fault:
+            raise InputError(f"--prefix {options.prefix.text}: {fault}; give another prefix") from None
+        return (self.split or self.whole)(export) if options.split else self.whole(export)
+
+
+PLC_FORMS: Final[Mapping[str, PlcForm]] = {
+    "st": PlcForm((IEC,), part_files, unit_files),
+    "plcopen": PlcForm((CODESYS, MATIEC), plcopen_files),
+    "twincat": PlcForm((TWINCAT,), twincat_files),
+    "scl": PlcForm((TIA,), scl_files),
+}

@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from synth.frame.command import Asked, Command, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.configured import head_of
+from synth.retarder.configured import configuration_of, given_config, head_of
 from synth.retarder.exit_figures import MODEL_ONLY
-from synth.retarder.tables_configuration import configuration_of, given_config
-from synth.retarder.tables_options import TablesOptions
+from synth.retarder.options import TablesOptions
 
 if TYPE_CHECKING:
-    from synth.retarder.line_control_loop import LineControlLoop
-    from synth.retarder.passage_control_loop import PassageControlLoop
-    from tuning_tables.table_kinds import StageTable
+    from synth.retarder.loops.control_loop import LineControlLoop, PassageControlLoop
+    from tuning_tables.document import StageTable
 
     AnyLoop: TypeAlias = LineControlLoop | PassageControlLoop
 
@@ -60,8 +58,7 @@ def resolve(asked: Asked[ResolvedConfig | None, TablesOptions]) -> AskedLoops:
 
 def closing(table: StageTable, config: ResolvedConfig, source: str) -> Callable[[], AnyLoop]:
     """What closes the loop of `table` with the plant of `config` that it is for; `InputError` if there is none."""
-    from synth.retarder.line_control_loop import line_control_loop
-    from synth.retarder.passage_control_loop import passage_control_loop
+    from synth.retarder.loops.control_loop import line_control_loop, passage_control_loop
     from synth.retarder.served_class import served_class
     from tuning_tables.decisions import Decisions
     from tuning_tables.passages.passage_table import PassageTable

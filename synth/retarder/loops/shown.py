@@ -12,16 +12,12 @@ from matplotlib.figure import Figure
 from synth.frame.command import Limit
 from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, File, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import counted, decimals
-from synth.frame.summary import plain
+from synth.frame.told import plain
 from synth.retarder.comparison.limit_cycle import Hunting
-from synth.retarder.control_loop import TOLERANCE_M_S
-from synth.retarder.forms.table_file import file_stem
-from synth.retarder.line_control_loop import LineControlLoop
-from synth.retarder.passage_control_loop import PassageControlLoop
-from synth.retarder.pictures.block_diagram import loop_structure
-from synth.retarder.pictures.loop_cycle import loop_cycle
-from synth.retarder.pictures.loop_portrait import loop_portrait
-from synth.retarder.pictures.loop_response import loop_response
+from synth.retarder.forms.tables_at import file_stem
+from synth.retarder.loops.block_diagram import loop_structure
+from synth.retarder.loops.control_loop import TOLERANCE_M_S, LineControlLoop, PassageControlLoop
+from synth.retarder.loops.pictures import loop_cycle, loop_portrait, loop_response
 from synth.simulation.nominal_response import commands_of
 
 AnyLoop: TypeAlias = LineControlLoop | PassageControlLoop

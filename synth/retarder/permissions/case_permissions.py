@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from plant_models import Plant
-from plant_models.approach import Approach
+from plant_models.track_profile import Approach
 from synth.frame.workers.engine import Watcher
-from synth.problem.aim import Aim
-from synth.retarder.attempted_case import attempted
+from synth.problem.problem import Aim
 from synth.retarder.class_setup import ClassSetup, Origin, class_setup, origin_of, validation_passes
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configuration.settings import RegulatorSettings
-from synth.retarder.failed_case import FailedCase
+from synth.retarder.failed_case import FailedCase, attempted
 from synth.retarder.permissions.permission import (
     AllPermissions,
     CasePermissions,
@@ -29,7 +28,7 @@ from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.backward_induction import Solution
-from synth.solver.one_blas_thread import one_blas_thread
+from synth.solver.descent import one_blas_thread
 
 APPROACH_M = 4.0
 """The approach that is tried where the configuration has none."""

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
+from synth.retarder.asked_tune import RadarEpochs
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of, require_room, sensors_left_aside
 from synth.retarder.exit_figures import CHANCE_ONLY
-from synth.retarder.permissions.options import PermissionsOptions
-from synth.retarder.radar_epochs import RadarEpochs
+from synth.retarder.options import PermissionsOptions
 
 if TYPE_CHECKING:
     from synth.retarder.permissions.permission import AllPermissions
@@ -49,7 +49,7 @@ class FoundPermissions:
 
 def resolve(asked: Asked[ResolvedConfig, PermissionsOptions]) -> AskedPermissions:
     """Refuse what cannot be told, and what does not fit into memory."""
-    from synth.retarder.permissions.refusal import require_tellable
+    from synth.retarder.permissions.permission import require_tellable
 
     require_tellable(asked.settings, asked.place, "'hardware'")
     require_room(asked.settings, RadarEpochs(), asked.place, SOLVED_TOGETHER * asked.options.workers)
@@ -58,9 +58,9 @@ def resolve(asked: Asked[ResolvedConfig, PermissionsOptions]) -> AskedPermission
 
 def compute(asked: AskedPermissions, work: Work) -> FoundPermissions:
     """All permissions of all cases; `InputError` where no case has a table."""
-    from synth.frame.creation_time import creation_time
+    from synth.frame.version import creation_time
     from synth.kernels.cache import guarded
-    from synth.retarder.attempted_case import require_a_table, tables_refused
+    from synth.retarder.failed_case import require_a_table, tables_refused
     from synth.retarder.permissions.case_permissions import permissions_of
 
     with tables_refused(asked.place, asked.config):

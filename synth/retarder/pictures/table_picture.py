@@ -26,8 +26,16 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.retarder.command_panels import DOWN, HOLD, UP, label_panels, stage_panels
-from synth.retarder.pictures.stage_colours import finite, outcome, parts_in_stage
+from synth.retarder.pictures.stage_panels import (
+    DOWN,
+    HOLD,
+    UP,
+    finite,
+    label_panels,
+    outcome,
+    parts_in_stage,
+    stage_panels,
+)
 from synth.retarder.pictures.stage_surfaces import PATH_POINTS, stage_surfaces, surface_figure
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import TRACE_FACTORS, ExitSample, PassTrace

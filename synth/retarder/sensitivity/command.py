@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.frame.processors import available
+from synth.frame.machine import available
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
-from synth.retarder.sensitivity.options import SensitivityOptions
+from synth.retarder.options import SensitivityOptions
 
 if TYPE_CHECKING:
-    from synth.retarder.sensitivity.fixed_tables import FixedTables
+    from synth.retarder.sensitivity.responses import FixedTables
     from synth.retarder.sensitivity.sensitivity import Sensitivity, Trial
 
 LIMITS_OF_USE = (
@@ -42,8 +42,8 @@ class AskedSensitivity:
 
 def resolve(asked: Asked[ResolvedConfig, SensitivityOptions]) -> AskedSensitivity:
     """Read the tables that are given."""
-    from synth.retarder.forms.table_file import files_at
-    from synth.retarder.sensitivity.fixed_tables import tables_in
+    from synth.retarder.forms.tables_at import files_at
+    from synth.retarder.sensitivity.responses import tables_in
     from synth.retarder.sensitivity.sensitivity import Trial
 
     config, options = asked.settings, asked.options
@@ -60,10 +60,10 @@ def steps(asked: AskedSensitivity) -> Steps:
 
 def compute(asked: AskedSensitivity, work: Work) -> Sensitivity:
     """Tune the tables unless they are given, and let the plant vary under them."""
-    from synth.frame.creation_time import creation_time
+    from synth.frame.version import creation_time
     from synth.kernels.cache import guarded
-    from synth.retarder.attempted_case import tables_refused
-    from synth.retarder.sensitivity.fixed_tables import tables_tuned
+    from synth.retarder.failed_case import tables_refused
+    from synth.retarder.sensitivity.responses import tables_tuned
     from synth.retarder.sensitivity.sensitivity import sensitivity
 
     config = asked.config

@@ -8,15 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant_models.frozen_arrays import Floats
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.printed_numbers import counted
 from synth.frame.workers.engine import Tell
-from synth.retarder.configuration.plant_parameter import Parameter
+from synth.retarder.configuration.plant_values import Parameter
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.sensitivity.fixed_tables import FixedTables
-from synth.retarder.sensitivity.responses import OUTPUTS, Output, responses
+from synth.retarder.sensitivity.responses import OUTPUTS, FixedTables, Output, moving, responses, varied_parameters
 from synth.retarder.sensitivity.shares import Estimates, Share, first_order, mean_estimates, noise_share
-from synth.retarder.sensitivity.varied import moving, varied_parameters
 from synth.simulation.stratified_passes import stratified_passes
 
 REPEATED = 100

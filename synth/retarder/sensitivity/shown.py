@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
+from synth.retarder.sensitivity.responses import NEVER_VARIED
 from synth.retarder.sensitivity.sensitivity import (
     REPEATED,
     UNDECIDABLE,
@@ -17,7 +18,6 @@ from synth.retarder.sensitivity.sensitivity import (
     percent,
 )
 from synth.retarder.sensitivity.shares import GROUPS, HARMONICS, Share
-from synth.retarder.sensitivity.varied import NEVER_VARIED
 
 METHOD: Final = (
     "first-order shares by random balance designs (RBD-FAST, bias corrected) on a Latin hypercube; 95 % "

@@ -15,10 +15,16 @@ from plant_models import PointSensors, first_axle
 from plant_models.library import load_wheel_sensor
 from synth.frame.workers.engine import Tell
 from synth.problem.resolution import Resolution
-from synth.retarder.configuration.point_sensors.settings import DEFAULT_WHEEL_SENSOR
+from synth.retarder.configuration.plant_settings import DEFAULT_WHEEL_SENSOR
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.sensors.candidate_places import LayoutCase, candidate_places
-from synth.retarder.sensors.layout import LAST_SECTION_M, equal_layout, first_sensor_m, with_layout
+from synth.retarder.sensors.layout import (
+    LAST_SECTION_M,
+    LayoutCase,
+    candidate_places,
+    equal_layout,
+    first_sensor_m,
+    with_layout,
+)
 from synth.retarder.sensors.layout_search import ForEach, LayoutSearch
 from synth.retarder.sensors.layout_tables import ExitErrors, LayoutTable, errors_of, polished, solutions
 from synth.simulation.random_passes import RandomPasses

@@ -12,9 +12,7 @@ from plant_models.frozen_arrays import Floats
 from synth.frame.interval import Interval
 from synth.frame.workers.engine import Tell, silent
 from synth.retarder.configuration.config_file import ConfigSource
-from synth.retarder.policy_map import PolicyMap
-from synth.retarder.sensors.candidate_places import policy_anywhere
-from synth.retarder.sensors.layout import rule_layout
+from synth.retarder.sensors.layout import policy_anywhere, rule_layout
 from synth.retarder.sensors.layout_plan import (
     JudgedLayout,
     LayoutProblem,
@@ -26,6 +24,7 @@ from synth.retarder.sensors.layout_plan import (
     steps_of_plan,
 )
 from synth.retarder.sensors.layout_tables import ExitErrors, radar_errors
+from synth.solver.backward_induction import PolicyMap
 
 NEAR_RADAR = 1.1
 """Times the radar's rms is wanted where no rms is asked for."""

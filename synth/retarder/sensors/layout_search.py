@@ -13,8 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from plant_models.point_sensors import SHORTEST_SECTION_M
-from synth.retarder.sensors.candidate_places import CandidatePlaces
-from synth.retarder.sensors.layout import equal_layout
+from synth.retarder.sensors.layout import CandidatePlaces, equal_layout
 
 PlaceNumbers = tuple[int, ...]
 """Numbers of the places at which deciding sensors stand, rising."""

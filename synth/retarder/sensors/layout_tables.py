@@ -14,10 +14,10 @@ import numpy as np
 from plant_models import Plant, PointSensors
 from plant_models.frozen_arrays import Floats, frozen_arrays
 from synth.frame.interval import Interval
-from synth.problem.aim import Aim
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
-from synth.retarder.sensors.candidate_places import LayoutCase
-from synth.retarder.sensors.tuned_passages import LEAST_FRICTIONS, RESISTANCES, rounded
+from synth.retarder.sensors.layout import LayoutCase
+from synth.retarder.sensors.passage_table import LEAST_FRICTIONS, RESISTANCES, rounded
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.controllers import LineController
 from synth.simulation.passage_controller import of_speeds
@@ -26,9 +26,8 @@ from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import rms_of, rms_quotient
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import persistent_chain
-from synth.solver.chain.sensor_passages import SensorPassages, with_point_sensors
-from synth.solver.passage_polish import polish_passages
-from synth.solver.passage_speeds import PassageSpeeds, passage_speeds
+from synth.solver.chain.sampling import SensorPassages, with_point_sensors
+from synth.solver.passage_speeds import PassageSpeeds, passage_speeds, polish_passages
 from synth.solver.tuned_lines import tuned_lines
 
 COARSER = 2.0

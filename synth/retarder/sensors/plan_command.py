@@ -12,7 +12,7 @@ from synth.frame.printed_numbers import counted
 from synth.retarder.configuration.config_file import parse_config, source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.configured import head_of
-from synth.retarder.sensors.plan_options import PlanOptions
+from synth.retarder.options import PlanOptions
 
 if TYPE_CHECKING:
     from synth.retarder.sensors.layout_results import AskedLayouts, LayoutResults

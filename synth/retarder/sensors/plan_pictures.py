@@ -24,10 +24,10 @@ from synth.frame.picture.house_style import (
     new_figure,
     place,
 )
-from synth.retarder.command_panels import DOWN, HATCH, HOLD, UP, command_image, label_panels, stage_panels
-from synth.retarder.policy_map import PolicyMap
+from synth.retarder.pictures.stage_panels import DOWN, HATCH, HOLD, UP, command_image, label_panels, stage_panels
 from synth.retarder.sensors.layout_results import LayoutResults
 from synth.retarder.sensors.layout_tables import LayoutTable
+from synth.solver.backward_induction import PolicyMap
 
 
 def shown_plan(results: LayoutResults) -> Figure:

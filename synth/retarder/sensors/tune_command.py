@@ -2,26 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
+from plant_models import Plant
 from synth.frame.command import Asked, Command, Work
 from synth.frame.exhibits import Chapter, Sentence
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
+from synth.problem.resolution import Resolution
 from synth.retarder.asked_tune import AskedTune, asked_tune, drawing, limits, steps, tuned
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.resolved_position import ResolvedSensors
 from synth.retarder.configured import head_of
+from synth.retarder.epochs import Ground
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY, NOT_CERTIFIED
-from synth.retarder.sensors.passage_epochs import PassageEpochs
-from synth.retarder.tune_options import TUNE, TuneOptions
+from synth.retarder.options import TUNE, TuneOptions
 
 if TYPE_CHECKING:
     from synth.frame.exhibits import File
-    from synth.retarder.found_book import FoundBook
+    from synth.retarder.acceptance import FoundBook
     from synth.retarder.sensors.sensor_case import SensorCase
     from synth.retarder.tune import Book
     from tuning_tables.passages.passage_table import PassageTable
+
+
+@dataclass(frozen=True)
+class PassageEpochs:
+    """See `Epochs`; `sensors` tell the passages."""
+
+    sensors: ResolvedSensors
+
+    def grids(self, config: ResolvedConfig, plant: Plant) -> tuple[Plant, Sequence[Resolution]]:
+        """See `Epochs`."""
+        return self.sensors.serving(plant), (config.resolution,)
+
+    def cases(self, ground: Ground[PassageTable], label: str, plant: Plant) -> list[Callable[[], SensorCase]]:
+        """See `Epochs`."""
+        from synth.retarder.sensors.sensor_case import (
+            sensor_case,  # with the kernels
+            sensor_class,
+        )
+
+        config = ground.config
+        setup = sensor_class(label, plant, self.sensors, config.resolution, ground.passes, ground.origin)
+        return [partial(sensor_case, setup, aim, ground.store) for aim in config.aims_of(label)]
+
 
 LIMITS_OF_USE = (
     MODEL_ONLY,
@@ -79,8 +107,7 @@ def book_files(book: Book[SensorCase]) -> tuple[tuple[File, ...], str]:
 
 def show(found: FoundBook[SensorCase]) -> Iterator[Chapter]:
     """What is shown of it."""
-    from synth.retarder.sensors.tune_pictures import chapters
-    from synth.retarder.sensors.tune_shown import designs, heard, results
+    from synth.retarder.sensors.tune_shown import chapters, designs, heard, results
 
     cases, sensors = found.book.cases, found.book.config.sensors
     assert sensors is not None  # `resolve` has refused a configuration without

@@ -1,6 +1,7 @@
-"""All charts of a book of tables with lines: what is drawn, and what is said under it.
+"""All charts of a book of tables with lines: what is drawn, and what is said under it; and accuracy against time in the
+position, every price of every case.
 
-What draws one is imported where it is called, in a process of its own where there are several: it needs matplotlib.
+What draws a chart is imported where it is called, in a process of its own where there are several: it needs matplotlib.
 """
 
 from __future__ import annotations
@@ -9,19 +10,18 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from synth.frame.exhibits import Chart, Exhibit, Sentence
-from synth.frame.printed_numbers import of_ten_thousand, speed
-from synth.problem.aim import OVERSPEED_M_S
-from synth.retarder.case_names import file_stem
-from synth.retarder.exit_bins import prediction_origin
-from synth.retarder.shown_case import ShownCase, shown_case
+from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table
+from synth.frame.printed_numbers import decimals, of_ten_thousand, speed
+from synth.problem.problem import OVERSPEED_M_S
+from synth.retarder.case_result import ParetoFront, ParetoPoint
+from synth.retarder.exit_figures import CASE, LOOP, PREDICTED, loop_row, told
+from synth.retarder.shown_case import ShownCase, prediction_origin, shown_case
+from synth.retarder.tuned_case import file_stem
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from synth.retarder.case_result import CaseResult
-    from synth.retarder.pareto.pareto_front import ParetoFront
-
 
 RUN: Final = (
     "Left: one run of mean friction. The colour and the number tell the stage in force; thin lines are the switching "
@@ -85,27 +85,61 @@ def case_chart(case: CaseResult) -> Chart:
 
 def rms_by_controller(cases: Sequence[CaseResult], limit_m_s: float) -> Figure:
     """Drawn by the module of that name, as all of these."""
-    from synth.retarder.pictures.rms_by_controller import rms_by_controller
+    from synth.retarder.pictures.accuracy import rms_by_controller
 
     return rms_by_controller(cases, limit_m_s)
 
 
 def feasibility(cases: Sequence[CaseResult]) -> Figure:
     """See `rms_by_controller`."""
-    from synth.retarder.pictures.feasibility import feasibility
+    from synth.retarder.pictures.accuracy import feasibility
 
     return feasibility(cases)
 
 
 def pareto_fronts(fronts: Sequence[ParetoFront]) -> Figure:
     """See `rms_by_controller`."""
-    from synth.retarder.pictures.pareto_fronts import pareto_fronts
+    from synth.retarder.pictures.accuracy import pareto_fronts
 
     return pareto_fronts(fronts)
 
 
 def case_picture(case: ShownCase) -> Figure:
     """See `rms_by_controller`."""
-    from synth.retarder.pictures.case_picture import case_picture
+    from synth.retarder.pictures.exits import case_picture
 
     return case_picture(case)
+
+
+FRONTS: Final = (
+    *CASE,
+    Column("time_price_m2_s3", "price", "m²/s³"),
+    Column("ratio", "rms / rms without price", form=decimals(3)),
+    PREDICTED,
+    *LOOP,
+)
+LEAD: Final = (
+    "Each row is a table of its own, tuned for this price of a second and simulated on the same passes. The ratio is "
+    "paired."
+)
+
+
+def fronts(found: Sequence[ParetoFront]) -> Iterator[Exhibit]:
+    """A row for each price, and a picture."""
+    yield Sentence(LEAD)
+    yield Table(
+        "fronts", "Accuracy against time", FRONTS, [row_of(each, point) for each in found for point in each.points]
+    )
+    yield fronts_chart(found)
+
+
+def row_of(front: ParetoFront, point: ParetoPoint) -> Row:
+    """One price."""
+    return {
+        "label": front.label,
+        "target_speed_m_s": front.target_speed_m_s,
+        "time_price_m2_s3": point.time_price_m2_s3,
+        "ratio": told(point.ratio, point.ratio_ci95, point.statistics.passes),
+        "predicted_rms_m_s": point.predicted_rms_m_s,
+        **loop_row(point.statistics),
+    }

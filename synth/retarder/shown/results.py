@@ -1,24 +1,36 @@
-"""The first chapter of a book: a row for each case, and what these rows come to."""
+"""A book of tables with lines: a row for each case, and what these rows come to; all controllers side by side, on the
+same passes; which criterion the tables were made by, and what keeping its requirement took; how far their predictions
+can be trusted, and what commands at any time gain.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from statistics import median
 from typing import Final
 
-from synth.frame.exhibits import Column, Exhibit, Row, Sentence
+from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
-from synth.frame.printed_numbers import decimals, speed
-from synth.retarder.acceptance import CaseVerdict
+from synth.frame.printed_numbers import counted, decimals, per_cent, span, speed
+from synth.retarder.acceptance import CaseVerdict, FoundBook
 from synth.retarder.case_result import CaseResult, fronts_of
+from synth.retarder.case_result import told as nearly_free
 from synth.retarder.comparison.measured import Measured
-from synth.retarder.exit_figures import CASE, DETAILS, EFFORT, TOLD, told
-from synth.retarder.found_book import FoundBook
-from synth.retarder.pareto.pareto_front import told as nearly_free
-from synth.retarder.permissions.refusal import tellable
-from synth.retarder.shown.cases import KEYS, PROMISE, UNAVOIDABLE, VERDICT, case_row, cases_table, passes_told
-from synth.retarder.shown.first_screen import tiles, to_do
-from synth.retarder.shown.off_nominal import worst_of
+from synth.retarder.exit_figures import CASE, DETAILS, EFFORT, LOOP, PREDICTED, TOLD, loop_row, told
+from synth.retarder.permissions.permission import tellable
+from synth.retarder.shown.cases import (
+    KEYS,
+    PROMISE,
+    UNAVOIDABLE,
+    VERDICT,
+    case_row,
+    cases_table,
+    identity_row,
+    passes_told,
+    tiles,
+    to_do,
+)
+from synth.retarder.shown.checks import worst_of
 from synth.retarder.shown.pictures import accuracy_charts
 
 ENTRY: Final = (
@@ -121,4 +133,107 @@ def infeasible(case: CaseResult, verdict: CaseVerdict) -> str:
         f"Infeasible and outside the verdict: {verdict.name}, {verdict.obstacle}: {part} can be served of the "
         f"{entry.low_m_s:g} to {entry.high_m_s:g} m/s asked for, where the rms that no regulator avoids is "
         f"{speed(least.rms_m_s)} [{low}, {high}] m/s."
+    )
+
+
+CONTROLLER: Final = (
+    Column("controller", "controller", words=True),
+    *LOOP,
+    PREDICTED,
+    Column("table_ratio", "rms of the table / its rms", form=decimals(3)),
+)
+CONTROLLERS: Final = (*CASE, *CONTROLLER)
+
+
+def controllers(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
+    """A row for each controller of each case: the table, the reference, and the classical laws."""
+    cases = found.book.cases
+    rows = [{**identity_row(case), **controller_row(each)} for case in cases for each in case.controllers]
+    yield Table("controllers", "Every controller, on the same passes; ratios are paired", CONTROLLERS, rows)
+
+
+def controller_row(found: Measured) -> Row:
+    """The figures of `CONTROLLER`."""
+    return {
+        "controller": found.name,
+        **loop_row(found.statistics),
+        "predicted_rms_m_s": found.predicted_rms_m_s,
+        "table_ratio": table_ratio(found),
+    }
+
+
+REQUIREMENT: Final = (
+    *CASE,
+    Column("multiplier_m2_s2", "price of an over-speed", "m²/s²"),
+    Column("probability", "predicted over-speed", form=per_cent),
+    Column("probability_without", "without the limit", form=per_cent),
+    Column("worst_factor", "worst friction factor"),
+    Column("worst_rms_m_s", "rms there", "m/s", decimals(4)),
+    Column("worst_rms_without_m_s", "without the guard", "m/s", decimals(4)),
+    Column("rms_m_s", "predicted rms", "m/s", decimals(4)),
+    Column("rms_without_m_s", "of the least mean square", "m/s", decimals(4)),
+    Column("gap", "duality gap", form=per_cent),
+    Column("factors", "friction factors optimised over"),
+    Column("weights", "their weights"),
+    Column("rounds", "rounds"),
+    Column("met", "limit kept"),
+)
+"""Of `OverspeedLimitFound` and `WorstCaseFound`; a table has the columns of one."""
+
+
+def criterion(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
+    """The criterion in a sentence; where it requires something, a sentence for each case."""
+    of = found.book.config.criterion
+    yield Sentence(
+        f"Minimised: {of.sentence}; a stop in the position costs {of.stall_cost_m2_s2:g} m2/s2 more, a change of stage "
+        f"{of.switching_tolerance_m2_s2:g} m2/s2, a second in the position {of.time_price_m2_s3:g} m2/s3."
+    )
+    for case in found.book.cases:
+        if case.finding is not None:
+            yield Sentence(f"{case.name}: {case.finding.sentence}.")
+    rows: list[Row] = [
+        {**identity_row(case), **vars(case.finding)} for case in found.book.cases if case.finding is not None
+    ]
+    if rows:
+        yield Table("requirement", "What the requirement took", REQUIREMENT, rows)
+
+
+HONEST: Final = (0.9, 1.1)
+"""Predicted / simulated rms inside this is called honest."""
+
+EXACT: Final = (
+    "Prediction (the exit-speed density of the exported table, nothing sampled) and simulation (passes in time with "
+    "valves, sensor and sampling) are two independent computations of one quantity. "
+)
+ESTIMATED: Final = (
+    "With an estimator the prediction is itself simulated, on stratified passes that neither design nor validation "
+    "use: it tests the sample, not the model. "
+)
+
+
+def predictions(found: FoundBook[CaseResult]) -> Iterator[Exhibit]:
+    """Over the feasible cases (over all, where none is feasible)."""
+    cases = found.feasible or found.book.cases
+    exact = [case for case in cases if case.table.estimator is None]
+    estimated = [case for case in cases if case.table.estimator is not None]
+    if exact:
+        yield Sentence(EXACT + ratios_of(exact))
+    if estimated:
+        yield Sentence(ESTIMATED + ratios_of(estimated))
+    ratios = [case.comparison.at_rest.table_ratio for case in cases if case.comparison.at_rest is not None]
+    if ratios:
+        yield Sentence(
+            "The regulator commands at any time, also while the pressure is on its way. On the same passes its rms is "
+            f"{span(ratios)} times that of the lines that the same tune makes for commands at rest "
+            f"({median(ratios):.2f} in the median)."
+        )
+
+
+def ratios_of(cases: Sequence[CaseResult]) -> str:
+    """Predicted over simulated rms, in a sentence."""
+    ratios = [case.measured.prediction_ratio for case in cases]
+    inside = sum(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios)
+    return (
+        f"Predicted / simulated rms is {span(ratios)} over {counted(len(cases), 'case')}; {inside} of them within "
+        f"{HONEST[0]:g} to {HONEST[1]:g}."
     )

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from synth.frame.exhibits import Row
 from synth.retarder.exit_figures import table_row
 from synth.retarder.shown.cases import promise_row
-from synth.retarder.sweep.refinement import Gap
+from synth.retarder.sweep.plan import Gap
 from synth.retarder.sweep.sweep_file import Condition
 from synth.retarder.sweep.unit_result import Row as UnitRow
 from tuning_tables import ControllerTable

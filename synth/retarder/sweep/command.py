@@ -1,4 +1,7 @@
-"""The command `sweep run`: books over a grid of classes, targets and conditions; units are stored as they come."""
+"""The command `sweep run`: books over a grid of classes, targets and conditions; units are stored as they come.
+
+The solver is imported when a worker needs it.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +11,35 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter
-from synth.frame.processors import available
+from synth.frame.machine import available
+from synth.frame.workers.engine import Answer, answered, require_software
 from synth.retarder.configured import sensors_left_aside
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY, NOT_CERTIFIED
-from synth.retarder.sweep.options import SweepOptions
+from synth.retarder.options import SweepOptions
+from synth.retarder.sweep.plan import UnitOrder
 from synth.retarder.sweep.sweep_directory import SWEEP, HeldSweep
 from synth.retarder.sweep.sweep_file import SweepFile, parse_sweep
+from synth.retarder.sweep.unit_result import UnitResult
 
 if TYPE_CHECKING:
     from synth.frame.workers.engine import Engine
     from synth.retarder.sweep.book_figures import BookFigures
     from synth.retarder.sweep.run import Task
+
+
+def answer(order: UnitOrder) -> Answer:
+    """Compute a unit."""
+    return answered(order, computed)
+
+
+def computed(order: UnitOrder) -> UnitResult:
+    """The result of `order`, computed in this process by this very software; raises what its steps raise."""
+    require_software(order.software)
+    from synth.kernels.cache import guarded
+    from synth.retarder.sweep.tune_unit import tune_unit
+
+    return guarded(tune_unit, order)
+
 
 LIMITS_OF_USE = (
     MODEL_ONLY,
@@ -72,7 +93,6 @@ def compute(asked: AskedSweep, work: Work) -> tuple[BookFigures, ...]:
 def engine_for(task: Task, options: SweepOptions, tell: Callable[[str], None]) -> Engine:
     """The cluster that was named, or processes on this machine as far as memory allows, which `tell` is told."""
     from synth.retarder.sweep.run import fitting_workers
-    from synth.retarder.sweep.unit_answer import answer
 
     if options.scheduler is not None:
         from synth.frame.workers.dask_cluster import connect

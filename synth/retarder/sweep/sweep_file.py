@@ -10,16 +10,16 @@ from dataclasses import dataclass, replace
 from pydantic import ValidationError
 
 from plant_models.library import BUILT_IN, Library, SourcedValue
-from synth.frame.input_error import InputError
-from synth.frame.settings.file_fault import faults_in
+from synth.frame.faults import InputError
 from synth.frame.settings.numbers import numbers_of
+from synth.frame.settings.settings_file import faults_in
 from synth.frame.settings.toml_file import Tree, toml_tree
 from synth.retarder.configuration.config_file import valid_settings
 from synth.retarder.configuration.own_types import with_own_types
 from synth.retarder.configuration.plant_settings import DEFAULT_CUTS
 from synth.retarder.configuration.resolved_config import ResolvedConfig, resolve
 from synth.retarder.sweep.sweep_settings import SweepSettings, SweepTable
-from tuning_tables.canonical import canonical_json
+from tuning_tables.json_text import canonical_json
 
 
 @dataclass(frozen=True)

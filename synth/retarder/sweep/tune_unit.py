@@ -10,22 +10,19 @@ from typing import Any
 import numpy as np
 
 from plant_models import PlantError
-from synth.problem.aim import Aim
-from synth.retarder.attempted_case import attempted
+from synth.problem.problem import Aim
 from synth.retarder.class_setup import ClassSetup, class_setup, origin_of, validation_passes
+from synth.retarder.comparison.measured import judgement
 from synth.retarder.configuration.resolved_config import ResolvedConfig, resolve
 from synth.retarder.configuration.settings import Settings
-from synth.retarder.failed_case import FailedCase, parted
-from synth.retarder.judgement import judgement
-from synth.retarder.rounded_table import predict
-from synth.retarder.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
-from synth.retarder.sweep.refinement import Bench, Gap, refined
+from synth.retarder.failed_case import FailedCase, attempted, parted
+from synth.retarder.sweep.plan import TARGETS_AT_ONCE, Bench, Gap, Refinement, UnitOrder, refined
 from synth.retarder.sweep.unit_result import Row, UnitResult
-from synth.retarder.tuned_table import read_back, solutions, tuned_table, validated_table
+from synth.retarder.tuned_table import predict, read_back, solutions, tuned_table, validated_table
 from synth.simulation.exit_statistics import overspeed_of
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
-from synth.solver.one_blas_thread import one_blas_thread
+from synth.solver.descent import one_blas_thread
 from tuning_tables import ControllerTable, Stage
 from tuning_tables.active_table import between
 

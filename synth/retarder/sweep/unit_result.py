@@ -8,15 +8,15 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from synth.retarder.comparison.measured import Judgement
 from synth.retarder.failed_case import FailedCase
-from synth.retarder.judgement import Judgement
-from synth.retarder.sweep.refinement import Gap
+from synth.retarder.sweep.plan import Gap
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics
 from tuning_tables import ControllerTable, DamagedTable, TableError
-from tuning_tables.canonical import canonical_json
 from tuning_tables.document import from_document, to_document
-from tuning_tables.excerpt import excerpt
-from tuning_tables.seal import seal_of, unsealed
+from tuning_tables.errors import excerpt
+from tuning_tables.json_text import canonical_json
+from tuning_tables.whole_file import seal_of, unsealed
 
 FORMAT, VERSION = "retarder-sweep-unit", 5
 

@@ -10,18 +10,17 @@ from typing import TYPE_CHECKING
 
 from synth.frame.command import Asked, Command, Head, Limit, Steps, Work
 from synth.frame.exhibits import Chapter, File, Sentence
-from synth.frame.input_error import InputError
-from synth.frame.processors import available
+from synth.frame.faults import InputError
+from synth.frame.machine import available
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.configured import head_of
+from synth.retarder.configured import configuration_of, given_config, head_of, made_elsewhere
 from synth.retarder.exit_figures import CHANCE_ONLY, MODEL_ONLY
-from synth.retarder.tables_configuration import configuration_of, given_config, made_elsewhere
 from synth.retarder.validation.options import ValidateOptions
 
 if TYPE_CHECKING:
     from synth.retarder.validation.revalidation import Rehearsal, Revalidation
     from tuning_tables import ControllerTable
-    from tuning_tables.table_kinds import StageTable
+    from tuning_tables.document import StageTable
 
 LIMITS_OF_USE = (MODEL_ONLY, CHANCE_ONLY)
 
@@ -62,8 +61,7 @@ class FoundPasses:
 
 def resolve(asked: Asked[ResolvedConfig | None, ValidateOptions]) -> AskedPasses:
     """The tables; refused where one fits no class of the configuration, or its passes cannot be logged."""
-    from synth.retarder.forms.table_file import is_infeasible, summary_beside
-    from synth.retarder.forms.tables_at import tables_at
+    from synth.retarder.forms.tables_at import is_infeasible, summary_beside, tables_at
 
     path, options = asked.options.source, asked.options
     found = tables_at(path)
@@ -115,7 +113,7 @@ def compute(asked: AskedPasses, work: Work) -> FoundPasses:
 
 def log_file(rehearsal: Rehearsal, log: AskedLog) -> File:
     """Passes of the tables, simulated once more, as cuts come, as a controller logs them."""
-    from plant_models.pressure_gauge import PressureGauge
+    from plant_models.pressure_regulator import PressureGauge
     from synth.retarder.validation.revalidation import rehearsed_log
     from tuning_tables.pass_log.log_files import write_log
 

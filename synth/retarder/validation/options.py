@@ -8,9 +8,9 @@ from typing import Final
 
 from pydantic import field_validator
 
-from plant_models.pressure_gauge import USUAL_NOISE_KPA
+from plant_models.pressure_regulator import USUAL_NOISE_KPA
 from synth.frame.settings.options import number_option, word_option
-from synth.retarder.tables_options import TablesOptions
+from synth.retarder.options import TablesOptions
 
 LARGEST_STD_KPA: Final = 100.0
 LOG_FORMS: Final = (".csv", ".h5")

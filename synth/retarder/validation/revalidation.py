@@ -6,25 +6,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from plant_models.pressure_gauge import PressureGauge
+from plant_models.pressure_regulator import PressureGauge
 from synth.frame.workers.engine import Tell, silent
-from synth.retarder.comparison.measured import prediction_ratio_of
+from synth.retarder.comparison.measured import Judgement, judgement, prediction_ratio_of
 from synth.retarder.configuration.resolved_config import ResolvedConfig
-from synth.retarder.judgement import Judgement, judgement
-from synth.retarder.sensors.sensor_class import full_brake as full_brake_at_passages
+from synth.retarder.sensors.sensor_case import full_brake as full_brake_at_passages
 from synth.retarder.served_class import PassageClass, ServedClass, plant_for, served_class
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.controllers import Controller, full_brake
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics, overspeed_of
-from synth.simulation.logged_passes import LoggedClass, mixed_log
 from synth.simulation.passage_controller import PassageController, of_table
 from synth.simulation.passage_loop import close_passage_loop, simulate_passages
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import Interval
+from synth.simulation.sampled_pass import LoggedClass, mixed_log
 from tuning_tables import ControllerTable
+from tuning_tables.document import StageTable
 from tuning_tables.pass_log.pass_log import PassLog
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.table_kinds import StageTable
 
 
 @dataclass(frozen=True)

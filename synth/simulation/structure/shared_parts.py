@@ -6,13 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 from plant_models import Plant, pressure_regulator
-from plant_models.pads import overpressure_kpa
+from plant_models.pressure_regulator import overpressure_kpa
 from plant_models.stage_regulator import Actuator, RegulatorClock, reaches_valves_s
 from plant_models.valve_drive import wait_after_command
 from synth.kernels.loop.motion import Path
 from synth.simulation.closed_loop import pad_slopes
-from synth.simulation.impulse_train import held, with_command
-from synth.simulation.structure.part import Block, Number, Part
+from synth.simulation.control_system import held, with_command
+from synth.simulation.structure.diagram import Block, Number, Part
 
 
 def lock(actuator: Actuator, clock: RegulatorClock) -> Part:

@@ -8,7 +8,7 @@ import numpy as np
 
 from plant_models.frozen_arrays import Bools, Floats, Ints, frozen_arrays
 from synth.solver.any_time.drive_modes import DriveModes
-from synth.solver.polynomial_lines import PolynomialLines, basis
+from synth.solver.switching_lines import PolynomialLines, basis
 
 PRESSURE_UNIT_KPA = 100.0
 """Powers of the pressure count in it."""

@@ -14,7 +14,7 @@ from synth.kernels.any_time.occupancy import occupy
 from synth.kernels.any_time.period import ROOM
 from synth.kernels.any_time.sampled_arrays import Costs, Lines, Met, SampledArrays
 from synth.kernels.any_time.value import value
-from synth.problem.aim import Aim
+from synth.problem.problem import Aim
 from synth.solver.any_time.sampled_chain import SampledChain, sampled_arrays
 from synth.solver.exit_density import ExitDensity
 

@@ -1,4 +1,7 @@
-"""The plant as a Markov chain: everything that a sweep needs and that depends on neither policy nor target speed."""
+"""The plant as a Markov chain: everything that a sweep needs and that depends on neither policy nor target speed.
+
+Also on a finer speed grid, for criteria that live in the tails of the exit speed, and as the kernels take it.
+"""
 
 from __future__ import annotations
 
@@ -10,16 +13,23 @@ import numpy as np
 from plant_models import Plant, path_coefficients
 from plant_models.frozen_arrays import Floats, frozen_arrays
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
+from synth.kernels.sweep import chain_arrays as kernel
 from synth.kernels.sweep.chain_arrays import PathNoise, TransientNoise
+from synth.kernels.sweep.pass_time import Times
 from synth.problem.resolution import Resolution
-from synth.solver.chain.decisions import Decisions
-from synth.solver.chain.epochs import DecisionEpochs
+from synth.solver.chain.decisions import DecisionEpochs, Decisions
 from synth.solver.chain.grid import Grid
 from synth.solver.chain.landings import Landings, friction_factors, make_landings
-from synth.solver.chain.path_noise import correlated_noise, transient_noise
-from synth.solver.chain.scenarios import Scenarios, check_scenarios, persistent_scenarios
+from synth.solver.chain.sampling import TimeSamples
+from synth.solver.chain.scenarios import (
+    Scenarios,
+    check_scenarios,
+    correlated_noise,
+    persistent_scenarios,
+    resistance_scenarios,
+    transient_noise,
+)
 from synth.solver.chain.speed_measurement import SpeedMeasurement
-from synth.solver.chain.time_samples import TimeSamples
 
 NODE_AT_ENTRANCE_M = 1e-9
 """A path node this near to the entrance is there."""
@@ -111,3 +121,45 @@ def noise_on_landings(path_noise: PathNoise, landings: Landings, grid: Grid) -> 
     """The mean of η over every change of stage, up to the longest path that one takes."""
     longest = math.ceil(landings.travel_m.max() / grid.path_step_m) + 2
     return transient_noise(path_noise, landings.overpressure_kpa, landings.samples, longest)
+
+
+def finer_in_speed(chain: Chain, times: float, scenarios: Scenarios) -> Chain:
+    """The same plant, path step and measurement with a speed step `times` as fine, and with `scenarios`."""
+    resolution = replace(chain.resolution, speed_step_m_s=chain.resolution.speed_step_m_s / times)
+    return replace(chain_of(chain.plant, resolution, scenarios), measurement=chain.measurement)
+
+
+def known_factors(plant: Plant, factors: Floats, resistance_nodes: int) -> Scenarios:
+    """Every friction factor (F,) with each of W values of the running resistance, which is innermost; the factors are
+    weighted equally, the resistance by its law."""
+    extra, weight = resistance_scenarios(plant, resistance_nodes)
+    count = len(factors)
+    return Scenarios(np.repeat(factors, len(extra)), np.tile(extra, count), np.tile(weight / count, count))
+
+
+def chain_arrays(c: Chain, commands: int | None = None) -> kernel.ChainArrays:
+    """All but policy, scenarios and aim; of so many commands, by default all."""
+    a, commands = c.landings, c.decisions.commands if commands is None else commands
+    return kernel.ChainArrays(
+        kernel.Grid(c.grid.speed_m_s, c.grid.path_step_m, c.grid.energy_step_m2_s2),
+        kernel.Track(c.drive_m_s2, c.brake_m_s2_per_kpa),
+        kernel.Modes(c.actuator.mode_stage, c.actuator.mode_overpressure_kpa, c.entry_mode),
+        c.path_noise,
+        c.transient_noise,
+        kernel.Landings(a.change_chain[:commands], a.end_mode, a.ends, a.factors),
+        c.decisions.at_nodes(len(c.drive_m_s2)),
+        c.epochs.hold_period_s,
+        c.entry,
+    )
+
+
+def scenario_arrays(c: Chain, chosen: slice = slice(None)) -> kernel.Scenarios:
+    """The `chosen` scenarios."""
+    return kernel.Scenarios(c.scenarios.factor[chosen], c.scenarios.extra_m_s2[chosen])
+
+
+def pass_times(c: Chain) -> Times:
+    """What the recursions must know to count the time of a pass."""
+    path = c.grid.path_m
+    duration = np.asarray(c.landings.samples * c.epochs.clock.sample_period_s, dtype=np.float64)
+    return Times(np.diff(path), path[-1] - path[:-1], duration, np.array(c.decisions.lead_m))

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.retarder.fmi.controller_unit import controller_unit
 from synth.retarder.forms.code_options import PLAIN
 from synth.retarder.forms.table_forms import FORMS
@@ -23,7 +23,7 @@ from tests.controller_code.fmi.importer import Imported, RefusedCall
 from tests.controller_code.passage_tables import passage_book
 from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
 from tuning_tables.estimator import begin, unseen_samples
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_names import RETARDER, ExportPrefix
 from tuning_tables.rule import alarms_for, decide_for, speed_for
 from tuning_tables.table_book import TableBook
 

@@ -13,7 +13,7 @@ import pytest
 from plant_models import Approach, Plant, PlantError, TrackProfile, WeightForce
 from synth.retarder.estimation.estimator_design import estimator_of
 from synth.retarder.fmi.controller_unit import controller_unit
-from synth.retarder.fmi.interfaces import FMI_2
+from synth.retarder.fmi.description import FMI_2
 from synth.retarder.fmi.position_unit import position_unit
 from tests.controller_code.conftest import Tool
 from tests.controller_code.fmi.importer import Imported, Imported2, RefusedCall
@@ -22,7 +22,7 @@ from tests.controller_code.sample_book import sample_book, with_approach, with_s
 from tests.effort import sized
 from tests.synth.case_factory import make_plant, make_table
 from tuning_tables import Decisions
-from tuning_tables.export_prefix import RETARDER
+from tuning_tables.export_names import RETARDER
 from tuning_tables.table import ControllerTable
 
 PASSES, SEED = sized(60, 1000), 3

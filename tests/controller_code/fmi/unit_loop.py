@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from synth.retarder.fmi.controller_unit import controller_unit
-from synth.retarder.fmi.interfaces import FMI_3, Interface
+from synth.retarder.fmi.description import FMI_3, Interface
 from synth.retarder.fmi.position_unit import position_unit
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import random_passes
 from tests.controller_code.fmi.importer import Imported
-from tuning_tables.export_prefix import RETARDER
+from tuning_tables.export_names import RETARDER
 from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import TableBook
 

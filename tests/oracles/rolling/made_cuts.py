@@ -11,8 +11,7 @@ from plant_models import TrackProfile
 from plant_models.rolling.car_mix import CarMix, MixedCar
 from plant_models.rolling.random_cuts import DrawnCuts
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw
-from plant_models.rolling.roll_track import Bend, RollTrack
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Bend, RollTrack, Weather
 from synth.simulation.free_roll import RollingCuts, rolling_cuts
 from tests.plant_models.rolling.populations import FLAT, GONDOLA, LONG_TANK, TANK, population
 

@@ -9,9 +9,8 @@ from scipy.optimize import brentq
 
 from plant_models import TrackProfile
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
-from plant_models.rolling.roll_track import Bend, RollTrack
-from plant_models.rolling.weather import Weather
-from scripts.studies.rolling.by_scipy import acceleration, solved
+from plant_models.rolling.roll_track import Bend, RollTrack, Weather
+from scripts.studies.rolling.beside import acceleration, solved
 from synth.simulation.free_roll import RollingCuts
 from tests.effort import every, sized
 from tests.oracles.rolling.made_cuts import EVEN, MIX, START_M, Floats, cuts, random_cuts, random_track, rolling

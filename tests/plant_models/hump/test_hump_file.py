@@ -13,9 +13,8 @@ import pytest
 
 from plant_models.library.hump_entry import hump_from, hump_names
 from plant_models.library.hump_schema import hump_schema
-from plant_models.library.library import BUILT_IN
+from plant_models.library.library import BUILT_IN, HUMPS, TypeFileError
 from plant_models.library.toml_lines import line_of, places_of
-from plant_models.library.type_file import HUMPS, TypeFileError
 from tests.effort import sized
 from tests.plant_models.hump.random_humps import SMALL, read
 

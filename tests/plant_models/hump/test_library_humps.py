@@ -9,10 +9,9 @@ import pytest
 
 from plant_models.hump import HumpGraph
 from plant_models.library.hump_entry import hump_names, load_hump
-from plant_models.library.library import BUILT_IN
+from plant_models.library.library import BUILT_IN, HUMPS, TypeFileError
 from plant_models.library.source import CITATION, sources
 from plant_models.library.sourced_value import CONFIDENCES, JUDGEMENT
-from plant_models.library.type_file import HUMPS, TypeFileError
 from tests.plant_models.hump.random_humps import SMALL, read
 
 

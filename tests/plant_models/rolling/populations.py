@@ -7,8 +7,7 @@ from plant_models.library import WeightCategories, load_car, load_weight_categor
 from plant_models.rolling.car_mix import CarMix, MixedCar
 from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw
-from plant_models.rolling.roll_track import Bend
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Bend, Weather
 
 CATEGORIES: WeightCategories = load_weight_categories()
 NORM = HumpNormLaw()

@@ -12,8 +12,7 @@ from scipy import stats
 
 from plant_models import Car, PlantError, TrackProfile
 from plant_models.rolling.car_mix import CarMix, MixedCar, mass_limits_t
-from plant_models.rolling.roll_track import Bend, RollTrack
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Bend, RollTrack, Weather
 from tests.plant_models.rolling.populations import CATEGORIES, FLAT, GONDOLA, LONG_TANK, MIX, TANK
 
 U = np.random.default_rng(1).random((40_000, 2))

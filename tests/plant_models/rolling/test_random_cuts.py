@@ -12,8 +12,7 @@ from plant_models import Cut, PlantError, couple
 from plant_models.rolling.car_mix import CarMix, MixedCar
 from plant_models.rolling.random_cuts import MOST_CARS, DrawnCuts, air_n_per_kn, bend_draws
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
-from plant_models.rolling.roll_track import Bend
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Bend, Weather
 from tests.plant_models.rolling.populations import CATEGORIES, GONDOLA, LONG_TANK, MIX, TANK, WINDY, population
 
 LIGHT, MIDDLE = CATEGORIES.named("Л"), CATEGORIES.named("С")

@@ -12,8 +12,15 @@ from scipy import stats
 
 from plant_models import PlantError, RollingResistance
 from plant_models.frozen_arrays import Floats
-from plant_models.rolling.keyed_numbers import GOLDEN, keyed_uniform, keyed_words, mixed
-from plant_models.rolling.random_numbers import BLOCK, Purpose, uniform_numbers
+from plant_models.rolling.random_numbers import (
+    BLOCK,
+    GOLDEN,
+    Purpose,
+    keyed_uniform,
+    keyed_words,
+    mixed,
+    uniform_numbers,
+)
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.roll_track import Bend
 from tests.plant_models.rolling.populations import CATEGORIES

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from plant_models import Plant
-from synth.problem.aim import Aim
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.tabulate import UNPREDICTED, tabulate

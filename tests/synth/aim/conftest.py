@@ -12,8 +12,7 @@ from plant_models.library.weight_category import WeightCategories
 from plant_models.rolling.car_mix import CarMix, MixedCar
 from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw
-from plant_models.rolling.roll_track import Bend, RollTrack
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Bend, RollTrack, Weather
 from synth.aim.scene import AimScene, MeasuredStretch
 
 CATEGORIES = load_weight_categories()

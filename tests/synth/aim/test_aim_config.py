@@ -10,12 +10,11 @@ import pytest
 from plant_models.library import CAR_MIXES, TRACKS, Kind
 from plant_models.rolling.random_cuts import MOST_CARS
 from plant_models.rolling.resistance_law import LARGEST_ERLANG_ORDER, HumpNormLaw, Tb10062Law
-from synth.aim.configuration.aim_file import parse_aim_file
+from synth.aim.configuration.aim_file import default_aim_toml, parse_aim_file
 from synth.aim.configuration.settings import CutsSettings, ResistanceSettings
-from synth.aim.configuration.template import default_aim_toml
 from synth.aim.resolved_aim import ResolvedAim, resolve_aim
 from synth.cli.type_template import type_toml
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.settings.section import setting_limits
 
 

@@ -15,15 +15,11 @@ import pytest
 from scipy import stats
 
 from plant_models import PlantError
-from synth.aim.aim_acceptance import CHANCE, judge_aims
-from synth.aim.aim_book import MadeAim, aim_book
+from synth.aim.aim_book import CHANCE, MadeAim, aim_book, judge_aims
 from synth.aim.aim_table import AimedSpeeds, AimOrder, aimed_speeds, errors_between, table_cuts
 from synth.aim.configuration.aim_file import parse_aim_file
-from synth.aim.knowledge import ByCategory, ByReading, Requirement
-from synth.aim.limit_speed import thresholds_of
-from synth.aim.outcome import couplings
-from synth.aim.position_models import NormalPosition
-from synth.aim.readings import ResistanceByTwoSpeeds
+from synth.aim.knowledge import ByCategory, ByReading, Requirement, ResistanceByTwoSpeeds, thresholds_of
+from synth.aim.position_models import NormalPosition, couplings
 from synth.aim.resolved_aim import resolve_aim
 from synth.aim.scene import AimScene
 from tests.synth.aim.conftest import HEAVY, LIGHT

@@ -12,13 +12,16 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, PlantError
-from scripts.studies.aiming.readings import LightnessByWeigher, ResistanceByRadar
-from scripts.studies.aiming.recorded_cuts import ControlPoints, NearestRecord, nearest
-from scripts.studies.aiming.regression import ByRegression
-from synth.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement, not_falling
-from synth.aim.outcome import couplings
-from synth.aim.position_models import NormalPosition, SampledExits
-from synth.aim.readings import ResistanceByTwoSpeeds
+from scripts.studies.aiming.refinements import (
+    ByRegression,
+    ControlPoints,
+    LightnessByWeigher,
+    NearestRecord,
+    ResistanceByRadar,
+    nearest,
+)
+from synth.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement, ResistanceByTwoSpeeds, not_falling
+from synth.aim.position_models import NormalPosition, SampledExits, couplings
 from synth.aim.scene import AimScene, SceneCuts
 from synth.aim.table_position import TablePosition, entry_speeds_m_s
 from synth.retarder.comparison.baselines import energy_rule

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.any_time.sampled_chain import SampledChain, sampled_chain

@@ -13,15 +13,14 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance
-from synth.problem.aim import Aim
-from synth.problem.any_time_resolution import design_resolution
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
+from synth.problem.resolution import design_resolution
 from synth.retarder.estimation.estimator_design import decisions, error_of_estimate, estimator_of
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.stratified_passes import stratified_passes
-from synth.solver.any_time.estimate_error import EstimateError, error_along_path
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
-from synth.solver.any_time.sampled_chain import SampledChain, sampled_chain
+from synth.solver.any_time.sampled_chain import EstimateError, SampledChain, error_along_path, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.any_time.surface_polish import NEGLIGIBLE_MASS
 from synth.solver.chain.scenarios import Scenarios

@@ -15,8 +15,14 @@ import pytest
 
 from plant_models import Plant
 from scripts.studies.any_time.findings import Ways
-from scripts.studies.any_time.stuck_valves import NOTHING, STUCK, StuckLoop, StuckValves, where_stuck
-from scripts.studies.any_time.wrong_plants import with_a_silent_gauge
+from scripts.studies.any_time.wrong_plants import (
+    NOTHING,
+    STUCK,
+    StuckLoop,
+    StuckValves,
+    where_stuck,
+    with_a_silent_gauge,
+)
 from synth.kernels.loop.passes import Draws
 from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, close_loop
 from synth.simulation.common_passes import common_passes

@@ -27,8 +27,8 @@ from synth.simulation.closed_loop import (
     sample_of,
 )
 from synth.simulation.controllers import Regulator, fixed
-from synth.simulation.drive_pieces import STATES, empty_periods
 from synth.simulation.passes import ExitSample
+from synth.simulation.path_and_drive import STATES, empty_periods
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines
 from tests.oracles.passes_one_by_one import one_by_one

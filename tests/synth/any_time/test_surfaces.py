@@ -12,25 +12,22 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, Pneumatics
-from plant_models.approach import Approach
-from synth.problem.aim import Aim
-from synth.problem.any_time_resolution import design_resolution
+from plant_models.track_profile import Approach
 from synth.problem.criterion import Criterion
-from synth.problem.resolution import Resolution
+from synth.problem.problem import Aim
+from synth.problem.resolution import Resolution, design_resolution
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_ALONE, CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.any_time.sampled_chain import SampledChain, check_sampled_chain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
-from synth.solver.any_time.surface_polish import least_gap, polish_surfaces
-from synth.solver.any_time.told_surfaces import ToldSurfaces, told_surfaces
+from synth.solver.any_time.surface_polish import ToldSurfaces, least_gap, polish_surfaces, told_surfaces
 from synth.solver.backward_induction import solve
-from synth.solver.chain.chain import Chain, persistent_chain
+from synth.solver.chain.chain import Chain, known_factors, persistent_chain
 from synth.solver.descent import Descent
-from synth.solver.finer_speed import known_factors
-from synth.solver.policy_density import exit_density
-from synth.solver.polynomial_lines import MINIMUM_GAP_M_S
+from synth.solver.evaluation import exit_density
+from synth.solver.switching_lines import MINIMUM_GAP_M_S
 from synth.solver.told_lines import SQUARED_ERROR_ALONE
 from tests.synth.any_time.conftest import at_rest_only, short_plant, tabled
 

@@ -13,10 +13,8 @@ from typing import Any
 from pymodbus.client import ModbusTcpClient
 from pymodbus.exceptions import ModbusException
 
-from synth.retarder.bench.bench_pass import BenchPass
-from synth.retarder.bench.cases import BenchCase, bench_case, coming_cuts
-from synth.retarder.bench.clock import InStep
-from synth.retarder.bench.exchange import Exchange, Traffic
+from synth.retarder.bench.bench_pass import BenchCase, BenchPass, bench_case, coming_cuts
+from synth.retarder.bench.exchange import Exchange, InStep, Traffic
 from synth.retarder.bench.live_run import LiveRun
 from synth.retarder.bench.options import Address
 from synth.retarder.bench.run import Bench, Patience

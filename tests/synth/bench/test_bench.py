@@ -22,8 +22,7 @@ from pymodbus.client import ModbusTcpClient
 from pymodbus.exceptions import ModbusException
 
 from synth.retarder.bench.bench_pass import BenchPass
-from synth.retarder.bench.clock import Cycles, RealTime
-from synth.retarder.bench.exchange import Exchange
+from synth.retarder.bench.exchange import Cycles, Exchange, RealTime
 from synth.retarder.bench.options import Address
 from synth.retarder.bench.wires import COMMANDS_AT, OPC_UA_FOLDER, OPC_UA_NAMESPACE, TOLD_WIRES
 from tests.synth.bench.played import HOST, TableClient, beside, free_port, played, the_case

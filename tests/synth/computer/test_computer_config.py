@@ -8,11 +8,10 @@ from pathlib import Path
 import pytest
 
 from synth.computer.computer_results import computer_results
-from synth.computer.economics.hump_rates import RATES
+from synth.computer.economics.traffic import RATES
 from synth.computer.resolved_computer import ResolvedComputer, resolve_computer
-from synth.computer.settings import ComputerSettings
-from synth.computer.template import default_computer_toml
-from synth.frame.input_error import InputError
+from synth.computer.settings import ComputerSettings, default_computer_toml
+from synth.frame.faults import InputError
 from synth.frame.settings.settings_file import parse_settings
 from synth.retarder.configuration.plant_fault import in_file
 

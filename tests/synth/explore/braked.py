@@ -14,8 +14,7 @@ from typing import Any
 from plant_models import Approach, Plant, TrackProfile
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.estimation.estimator_design import estimator_of
-from synth.retarder.explore.beside import Beside, beside
-from synth.retarder.explore.explore_page import PlayedTable, part
+from synth.retarder.explore.explore_page import Beside, PlayedTable, beside, part
 from synth.retarder.sensors.passage_table import plausible_motion
 from synth.retarder.served_class import PassageClass, ServedClass, sensors_of
 from tests.controller_code.sample_book import FOUR_AXLES, table_of, with_slopes
@@ -25,9 +24,9 @@ from tests.tuning_tables.passages.made_tables import table_of as passages_of
 from tuning_tables import Approach as TableApproach
 from tuning_tables import ControllerTable, Decisions, ValidRange
 from tuning_tables.controller_code.js_rules import JsRules
+from tuning_tables.document import StageTable
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
-from tuning_tables.table_kinds import StageTable
 
 STAGES = 5
 LIMITS_T = (22.0, 28.0)

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from plant_models import Plant, WeightForce
 from synth.retarder.comparison.baselines import energy_rule
-from synth.retarder.explore.beside import lines_data, played_controller
+from synth.retarder.explore.explore_page import lines_data, played_controller
 from synth.retarder.explore.plant_data import plant_data
 from synth.retarder.served_class import sensors_of
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
-from synth.simulation.passage_controller import of_table
+from synth.simulation.passage_controller import PassageTrace, of_table
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
-from synth.simulation.passage_sample import PassageTrace
 from synth.simulation.random_passes import RandomPasses, random_passes
 from tests.in_javascript import needs_javascript, packed
 from tests.synth.explore.braked import (

@@ -10,9 +10,9 @@ import pytest
 from synth.retarder.explore.plant_data import plant_data
 from synth.retarder.served_class import sensors_of
 from synth.simulation.closed_loop import close_loop
-from synth.simulation.logged_passes import drive_pressures_kpa
 from synth.simulation.passage_loop import close_passage_loop
 from synth.simulation.random_passes import random_passes
+from synth.simulation.sampled_pass import drive_pressures_kpa
 from tests.in_javascript import needs_javascript
 from tests.synth.explore.braked import LIMITS_T, TABLES, estimating_table, heard_table, plant_of, sensed_plant, told_by
 from tests.synth.explore.test_passes import cuts_of

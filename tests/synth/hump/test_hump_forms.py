@@ -21,19 +21,16 @@ from typing import Any
 import pytest
 
 from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
-from plant_models.library.library import BUILT_IN
+from plant_models.library.library import BUILT_IN, HUMPS
 from plant_models.library.toml_lines import places_of
-from plant_models.library.type_file import HUMPS
 from synth.cli import main
-from synth.frame.input_error import InputError
-from synth.frame.workbook import first_sheet_csv
-from synth.hump.forms.hump_csv import from_csv, to_csv, to_xlsx
-from synth.hump.forms.hump_tree import tree_toml
+from synth.frame.faults import InputError
+from synth.frame.sheet import first_sheet_csv
 from synth.hump.hump_file import parse_hump
-from synth.hump.making.hump_toml import hump_toml
+from synth.hump.hump_forms import from_csv, to_csv, to_xlsx, tree_toml
+from synth.hump.making.make_command import hump_toml
 from synth.hump.making.short_file import read_short_hump
-from synth.hump.trains.hump_page.plan_data import plan_data
-from synth.hump.trains.hump_page.train_data import words
+from synth.hump.trains.hump_page.hump_page import plan_data, words
 from synth.hump.trains.train_trace import Alarm, AlarmKind
 from tests.effort import sized
 from tests.plant_models.hump.random_humps import SMALL, random_hump

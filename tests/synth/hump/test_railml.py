@@ -11,7 +11,7 @@ import pytest
 
 from plant_models.hump import HumpGraph, Retarder
 from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.hump.railml.read import from_railml
 from synth.hump.railml.tree import local
 from synth.hump.railml.write import to_railml

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scripts.studies.identification.truths import TRUTHS, Yard, assumed_yard
+from scripts.studies.identification import TRUTHS, Yard, assumed_yard
 from synth.logs.estimate import Estimate, estimate
 from synth.logs.fitting_passes import FittingPasses
 from synth.logs.unknowns import unknowns_of

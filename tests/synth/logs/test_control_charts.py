@@ -22,8 +22,7 @@ from synth.frame.exhibits import Chart, Table
 from synth.frame.sheet import to_csv
 from synth.logs.drift.causes import TIMES, Cause, Remedy
 from synth.logs.drift.charts import FEWEST, MOST, WINDOW, charts_of, limit_of, page_sums, running_medians, steps_of
-from synth.logs.drift.diagnosis import diagnosed
-from synth.logs.drift.drift_size import DriftSize
+from synth.logs.drift.diagnosis import DriftSize, diagnosed
 from synth.logs.drift.evidence import Evidence
 from synth.logs.drift.pictures import control_charts
 from synth.logs.drift.shown import MARKED, charts, drifted, tiles

@@ -13,16 +13,15 @@ import numpy as np
 import pytest
 
 from plant_models.library.catalogue import load_position
-from plant_models.pressure_gauge import PressureGauge
+from plant_models.pressure_regulator import PressureGauge
 from plant_models.valve_drive import ValveDrive
-from scripts.studies.identification.truths import GAUGE, TRUTHS, Truth, Yard
+from scripts.studies.identification import GAUGE, TRUTHS, Truth, Yard
 from synth.kernels.measured.drive_rows import Commands, drive_rows
 from synth.logs import unknowns as asked
 from synth.logs.estimate import posterior
-from synth.logs.fitting_passes import FittingPasses, fitting_passes
+from synth.logs.fitting_passes import FittingPasses, fitting_passes, released_drive_vents
 from synth.logs.identify_shown import log_sentences
-from synth.logs.pass_rows import pass_rows
-from synth.logs.released_drive import released_drive_vents
+from synth.logs.likelihood import pass_rows
 from synth.logs.unknowns import unknowns_of
 from tuning_tables.pass_log.pass_log import PassLog
 

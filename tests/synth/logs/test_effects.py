@@ -21,18 +21,17 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import Floats
-from scripts.studies.identification.truths import TRUTHS, Yard
+from scripts.studies.identification import TRUTHS, Yard
 from synth.kernels.loop.passes import Draws
 from synth.logs import unknowns as asked
 from synth.logs.estimate import CENTRAL, NEAR, Estimate, Linearised, Posterior, Side, beside_edges, highest
 from synth.logs.fitting_passes import FittingPasses
-from synth.logs.holm import rejected
-from synth.logs.residual_tests import LAWS, PRESSURE, Effect, ResidualTest, beyond, residual_tests, wrong
+from synth.logs.residual_tests import LAWS, PRESSURE, Effect, ResidualTest, beyond, rejected, residual_tests, wrong
 from synth.logs.unknowns import positive, unknowns_of
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import Controller
-from synth.simulation.logged_passes import rows_of_pass
 from synth.simulation.passes import PassTrace
+from synth.simulation.sampled_pass import rows_of_pass
 from tests.effort import every
 
 Speeds = NDArray[np.float64]
@@ -109,7 +108,7 @@ def said(tests: dict[Effect, ResidualTest]) -> set[Effect]:
 
 
 def under(laws: OtherLaws, yard: Yard, monkeypatch: pytest.MonkeyPatch) -> FittingPasses:
-    monkeypatch.setattr("synth.simulation.logged_passes.rows_of_pass", laws.rows_of_pass)
+    monkeypatch.setattr("synth.simulation.sampled_pass.rows_of_pass", laws.rows_of_pass)
     return yard.passes(TRUTHS[0], PASSES, SEED)
 
 

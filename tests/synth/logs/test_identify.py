@@ -17,17 +17,16 @@ import pytest
 
 import synth
 from plant_models.library import POSITIONS
-from plant_models.pressure_gauge import USUAL_NOISE_KPA
-from scripts.studies.identification.truths import TRUTHS, Yard, text_of_classes
+from plant_models.pressure_regulator import USUAL_NOISE_KPA
+from scripts.studies.identification import TRUTHS, Yard, text_of_classes
 from synth.cli import main
 from synth.cli.type_template import type_toml
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.logs import unknowns as asked
 from synth.logs.estimate import SIDE, Estimate, Side, estimate, posterior
 from synth.logs.fitting_passes import FittingPasses
-from synth.logs.identifiability import Finding, findings_of
 from synth.logs.identified_config import identified
-from synth.logs.identify import Identified, fit
+from synth.logs.identify import Finding, Identified, findings_of, fit
 from synth.logs.identify_shown import bias_sentences
 from synth.logs.residual_tests import MOTION, ResidualTest, residual_tests, wrong
 from synth.logs.unknowns import BIAS, GAUGE_NOISE, RANGES, slope_of, unknowns_of

@@ -15,13 +15,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scripts.studies.identification.truths import Yard, text_of_classes
+from scripts.studies.identification import Yard, text_of_classes
 from synth.cli import main
 from synth.logs.drift import kept_watch
-from synth.logs.drift.baseline import configured
 from synth.logs.drift.charts import limit_of, page_sums
-from synth.logs.drift.kept_file import from_npz, to_npz
-from synth.logs.drift.kept_watch import KeptWatch, WatchedNight, watched_night
+from synth.logs.drift.evidence import configured
+from synth.logs.drift.kept_watch import KeptWatch, WatchedNight, from_npz, to_npz, watched_night
 from synth.logs.drift.watch import watch
 from synth.logs.fitting_passes import FittingPasses, fitting_passes
 from tests.system.test_hump_trials import SMALL

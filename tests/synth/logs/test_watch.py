@@ -11,23 +11,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scripts.studies.tuned_table import tuned_table
-from scripts.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, LIGHT, Change, simulated
+from scripts.studies.cases import tuned_table
+from scripts.studies.watch.night import CHANGES, GAUGE, IN_ORDER, LIGHT, Change, simulated
 from synth.cli import main
 from synth.logs import unknowns as asked
-from synth.logs.drift.baseline import configured
 from synth.logs.drift.causes import causes_of
-from synth.logs.drift.drift_size import drift_size
-from synth.logs.drift.evidence import evidence_of
+from synth.logs.drift.diagnosis import drift_size
+from synth.logs.drift.evidence import configured, evidence_of
 from synth.logs.drift.watch import Watch, watch
 from synth.logs.fitting_passes import FittingPasses, fitting_passes
 from synth.logs.likelihood import likelihood_of
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from tuning_tables import ControllerTable
-from tuning_tables.pass_log.join_logs import join_logs, one_after_the_other
 from tuning_tables.pass_log.log_files import write_log
-from tuning_tables.pass_log.pass_log import PassLog
+from tuning_tables.pass_log.pass_log import PassLog, join_logs, one_after_the_other
 
 CALM = 60
 SLOW_EXHAUST, BIASED = CHANGES[2:4]
@@ -174,7 +172,7 @@ def test_drifts_are_counted_from_the_reference(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The sensor always showed 0.1 m/s too much: that is no drift. From pass 31 on it shows the truth: that is one."""
-    monkeypatch.setattr("synth.logs.drift.baseline.LEAST_REFERENCE", 60)  # these tell a bias well enough, and sooner
+    monkeypatch.setattr("synth.logs.drift.evidence.LEAST_REFERENCE", 60)  # these tell a bias well enough, and sooner
     tables = [(config.plants()[0][1], table)]
     reference, biased = (simulated(tables, BIASED, n, seed, None) for n, seed in ((60, 5), (30, 6)))
     log = one_after_the_other(join_logs([biased, simulated(tables, IN_ORDER, 30, 7, None)]), 30.0)

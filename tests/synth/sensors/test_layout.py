@@ -17,24 +17,32 @@ from hypothesis import strategies as st
 
 from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles, Passage, deciding_passages
-from scripts.studies.point_sensors.layouts import plan_layouts
+from scripts.studies.point_sensors.sites import plan_layouts
 from synth.frame.exhibits import File, Table
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
-from synth.retarder.configuration.config_file import parse_config, source_of_text
-from synth.retarder.configuration.config_template import default_sensors_toml
-from synth.retarder.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places, policy_anywhere
-from synth.retarder.sensors.layout import equal_layout, fastest_m_s, first_sensor_m, longest_change_s, rule_layout
+from synth.retarder.configuration.config_file import default_sensors_toml, parse_config, source_of_text
+from synth.retarder.sensors.layout import (
+    CandidatePlaces,
+    LayoutCase,
+    candidate_places,
+    equal_layout,
+    fastest_m_s,
+    first_sensor_m,
+    longest_change_s,
+    policy_anywhere,
+    rule_layout,
+)
 from synth.retarder.sensors.layout_plan import LayoutProblem, fewest_for, plan_passes
 from synth.retarder.sensors.layout_results import AskedLayouts, layout_results
 from synth.retarder.sensors.layout_search import LayoutSearch
+from synth.retarder.sensors.passage_table import passage_chains
 from synth.retarder.sensors.plan_command import COMMAND
 from synth.retarder.sensors.plan_pictures import plan_map
-from synth.retarder.sensors.tuned_passages import passage_chains
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
-from synth.solver.chain.sensor_passages import SensorPassages, nodes_of, with_point_sensors
+from synth.solver.chain.sampling import SensorPassages, nodes_of, with_point_sensors
 from synth.solver.evaluation import Evaluation
 from synth.solver.passage_speeds import SMALLEST_GAP_M_S, PassageSpeeds, ordered, passage_speeds
 from synth.solver.resolved_density import resolved_density
@@ -127,8 +135,7 @@ def test_nothing_is_told_of_the_passes_that_were_chosen_on() -> None:
 
 def test_prediction_and_simulation_of_a_table_agree(plant_of: Callable[[float], Plant]) -> None:
     """The exported table in the closed loop, 20 000 passes: predicted rms within 5 %, bias within 0.01 m/s."""
-    from synth.retarder.sensors.passage_table import passage_table
-    from synth.retarder.sensors.tuned_passages import tuned_passages
+    from synth.retarder.sensors.passage_table import passage_table, tuned_passages
     from synth.simulation.exit_statistics import exit_statistics
     from synth.simulation.passage_controller import of_table
     from synth.simulation.passage_loop import simulate_passages

@@ -19,16 +19,28 @@ from matplotlib.text import Text
 
 from plant_models import every_axle
 from plant_models.point_sensors import Axles
-from synth.frame.picture.figure_file import draw
+from synth.frame.picture.house_style import draw
 from synth.retarder.acceptance import CaseVerdict, judge_case
 from synth.retarder.configuration.settings import AcceptanceSettings
-from synth.retarder.highest_stage import highest_stage
-from synth.retarder.sensors.pictures.passes_with_readings import passes_figure
-from synth.retarder.sensors.pictures.switching_speeds import colour_of, columns_m, switching_speeds, wanted_edges_m_s
-from synth.retarder.sensors.sensor_case import HeardShares, SensorCase, heard_shares, unavoidable
-from synth.retarder.sensors.sensor_class import SensorPasses, full_brake, sensor_passes
-from synth.simulation.exit_statistics import BrakePower, exit_statistics
-from synth.simulation.passage_sample import (
+from synth.retarder.sensors.sensor_case import (
+    HeardShares,
+    SensorCase,
+    SensorPasses,
+    full_brake,
+    heard_shares,
+    sensor_passes,
+    unavoidable,
+)
+from synth.retarder.sensors.table_pictures import (
+    colour_of,
+    columns_m,
+    passes_figure,
+    switching_speeds,
+    wanted_edges_m_s,
+)
+from synth.retarder.served_class import highest_stage
+from synth.simulation.exit_statistics import BrakePower, UnavoidableError, exit_statistics
+from synth.simulation.passage_controller import (
     DECIDED,
     NO_DECISION,
     NOT_BELIEVED,
@@ -40,15 +52,14 @@ from synth.simulation.passage_sample import (
 )
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import random_passes
-from synth.simulation.unavoidable_error import UnavoidableError
 from synth.solver.descent import Descent
 from synth.solver.exit_density import ExitDensity
 from synth.solver.passage_speeds import PassageSpeeds
 from tests.controller_code.passage_tables import passage_table
 from tests.synth.conftest import pilot_plant
 from tests.synth.simulation.passage_cases import SENSORS, braking_rule, holding_rule, with_approach
-from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.rule import held_by
 from tuning_tables.passages.sensor_layout import DecidesOn
 from tuning_tables.programs.at_pulse import wanted_stage
 

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from plant_models import every_axle
-from synth.frame.input_error import InputError
-from synth.retarder.configuration.config_file import parse_config
-from synth.retarder.configuration.config_template import (
+from synth.frame.faults import InputError
+from synth.retarder.configuration.config_file import (
     DUMPER_POSITION,
     default_sensors_toml,
     filled_sensors_toml,
+    parse_config,
 )
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 

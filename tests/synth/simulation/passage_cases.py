@@ -9,9 +9,8 @@ import numpy as np
 from plant_models import Approach, Plant, PointSensors
 from plant_models.point_sensors import deciding_passages
 from synth.retarder.sensors.passage_table import plausible_motion
-from synth.simulation.passage_controller import PassageController, of_speeds
+from synth.simulation.passage_controller import PassageController, PassageTrace, of_speeds
 from synth.simulation.passage_loop import PassageLoop
-from synth.simulation.passage_sample import PassageTrace
 from synth.simulation.random_passes import RandomPasses
 
 SENSORS = PointSensors((-5.0, 4.0, 10.0, 17.0, 24.0, 30.0))

@@ -12,14 +12,12 @@ from plant_models import Approach, EntrySpeed, Plant
 from synth.retarder.comparison.baselines import FAMILIES
 from synth.retarder.configuration.config_file import parse_config
 from synth.simulation.closed_loop import LineController, TableController
-from synth.simulation.common_passes import CommonPasses, common_passes
+from synth.simulation.common_passes import CommonPasses, common_passes, released
 from synth.simulation.controllers import Regulator
-from synth.simulation.exit_range import released
+from synth.simulation.exit_statistics import excess_and_lack_m_s, unavoidable_error
 from synth.simulation.passes import ExitSample
 from synth.simulation.stratified_passes import stratified_passes
-from synth.simulation.unavoidable_error import excess_and_lack_m_s, unavoidable_error
-from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.switching_lines import SwitchingLines
+from synth.solver.switching_lines import PolynomialLines, SwitchingLines
 from synth.solver.tabulate import UNPREDICTED, tabulate
 from tuning_tables import Decisions, Generator
 

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import deciding_passages
 from synth.simulation.closed_loop import close_loop
-from synth.simulation.passage_controller import of_speeds
+from synth.simulation.passage_controller import DECIDED, NOT_HEARD, UNFINISHED, PassageSample, of_speeds
 from synth.simulation.passage_loop import close_passage_loop, simulate_passages
-from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from tests.effort import sized

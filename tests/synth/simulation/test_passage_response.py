@@ -17,30 +17,34 @@ from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
 from synth.kernels.loop.passage_pulses import Pair
 from synth.kernels.loop.passage_regulator import begin_cut, stage_after_pair
-from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
+from synth.problem.problem import Aim
 from synth.problem.resolution import Resolution
 from synth.retarder.bench.run import TableShadow
-from synth.retarder.sensors.passage_table import passage_table
-from synth.retarder.sensors.tuned_passages import passage_chains, tuned_passages
+from synth.retarder.sensors.passage_table import passage_chains, passage_table, tuned_passages
 from synth.simulation.closed_loop import TableController, close_loop
-from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_plant, one_pass
-from synth.simulation.nominal_response import SAME_PASSAGE_S, commands_of, response_difference
-from synth.simulation.passage_controller import of_table
+from synth.simulation.nominal_response import (
+    SAME_PASSAGE_S,
+    commands_of,
+    nominal_entry_m_s,
+    nominal_plant,
+    one_pass,
+    response_difference,
+)
+from synth.simulation.passage_controller import UNFINISHED, PassageTrace, of_table
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop, filled_trace
 from synth.simulation.passage_response import passage_regulator_start, passage_regulator_system, passage_response
-from synth.simulation.passage_sample import UNFINISHED, PassageTrace
 from synth.simulation.random_passes import random_passes
 from synth.simulation.sampled_pass import PassEnd, SampledPass, sampled_pass
 from synth.simulation.stratified_passes import stratified_passes
-from synth.solver.chain.sensor_passages import with_point_sensors
+from synth.solver.chain.sampling import with_point_sensors
 from tests.controller_code.fmi.test_position_unit import CASES, Case
 from tests.effort import sized
 from tests.synth.conftest import pilot_plant
 from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule, with_approach
 from tuning_tables import ControllerTable, Generator
-from tuning_tables.passages.held_passages import held_by
 from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.rule import held_by
 from tuning_tables.programs import at_pulse, tracker
 
 TOLERANCE_M_S = 0.001

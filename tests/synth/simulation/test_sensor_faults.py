@@ -25,9 +25,8 @@ from scripts.studies.point_sensors.sensor_faults import (
     SwappedSensors,
     together,
 )
-from synth.simulation.passage_controller import of_speeds
+from synth.simulation.passage_controller import DECIDED, NOT_BELIEVED, NOT_HEARD, PassReadings, of_speeds
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
-from synth.simulation.passage_sample import DECIDED, NOT_BELIEVED, NOT_HEARD, PassReadings
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from tests.effort import sized

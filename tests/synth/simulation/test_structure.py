@@ -18,9 +18,9 @@ from matplotlib.text import Text
 
 from plant_models import Plant
 from scripts.studies.structure.signals import SIGNALS
-from synth.frame.picture.figure_file import draw
-from synth.retarder.pictures.block_diagram import block_diagram, branches, in_mathtext, parting
-from synth.retarder.pictures.block_layout import (
+from synth.frame.picture.house_style import draw
+from synth.retarder.loops.block_diagram import block_diagram, branches, in_mathtext, parting
+from synth.retarder.loops.block_layout import (
     HEIGHT_IN,
     POINT_SENSOR_ROUTES,
     RADAR_ROUTES,
@@ -33,14 +33,12 @@ from synth.retarder.pictures.block_layout import (
 )
 from synth.simulation.controllers import TableController
 from synth.simulation.passage_loop import close_passage_loop
-from synth.simulation.structure.diagram import Diagram, Sketch, Wire
-from synth.simulation.structure.part import Part
-from synth.simulation.structure.passage_diagram import passage_diagram
-from synth.simulation.structure.radar_diagram import radar_diagram
+from synth.simulation.structure.diagram import Diagram, Part, Sketch, Wire
+from synth.simulation.structure.regulators import passage_diagram, radar_diagram
 from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule, with_approach
 from tests.synth.test_control_system import table_for
 from tuning_tables.programs.at_pulse import at_pulse
-from tuning_tables.programs.passage_table import NONE, HeldPassages
+from tuning_tables.programs.held import NONE, HeldPassages
 from tuning_tables.programs.tracker import begin_cut
 
 

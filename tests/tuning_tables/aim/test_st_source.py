@@ -25,7 +25,7 @@ from tests.tuning_tables.st.storage import Fault, Frame
 from tests.tuning_tables.st.syntax import ASKED_UNDER, BINARY32, ROUNDINGS, Compiler, faults, name_of, parse
 from tuning_tables.aim import AimAxes, AimCategory, AimTable, AimTables
 from tuning_tables.aim.golden_aims import golden_selections
-from tuning_tables.export_prefix import RETARDER
+from tuning_tables.export_names import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
 AIM_FILE, SELF_TEST_FILE = "aim_table.st", "aim_self_test.st"

@@ -13,10 +13,9 @@ import pytest
 from tests.tuning_tables.pass_log.sample_logs import sample_log
 from tuning_tables.errors import InvalidLog
 from tuning_tables.pass_log import hdf5_child, hdf5_log
-from tuning_tables.pass_log.hdf5_child import columns_by_child
-from tuning_tables.pass_log.hdf5_columns import FORMAT, MOST_ROWS, STORED, VERSION, stored_columns
+from tuning_tables.pass_log.hdf5_child import FORMAT, MOST_ROWS, STORED, VERSION, columns_by_child, stored_columns
 from tuning_tables.pass_log.log_files import read_logs, write_log
-from tuning_tables.seal import SEAL_BYTES
+from tuning_tables.whole_file import SEAL_BYTES
 
 
 @pytest.fixture

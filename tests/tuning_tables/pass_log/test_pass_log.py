@@ -13,13 +13,11 @@ import pytest
 from tests.tuning_tables.pass_log.sample_logs import sample_log
 from tuning_tables.errors import InvalidTable
 from tuning_tables.pass_log.csv_log import FIRST_LINE, read_csv_log
-from tuning_tables.pass_log.hdf5_columns import FORMAT
-from tuning_tables.pass_log.join_logs import join_logs
+from tuning_tables.pass_log.hdf5_child import FORMAT
 from tuning_tables.pass_log.log_columns import COLUMNS, Floats
 from tuning_tables.pass_log.log_files import read_logs, write_log
 from tuning_tables.pass_log.log_mapping import PATHS, UNITS, LogMapping, read_mapping
-from tuning_tables.pass_log.pass_log import PassLog
-from tuning_tables.pass_log.path_resets import path_resets_m, path_set_right_m
+from tuning_tables.pass_log.pass_log import PassLog, join_logs, path_resets_m, path_set_right_m
 
 
 def small_log() -> PassLog:

@@ -12,12 +12,11 @@ from hypothesis import strategies as st
 
 from tests.tuning_tables.random_tables import above_zero, cuts, digests, instants, numbers, probabilities, texts
 from tuning_tables import Approach, CutId, Generator, Predicted, RetarderId, Validated
-from tuning_tables.passages.held_passages import held_passages
 from tuning_tables.passages.passage_row import PassageRow, Row
 from tuning_tables.passages.passage_table import PassageTable
-from tuning_tables.passages.plausible_motion import PlausibleMotion
-from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
-from tuning_tables.programs.passage_table import HeldPassages
+from tuning_tables.passages.rule import held_passages
+from tuning_tables.passages.sensor_layout import DecidesOn, PlausibleMotion, SensorLayout
+from tuning_tables.programs.held import HeldPassages
 
 NEVER = math.inf
 ROWS = ((5.0, NEVER), (4.5, 6.25), (-NEVER, 5.5))

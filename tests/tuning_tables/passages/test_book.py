@@ -37,15 +37,15 @@ from tuning_tables import (
     to_json,
     write_book,
 )
-from tuning_tables.passages.c_source import passage_c_files
-from tuning_tables.passages.golden_selections import golden_selections
-from tuning_tables.passages.held_passages import held_by
+from tuning_tables.document import KINDS
+from tuning_tables.passages.exports import passage_c_files
+from tuning_tables.passages.golden_passages import golden_selections
 from tuning_tables.passages.passage_book import PassageBook
+from tuning_tables.passages.rule import held_by
 from tuning_tables.passages.sensor_layout import DecidesOn
 from tuning_tables.programs.at_pulse import at_pulse
-from tuning_tables.programs.passage_table import NONE
+from tuning_tables.programs.held import NONE
 from tuning_tables.programs.tracker import begin_cut, believed_passage
-from tuning_tables.table_kinds import KINDS
 
 BINDER = Generator("binder", "1", "0" * 64)
 FIRST, EVERY = table_of(), replace(table_of(DecidesOn.EVERY_AXLE), id="every", validated=None)

@@ -18,10 +18,10 @@ from synth.kernels.compiled_rules import compiled_rule
 from tests.controller_code.passage_tables import passage_table, passage_tables
 from tests.effort import sized
 from tests.tuning_tables.passages.made_tables import row_lists, table_of
-from tuning_tables.passages.held_passages import held_by, held_passages
 from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.rule import held_by, held_passages
 from tuning_tables.programs.at_pulse import at_pulse, wanted_stage
-from tuning_tables.programs.passage_table import NONE, HeldPassages
+from tuning_tables.programs.held import NONE, HeldPassages
 from tuning_tables.programs.tracker import LONGEST_WAIT_S, begin_cut, believed_passage
 
 COMPILED_RULE: Any = compiled_rule(wanted_stage)

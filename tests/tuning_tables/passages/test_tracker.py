@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from synth.kernels.compiled_rules import compiled_rule
 from tests.effort import every, sized
 from tests.tuning_tables.passages.made_tables import Pulse, TruePass, rolled, table_of, tracking, true_passes
-from tuning_tables.passages.held_passages import held_by
-from tuning_tables.programs.passage_table import NONE
+from tuning_tables.passages.rule import held_by
+from tuning_tables.programs.held import NONE
 from tuning_tables.programs.tracker import begin_cut, believed_passage
 
 COMPILED: Any = compiled_rule(believed_passage)

@@ -14,15 +14,14 @@ from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.exported_forms import MOST_CALLS, default_book
 from tests.tuning_tables.st.syntax import MATIEC
 from tuning_tables.aim import AimTables
-from tuning_tables.aim.st_source import aim_export
+from tuning_tables.aim.exports import aim_export
 from tuning_tables.correction import Correction
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_names import RETARDER, ExportPrefix
+from tuning_tables.exports import correction_export, line_export
 from tuning_tables.language.st_unit import Export
+from tuning_tables.passages.exports import passage_export
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_export
 from tuning_tables.self_test_size import SMALL
-from tuning_tables.st_correction import correction_export
-from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
 
 PARK: Final = ExportPrefix("PARK_2")

@@ -21,9 +21,8 @@ from tests.tuning_tables.plc_forms.readers import TC6, objects, plcopen_text, sc
 from tests.tuning_tables.st.syntax import faults, parse
 from tuning_tables.language.st_layout import unit_text
 from tuning_tables.language.st_unit import Block, Part, Structure, units_of
+from tuning_tables.plc_forms.makers import scl_files, twincat_files
 from tuning_tables.plc_forms.plcopen import plcopen_files
-from tuning_tables.plc_forms.scl import scl_files
-from tuning_tables.plc_forms.twincat import twincat_files
 
 EACH = pytest.mark.parametrize("kind", KINDS)
 SCHEMA = Path(os.environ.get("RETARDER_SYNTH_TC6_XSD", Path(sys.prefix) / "share" / "tc6_xml_v201.xsd"))

@@ -7,19 +7,17 @@ from dataclasses import replace
 
 import pytest
 
-from synth.frame.input_error import InputError
-from synth.retarder.forms.code_options import PLC_NAMES, CodeOptions
-from synth.retarder.forms.plc_forms import PLC_FORMS
+from synth.frame.faults import InputError
+from synth.retarder.forms.code_options import PLC_FORMS, PLC_NAMES, CodeOptions
 from tests.tuning_tables.plc_forms.exports import KINDS, LONGEST, PARK, exported, failed, self_test_of
 from tests.tuning_tables.plc_forms.readers import plcopen_text, scl_text, twincat_text
 from tuning_tables.errors import IllegalName
-from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.export_names import RETARDER, ExportPrefix
 from tuning_tables.language.records import Kind
 from tuning_tables.language.st_unit import Block, Declared, Export, Part, Variable, retold, units_of
+from tuning_tables.plc_forms.makers import scl_files, twincat_files
 from tuning_tables.plc_forms.names import CODESYS, IEC, MATIEC, TIA, TOOLS, TWINCAT, Tool, names_in, require_legal
 from tuning_tables.plc_forms.plcopen import plcopen_files
-from tuning_tables.plc_forms.scl import scl_files
-from tuning_tables.plc_forms.twincat import twincat_files
 
 EACH_TOOL = pytest.mark.parametrize("tool", TOOLS, ids=lambda tool: tool.title)
 

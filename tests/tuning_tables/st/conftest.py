@@ -15,9 +15,9 @@ from tests.controller_code.sample_book import estimating_book as book_with_estim
 from tests.st_files import st_files
 from tests.tuning_tables.st.evaluator import Program
 from tuning_tables import read_json
-from tuning_tables.export_prefix import RETARDER
+from tuning_tables.export_names import RETARDER
+from tuning_tables.exports import TABLE_FILE
 from tuning_tables.self_test_size import FULL, SelfTestSize
-from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
 
 

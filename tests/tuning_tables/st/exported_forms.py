@@ -20,15 +20,14 @@ from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.syntax import Compiler
 from tuning_tables import Decisions, read_json
 from tuning_tables.aim import AimAxes, AimTable, AimTables
-from tuning_tables.aim.st_source import aim_export
+from tuning_tables.aim.exports import aim_export
 from tuning_tables.correction import Correction
-from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.export_names import ExportPrefix
+from tuning_tables.exports import correction_st_unit_files, line_export
+from tuning_tables.language.st_layout import unit_files
+from tuning_tables.passages.exports import passage_export
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_export
-from tuning_tables.plc_forms.iec import unit_files
 from tuning_tables.self_test_size import FULL, SMALL
-from tuning_tables.st_correction import correction_st_unit_files
-from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
 
 Files = Mapping[str, bytes]

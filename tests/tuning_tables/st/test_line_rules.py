@@ -9,11 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from scripts.studies.in_the_loop.agreement import Questions, ask
-from scripts.studies.in_the_loop.controller_process import ANSWER_WORDS
-from scripts.studies.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
-from scripts.studies.in_the_loop.held_words import held_words, places
-from scripts.studies.in_the_loop.observed import observed
+from scripts.studies.in_the_loop.agreement import Questions, ask, observed
+from scripts.studies.in_the_loop.controller_process import ANSWER_WORDS, held_words, places
+from scripts.studies.in_the_loop.hard_questions import TRACK_SAMPLES, hard_samples
 from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
 from tests.effort import MANY, sized
 from tests.tuning_tables.st.conftest import shaped_book, texts_of
@@ -21,12 +19,11 @@ from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.exported_forms import default_book
 from tests.tuning_tables.st.storage import Frame
 from tests.tuning_tables.st.syntax import ASKED_UNDER, Compiler, name_of
+from tuning_tables.exports import TABLE_FILE
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.language.records import Kind, st_name
-from tuning_tables.programs.estimate import ESTIMATE
-from tuning_tables.programs.line_table import LINE_TABLE
+from tuning_tables.programs.held import ESTIMATE, LINE_TABLE
 from tuning_tables.self_test_size import SMALL
-from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import Status, TableBook
 
 BOOKS: Mapping[str, Callable[[], TableBook]] = {

@@ -22,9 +22,9 @@ from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Array, Kind, Record, Scalar, Value
 from tuning_tables import ControllerTable
 from tuning_tables.aim.golden_aims import golden_selections
+from tuning_tables.exports import TABLE_FILE
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
-from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
 
 PAGE = Path(__file__).parents[3] / "docs" / "reference" / "structured-text.md"

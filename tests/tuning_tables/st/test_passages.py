@@ -24,12 +24,12 @@ from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault
 from tests.tuning_tables.st.syntax import ASKED_UNDER, Compiler, name_of
 from tuning_tables import InvalidTable
-from tuning_tables.export_prefix import RETARDER
+from tuning_tables.export_names import RETARDER
 from tuning_tables.language.records import st_name
+from tuning_tables.passages.exports import SELF_TEST_FILE, TABLE_FILE
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
-from tuning_tables.passages.st_source import SELF_TEST_FILE, TABLE_FILE
 from tuning_tables.programs.tracker import TRACKER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 

@@ -30,9 +30,9 @@ from tests.tuning_tables.st.syntax import (
     walk,
     word,
 )
+from tuning_tables.exports import SELF_TEST_FILE, TABLE_FILE
 from tuning_tables.golden_vectors import FEW, few_golden_vectors, golden_vectors
 from tuning_tables.self_test_size import SMALL
-from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE
 from tuning_tables.table_book import TableBook
 
 Change: TypeAlias = Callable[[str], str]

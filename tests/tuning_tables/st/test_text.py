@@ -24,14 +24,13 @@ from tests.tuning_tables.st.exported_forms import FORMS
 from tests.tuning_tables.st.syntax import faults, parse, walk
 from tuning_tables import InvalidTable
 from tuning_tables.aim import AimTables
-from tuning_tables.category_names import category_macros, comment_text
-from tuning_tables.category_number import KNOWN_NUMBERS
+from tuning_tables.category_number import KNOWN_NUMBERS, category_macros, comment_text
 from tuning_tables.correction import Correction
-from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.export_names import ExportPrefix
+from tuning_tables.exports import line_export
+from tuning_tables.passages.exports import passage_export
 from tuning_tables.passages.passage_book import PassageBook
-from tuning_tables.passages.st_source import passage_export
 from tuning_tables.self_test_size import SMALL
-from tuning_tables.st_source import line_export
 from tuning_tables.table_book import TableBook
 
 SHAPES: Final = {
@@ -108,7 +107,7 @@ def test_as_many_tables_as_are_allowed_are_exported_and_no_more(
 ) -> None:
     passages = PassageBook((passage_table(stages=2),))
     of_lines, of_passages = (partial(line_export, small_book), partial(passage_export, passages))
-    lines, of_sensors = "tuning_tables.st_source.MOST_TABLES", "tuning_tables.passages.st_source.MOST_TABLES"
+    lines, of_sensors = "tuning_tables.exports.MOST_TABLES", "tuning_tables.passages.exports.MOST_TABLES"
     for most, tables, export in ((lines, 2, of_lines), (of_sensors, 1, of_passages)):
         monkeypatch.setattr(most, tables)
         assert export(self_test=SMALL)

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from synth.kernels.compiling import part
 from synth.kernels.loop.regulator import estimated_speed
-from tuning_tables.programs.estimate import ESTIMATE, FACTOR
-from tuning_tables.programs.line_table import LineTable
+from tuning_tables.programs.held import ESTIMATE, FACTOR, LineTable
 
 KNOWN = len(ESTIMATE.members)
 """Numbers of the state."""

@@ -25,7 +25,7 @@ from synth.kernels.loop.motion import LEFT, MOVING, Cells, Path, advance
 from synth.kernels.loop.passes import LONGEST_PASS_S, Draws, Exits
 from synth.kernels.loop.regulator import Sensor, admitted, measure
 from synth.kernels.loop.trace import note
-from tuning_tables.programs.line_table import LineTable
+from tuning_tables.programs.held import LineTable
 
 BY_TABLE, BY_PREDICTION, BY_PULSES = 0, 1, 2
 

@@ -10,12 +10,10 @@ import numpy as np
 from plant_models.frozen_arrays import Ints
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table, Tile, Tiles
 from synth.frame.printed_numbers import decimals, three_figures
-from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.outcomes import caught_at
-from synth.hump.trains.shift_sums import shift_sums
+from synth.hump.rolling.outcomes import caught_at
+from synth.hump.trains.humped_trial import HumpedTrial, kept_within
 from synth.hump.trains.shown.positions import role_words
-from synth.hump.trains.train_figures import TrainFigure, interval_of, ratio
-from synth.hump.trains.trial_limits import kept_within
+from synth.hump.trains.train_figures import TrainFigure, interval_of, ratio, shift_sums
 
 KM_H = 3.6
 """Kilometres an hour in a metre a second."""

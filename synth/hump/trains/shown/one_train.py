@@ -6,11 +6,10 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Final
 
 from synth.frame.exhibits import Chart, Exhibit, File, Sentence
-from synth.hump.control.event_log import to_log_csv
-from synth.hump.trains.chosen_trains import chosen_trains
+from synth.hump.control.events import to_log_csv
 from synth.hump.trains.hump_page.hump_page import PLAYER, PlayedRun, hump_page
 from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.traced_train import OneTrain, some_trains
+from synth.hump.trains.traced_train import OneTrain, chosen_trains, some_trains
 from synth.hump.trains.train_trace import TrainTrace
 
 if TYPE_CHECKING:
@@ -56,7 +55,7 @@ def one_train_exhibits(result: HumpedTrial, shown: OneTrain, traced: Callable[[]
         return time_path(traced())
 
     def speeds() -> Figure:
-        from synth.hump.trains.pictures.speed_path import speed_path
+        from synth.hump.trains.pictures.train_speeds import speed_path
 
         return speed_path(traced(), members)
 

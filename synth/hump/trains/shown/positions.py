@@ -12,17 +12,15 @@ from plant_models.frozen_arrays import Floats
 from synth.frame.exhibits import Column, Exhibit, Row, Sentence, Table
 from synth.frame.interval import Interval
 from synth.frame.printed_numbers import decimals, ranges
-from synth.hump.trains.aim_choice import AimChoice
-from synth.hump.trains.hump_routes import HumpRoutes
+from synth.hump.planning.position_roles import Fixed
+from synth.hump.rolling.hump_routes import HumpRoutes
 from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.position_choice import PositionChoice
-from synth.hump.trains.position_roles import Fixed
-from synth.hump.trains.position_strength import MOST_SHORT, strengths, weak
-from synth.hump.trains.resolved_trial import ResolvedTrial
-from synth.hump.trains.shift_sums import shift_sums
 from synth.hump.trains.shown.figures import in_hundred
-from synth.hump.trains.train_figures import interval_of, ratio, share
-from synth.hump.trains.trial_aim import stated_exit_std_m_s
+from synth.hump.trains.train_figures import MOST_SHORT, interval_of, ratio, share, shift_sums, strengths, weak
+from synth.hump.trial.made_trial import stated_exit_std_m_s
+from synth.hump.trial.position_choice import PositionChoice
+from synth.hump.trial.resolved_trial import ResolvedTrial
+from synth.hump.trial.table_aim import AimChoice
 
 POSITIONS: Final = (
     Column("number", "position"),

@@ -7,13 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from synth.computer.economics.economic_case import EconomicCase, evaluated
-from synth.computer.economics.hump_rates import HumpChange, HumpRates
-from synth.computer.economics.prices import Prices
-from synth.computer.economics.terms import Terms
-from synth.computer.economics.traffic import Handling, Traffic
+from synth.computer.economics.investment import Terms
+from synth.computer.economics.traffic import Handling, HumpChange, HumpRates, Prices, Traffic
 from synth.frame.interval import Interval
-from synth.frame.settings.changed import with_inputs
-from synth.hump.trains.outcomes import TrainOutcomes
+from synth.frame.settings.settings_file import with_inputs
+from synth.hump.rolling.outcomes import TrainOutcomes
 
 PRICES = Prices(
     currency="EUR",

@@ -14,14 +14,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from plant_models.errors import PlantError
-from synth.computer.economics.economic_case import EconomicCase, evaluated
-from synth.computer.economics.hump_rates import HumpChange
-from synth.computer.economics.internal_rate import internal_rate
-from synth.computer.economics.pay_back import pay_back
-from synth.computer.economics.present_value import Investment, annuity, discounted_pay_back_years, net_present_value
-from synth.computer.economics.savings import total
-from synth.computer.economics.terms import Terms
-from synth.frame.settings.changed import changed, with_inputs
+from synth.computer.economics.economic_case import EconomicCase, evaluated, total
+from synth.computer.economics.investment import (
+    Investment,
+    Terms,
+    annuity,
+    discounted_pay_back_years,
+    internal_rate,
+    net_present_value,
+    pay_back,
+)
+from synth.computer.economics.traffic import HumpChange
+from synth.frame.settings.settings_file import changed, with_inputs
 from tests.synth.computer.economics.made_cases import CASE, TERMS
 
 

@@ -18,10 +18,10 @@ from synth.computer.economics.hump_day_change import (
     rates_of,
     train_sums,
 )
-from synth.computer.economics.hump_rates import RATES, rates_after
-from synth.computer.economics.uncertainty.ranges import Constant
+from synth.computer.economics.ranges import Constant
+from synth.computer.economics.traffic import RATES, rates_after
 from synth.frame.interval import Interval
-from synth.frame.settings.changed import changed, with_inputs
+from synth.frame.settings.settings_file import changed, with_inputs
 from synth.hump.trains.train_figures import train_figures
 from tests.synth.computer.economics.made_cases import CASE, CHANGE, TODAY, half95, made_outcomes
 

@@ -15,11 +15,10 @@ from scipy.optimize import brentq
 from scipy.special import stdtrit
 
 from plant_models.errors import PlantError
-from synth.computer.economics.hump_queue import HumpQueue, allen_cunneen_h, erlang_c, whitt_h
-from synth.computer.economics.hump_rates import RATES, HumpChange, HumpRates, rates_after
-from synth.computer.economics.hump_work import hump_queue, hump_work
-from synth.computer.economics.savings import operating_savings, released_capital, total
-from synth.frame.settings.changed import changed
+from synth.computer.economics.economic_case import operating_savings, released_capital, total
+from synth.computer.economics.hump_work import HumpQueue, allen_cunneen_h, erlang_c, hump_queue, hump_work, whitt_h
+from synth.computer.economics.traffic import RATES, HumpChange, HumpRates, rates_after
+from synth.frame.settings.settings_file import changed
 from tests.synth.computer.economics.made_cases import CHANGE, HANDLING, PRICES, TODAY, TRAFFIC
 
 

@@ -20,12 +20,10 @@ from scipy.integrate import quad, solve_ivp
 from scipy.special import lambertw
 
 from plant_models import PlantError
-from synth.computer.reliability.duplex import LONGEST_CHECK, Duplex, single_availability
-from synth.computer.reliability.failure_losses import HourPrices, yearly_loss
-from synth.computer.reliability.four_states import FourStates, State, StateShares
-from synth.computer.reliability.maintenance_interval import CheckedComputer
+from synth.computer.reliability.four_states import FourStates, HourPrices, State, StateShares, yearly_loss
+from synth.computer.reliability.maintenance import LONGEST_CHECK, CheckedComputer, Duplex, single_availability
 from synth.computer.reliability.upkeep import Upkeep
-from synth.frame.settings.changed import changed
+from synth.frame.settings.settings_file import changed
 
 PRINTED = FourStates(0.01, 0.2, 0.4, 4.0, 0.5)
 TO_REPAIR = replace(PRINTED, failed_check_to=State.REPAIR)

@@ -15,10 +15,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from plant_models.errors import PlantError
-from synth.computer.sizing.demand_service import Discipline, MeanWait, mean_waits, residual
 from synth.computer.sizing.queue_simulation import Requests, drawn_requests, sampled_mean, simulated, simulated_waits
-from synth.computer.sizing.service_law import Constant, Erlang, Exponential, Hyperexponential
-from synth.computer.sizing.task import Stream, Task, TaskMix, total_load
+from synth.computer.sizing.service import Discipline, MeanWait, mean_waits, residual
+from synth.computer.sizing.task import (
+    Constant,
+    Erlang,
+    Exponential,
+    Hyperexponential,
+    Stream,
+    Task,
+    TaskMix,
+    total_load,
+)
 from synth.computer.sizing.waiting_tail import sojourn_tail, start_tail
 
 EXPONENTIAL = (

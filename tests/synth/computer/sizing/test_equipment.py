@@ -19,24 +19,28 @@ from hypothesis import strategies as st
 import synth
 from plant_models.hump import HumpGraph, Signal
 from scripts.studies.control_computer.published_sizes import bits_of_source
-from synth.computer.sizing.call_costs import c_costs, st_costs
 from synth.computer.sizing.carried_positions import MOST_POSITIONS, PositionTimes, carried, most_positions
-from synth.computer.sizing.inputs_outputs import (
+from synth.computer.sizing.counted_needs import (
     ChannelRules,
     Channels,
+    ControllerCounts,
+    Memory,
+    Quantity,
+    common_word_bits,
+    controller_memory,
     counted_channels,
     source_channels,
     total_channels,
 )
-from synth.computer.sizing.memory_need import ControllerCounts, Memory, controller_memory
 from synth.computer.sizing.trackside_controllers import (
     TracksideController,
+    c_costs,
     cortex_m4,
     industrial_pc,
     plc,
+    st_costs,
     usual_controllers,
 )
-from synth.computer.sizing.word_length import Quantity, common_word_bits
 
 DOCS = Path(__file__).parents[4] / "docs"
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from synth.computer.sizing.response_time import PeriodicTask, longest_responses_s
+from synth.computer.sizing.carried_positions import PeriodicTask, longest_responses_s
 from synth.computer.sizing.trackside_controllers import ScanCycle
 
 

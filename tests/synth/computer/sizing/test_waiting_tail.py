@@ -15,17 +15,32 @@ import pytest
 
 from plant_models.errors import PlantError
 from scripts.studies.control_computer.published_sizes import SOURCE_WORD_BITS, source_memory
-from synth.computer.sizing.cyclic_service import Cycle, cyclic_speed
-from synth.computer.sizing.demand_service import Discipline, mean_waits
-from synth.computer.sizing.laplace_inversion import inverted
-from synth.computer.sizing.memory_need import Memory
-from synth.computer.sizing.needed_speed import AllowedWait, largest_tail, longest_mean_s, needed_speed
-from synth.computer.sizing.service_law import Complexes, Constant, Erlang, Exponential, Hyperexponential, ServiceLaw
-from synth.computer.sizing.task import Stream, Task, TaskMix
-from synth.computer.sizing.waiting_tail import constant_tail, exponential_tail, sojourn_tail, start_tail, survival
-from synth.computer.sizing.waiting_transform import delayed, sojourn_law, start_law
-from synth.computer.sizing.word_length import common_word_bits, hump_quantities
-from synth.frame.settings.changed import changed
+from synth.computer.sized_computer import AllowedWait, largest_tail, longest_mean_s, needed_speed
+from synth.computer.sizing.counted_needs import Memory, common_word_bits, hump_quantities
+from synth.computer.sizing.service import Cycle, Discipline, cyclic_speed, mean_waits
+from synth.computer.sizing.task import (
+    Complexes,
+    Constant,
+    Erlang,
+    Exponential,
+    Hyperexponential,
+    ServiceLaw,
+    Stream,
+    Task,
+    TaskMix,
+)
+from synth.computer.sizing.waiting_tail import (
+    constant_tail,
+    delayed,
+    exponential_tail,
+    inverted,
+    sojourn_law,
+    sojourn_tail,
+    start_law,
+    start_tail,
+    survival,
+)
+from synth.frame.settings.settings_file import changed
 from tests.synth.computer.sizing.test_demand_service import EXPONENTIAL, MIXED
 
 LAWS: tuple[ServiceLaw, ...] = (

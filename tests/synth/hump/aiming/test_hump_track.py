@@ -11,11 +11,10 @@ from plant_models.library import load_hump
 from plant_models.library.hump_entry import hump_names
 from synth.aim.configuration.aim_file import AimFile, parse_aim_file
 from synth.frame.command import Asked
-from synth.frame.input_error import InputError
-from synth.hump.aiming.command import resolve
-from synth.hump.aiming.hump_track import hump_track
-from synth.hump.aiming.options import AimOptions
-from synth.hump.trains.aim_choice import last_retarder
+from synth.frame.faults import InputError
+from synth.hump.aiming import hump_track, resolve
+from synth.hump.options import AimOptions
+from synth.hump.trial.table_aim import last_retarder
 
 
 def asked(text: str, **options: Any) -> Asked[AimFile, AimOptions]:

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 
 from synth.cli import main
-from synth.frame.input_error import InputError
-from synth.hump.capacity.crossings import REPLICATES, Sums, decided, drawn_weights, enough_for
+from synth.frame.faults import InputError
+from synth.hump.capacity.curves import REPLICATES, Sums, decided, drawn_weights, enough_for
 from synth.hump.capacity.variants import KeyValues, changed_text, key_values, variants
 from synth.hump.configuration.trial_file import parse_trial_file
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.resolved_trial import resolve_trial
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.resolved_trial import resolve_trial
 
 TRIAL = """hump = "dumper"
 [trains]

@@ -14,12 +14,11 @@ import pytest
 
 from plant_models.errors import PlantError
 from plant_models.library.hump_entry import HumpEntry, load_hump
-from plant_models.library.library import BUILT_IN
-from plant_models.library.type_file import HUMPS
-from synth.frame.input_error import InputError
-from synth.hump.checking.checked_hump import checked_hump
-from synth.hump.checking.places import places_of, rolled_routes
+from plant_models.library.library import BUILT_IN, HUMPS
+from synth.frame.faults import InputError
+from synth.hump.checked_hump import checked_hump
 from synth.hump.configuration.trial_file import trial_text
+from synth.hump.design_runners import places_of, rolled_routes
 from synth.hump.hump_file import hump_text, parse_hump, read_hump
 from synth.hump.making.short_file import read_short_hump
 from tests.effort import every

@@ -13,9 +13,8 @@ from scipy.stats import ttest_rel
 
 from synth.cli import main
 from synth.frame.exhibits import File, Sentence
-from synth.hump.comparison.compared_runs import runs_in
-from synth.hump.comparison.compared_trains import compared_trains
-from synth.hump.comparison.played import as_told, humped_again, played
+from synth.hump.compare_command import as_told, humped_again, played
+from synth.hump.compared_runs import compared_trains, runs_in
 
 TRIAL = """hump = "dumper"
 [trains]
@@ -89,7 +88,7 @@ def test_a_page_plays_the_train_with_the_largest_difference_in_both_runs(
 
     of_slow = humped_again(slow, compared_trains(runs)[:1])
     assert as_told(of_slow[0], slow.found)
-    monkeypatch.setattr("synth.hump.comparison.played.humped_again", lambda run, chosen: of_slow)
+    monkeypatch.setattr("synth.hump.compare_command.humped_again", lambda run, chosen: of_slow)
     (warning,) = played(runs)
     assert isinstance(warning, Sentence)
     assert warning.text.startswith("Warning: fast was humped by another version of this program")

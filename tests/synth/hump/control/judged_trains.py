@@ -15,11 +15,10 @@ import numpy as np
 
 from plant_models.hump import HumpGraph
 from synth.hump.control.cut_record import CutRecord, Mark
-from synth.hump.control.event import ALARMS, Kind
+from synth.hump.control.cut_routes import RouteTable
+from synth.hump.control.events import ALARMS, Kind, replayed
 from synth.hump.control.hump_control import HumpControl, Operation
-from synth.hump.control.hump_state import replayed
-from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
-from synth.hump.control.route_table import RouteTable
+from synth.hump.control.models import PUBLISHED_MODEL, PracticeRules
 from tests.plant_models.hump.random_humps import random_hump
 from tests.synth.hump.control.made_trains import (
     LONG_M,

@@ -12,12 +12,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.hump.control.cut_record import CutRecord, Mark
-from synth.hump.control.event import Event, Kind
+from synth.hump.control.cut_record import CutRecord, Mark, SortingList
+from synth.hump.control.cut_routes import RouteTable
+from synth.hump.control.events import Event, Kind
 from synth.hump.control.hump_control import HumpControl, Operation
 from synth.hump.control.models import ENTRY
-from synth.hump.control.route_table import RouteTable
-from synth.hump.control.sorting_list import SortingList
 from tests.plant_models.hump.random_humps import small_hump
 from tests.synth.hump.control.queue_of_cuts import NO_STALLS, Queue, Stall
 from tests.synth.hump.control.reference_sections import (

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.hump.control.route_table import RouteTable
+from synth.hump.control.cut_routes import RouteTable
 
 Floats = NDArray[np.float64]
 

@@ -16,9 +16,9 @@ import numpy as np
 
 from plant_models.errors import require
 from plant_models.frozen_arrays import Floats, frozen_arrays
-from plant_models.hump.switch import Switch
+from plant_models.hump.elements import Switch
 from synth.hump.control.models import Occupation
-from synth.hump.control.track_points import TrackPoints
+from synth.hump.trains.humped_track import TrackPoints
 
 
 @frozen_arrays

@@ -14,9 +14,9 @@ from heapq import heappop, heappush
 from itertools import count
 from math import isfinite
 
-from plant_models.hump.switch import Switch
+from plant_models.hump.elements import Switch
+from synth.hump.control.cut_routes import RouteTable
 from synth.hump.control.models import ENTRY, AxlePass, Braking, Occupation
-from synth.hump.control.route_table import RouteTable
 from tests.synth.hump.control.reference_sections import CounterSlip, Fault, FaultyPoints, MovingCut, ReferenceSections
 
 

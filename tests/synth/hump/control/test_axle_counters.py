@@ -6,12 +6,10 @@ from collections.abc import Iterator
 
 import pytest
 
-from synth.hump.control.event import Event, Kind, Why
+from synth.hump.control.cut_routes import RouteTable
+from synth.hump.control.events import Counters, Event, Kind, Why
 from synth.hump.control.hump_control import HumpControl, Operation
-from synth.hump.control.hump_state import Counters
-from synth.hump.control.models import ENTRY
-from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
-from synth.hump.control.route_table import RouteTable
+from synth.hump.control.models import ENTRY, PUBLISHED_MODEL, PracticeRules
 from synth.hump.control.section_counter import Finding, SectionCounter
 from tests.plant_models.hump.random_humps import small_hump
 from tests.synth.hump.control.made_trains import axle_places, humped, record

@@ -11,11 +11,10 @@ import pytest
 from plant_models.errors import PlantError
 from plant_models.hump import HumpGraph, Signal
 from synth.hump.control.cut_record import CutRecord, Mark
-from synth.hump.control.event import Block, Kind, Why
+from synth.hump.control.cut_routes import RouteTable
+from synth.hump.control.events import Block, Kind, Why
 from synth.hump.control.hump_control import HumpControl, Operation
-from synth.hump.control.models import ENTRY
-from synth.hump.control.practice_rules import PUBLISHED_MODEL, PracticeRules
-from synth.hump.control.route_table import RouteTable
+from synth.hump.control.models import ENTRY, PUBLISHED_MODEL, PracticeRules
 from tests.plant_models.hump.random_humps import small_vertices
 from tests.synth.hump.control.made_trains import (
     LONG_M,

@@ -10,13 +10,11 @@ import pytest
 
 from plant_models.errors import PlantError
 from synth.hump.control.brake_task import ManualBraking, TableBraking, UniformBraking, ZoneBraking
-from synth.hump.control.cut_record import Mark
-from synth.hump.control.event import Aspect, Block, Kind, Why
+from synth.hump.control.cut_record import Mark, SortingList
+from synth.hump.control.cut_routes import RouteStore
+from synth.hump.control.events import Aspect, Block, Kind, Why
 from synth.hump.control.hump_control import HumpControl, Operation
-from synth.hump.control.models import ExitSpeed, Misroute, Resistance
-from synth.hump.control.practice_rules import PUBLISHED_MODEL
-from synth.hump.control.route_store import RouteStore
-from synth.hump.control.sorting_list import SortingList
+from synth.hump.control.models import PUBLISHED_MODEL, ExitSpeed, Misroute, Resistance
 from tests.synth.hump.control.made_trains import TABLE, axle_places, close_pair, commands, humped, record, rolling, told
 from tests.synth.hump.control.reference_sections import moving_cut
 from tests.synth.hump.control.reference_track import ReferenceTrack

@@ -9,12 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from plant_models.errors import PlantError
-from synth.hump.control.cut_record import CutRecord, Rolling
-from synth.hump.control.record_word import (
+from synth.hump.control.cut_record import (
     SHIFTS,
     WIDTHS,
     WORD_BITS,
+    CutRecord,
     MachineRecord,
+    Rolling,
     destination_code,
     limits,
     machine_record,

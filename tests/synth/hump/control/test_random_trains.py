@@ -20,9 +20,8 @@ from hypothesis import strategies as st
 from plant_models.hump import Branch, Edge, HumpGraph, Retarder, Signal, Switch, TrackSection, Vertex
 from synth.hump.control.axle_counters import AxleCounters
 from synth.hump.control.cut_record import CutRecord, Mark
-from synth.hump.control.event import Kind
-from synth.hump.control.misrouting import Misrouting
-from synth.hump.control.route_table import RouteTable
+from synth.hump.control.cut_routes import Misrouting, RouteTable
+from synth.hump.control.events import Kind
 from tests.effort import sized
 from tests.synth.hump.control.judged_trains import SCENES, Humping, Scene, judgement, random_humping
 from tests.synth.hump.control.made_trains import axle_places, humped, record

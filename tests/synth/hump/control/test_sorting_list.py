@@ -20,9 +20,8 @@ from hypothesis import strategies as st
 from plant_models.errors import PlantError
 from plant_models.library import load_car, load_weight_categories
 from plant_models.rolling.car_mix import CarMix, MixedCar
-from synth.frame.input_error import InputError
-from synth.hump.control.cut_record import CutRecord, Mark, Rolling
-from synth.hump.control.sorting_list import SortingList
+from synth.frame.faults import InputError
+from synth.hump.control.cut_record import CutRecord, Mark, Rolling, SortingList
 from synth.hump.control.sorting_list_file import COLUMNS, load_sorting_list, sorting_list_of_csv
 from synth.hump.control.train_population import TrainPopulation, chosen
 

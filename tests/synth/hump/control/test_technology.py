@@ -24,18 +24,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from plant_models.errors import PlantError
-from synth.hump.control.brake_task import LeastInterval, ManualBraking, TableBraking, UniformBraking, ZoneBraking
-from synth.hump.control.event import ALARMS, Event, Kind, Why
-from synth.hump.control.event_log import to_log_csv
-from synth.hump.control.hump_state import Counters, HumpState, replayed
-from synth.hump.control.models import Misroute, Resistance
-from synth.hump.control.practice_rules import PracticeRules
-from synth.hump.control.record_word import WIDTHS
-from synth.hump.control.route_store import RouteStore
-from synth.hump.control.route_table import RouteTable
+from synth.hump.control.brake_task import (
+    LeastInterval,
+    ManualBraking,
+    Strobe,
+    TableBraking,
+    UniformBraking,
+    ZoneBraking,
+)
+from synth.hump.control.cut_record import WIDTHS
+from synth.hump.control.cut_routes import RouteStore, RouteTable
+from synth.hump.control.events import ALARMS, Counters, Event, HumpState, Kind, Why, replayed, to_log_csv
+from synth.hump.control.models import Misroute, PracticeRules, RejectionOrCheapest, Resistance, leader_track
 from synth.hump.control.sorting_list_file import COLUMNS
-from synth.hump.control.strobe import Strobe
-from synth.hump.control.technology import RejectionOrCheapest, leader_track
 from tests.plant_models.hump.random_humps import random_hump
 from tests.synth.hump.control.made_trains import record
 

@@ -14,23 +14,22 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from plant_models.brake_power import FullBrake
 from plant_models.hump import Route
 from plant_models.library import load_car, load_position
 from plant_models.library.hump_entry import load_hump
+from plant_models.stage_regulator import FullBrake
 from synth.cli import main
-from synth.frame.picture.figure_file import draw
+from synth.frame.picture.house_style import draw
 from synth.hump.configuration.trial_file import parse_trial_file
-from synth.hump.control.pictures.hump_picture import hump_picture
-from synth.hump.control.pictures.plan_layout import plan_layout
-from synth.hump.design.hump_under_test import HumpUnderTest, hump_under_test
+from synth.hump.design.hump_under_test import HumpUnderTest, hump_under_test, unbraked
 from synth.hump.design.intervals import NEARLY_M_S, depths, intervals, least_margins_s
-from synth.hump.design.runners_unbraked import unbraked
 from synth.hump.design.triples import margins_s, pairs_of, triples
 from synth.hump.design_runners import DESIGN_RUNNERS, DesignRunner, bad_runner, roll_runners
-from synth.hump.trains.hump_routes import Mark
-from synth.hump.trains.resolved_trial import resolve_trial
-from synth.hump.trains.train_plan import TrainPlan
+from synth.hump.hump_picture import hump_picture
+from synth.hump.plan_layout import plan_layout
+from synth.hump.planning.train_plan import TrainPlan
+from synth.hump.rolling.hump_routes import Mark
+from synth.hump.trial.resolved_trial import resolve_trial
 from tests.effort import every
 
 TRIAL = """hump = "medium"

@@ -19,14 +19,14 @@ import pytest
 from plant_models.hump import Retarder, Route
 from plant_models.library.hump_entry import load_hump
 from synth.cli import main
-from synth.frame.input_error import InputError
-from synth.hump.checking.checked_hump import checked_hump
+from synth.frame.faults import InputError
+from synth.hump.checked_hump import checked_hump
 from synth.hump.hump_file import parse_hump
-from synth.hump.making.hump_toml import hump_toml
+from synth.hump.making.hump_plan import Fork, Tree, levels_needed, track_tree
+from synth.hump.making.make_command import hump_toml
 from synth.hump.making.short_file import example_short_toml, read_short_hump
 from synth.hump.making.short_hump import EXAMPLE
-from synth.hump.making.track_tree import Fork, Tree, levels_needed, track_tree
-from synth.hump.trains.hump_routes import Mark
+from synth.hump.rolling.hump_routes import Mark
 from synth.hump.trains.train_passages import train_passages
 from tests.effort import sized
 from tests.synth.hump.trains.made_trials import Day

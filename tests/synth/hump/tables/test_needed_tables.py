@@ -13,23 +13,22 @@ from hypothesis import strategies as st
 
 from plant_models.library import BUILT_IN, CAR_MIXES, load_hump
 from plant_models.library.hump_entry import hump_names
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
+from synth.hump.book_needs import Entering, fewest_axles, fewest_classes
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.control.train_population import TrainPopulation
-from synth.hump.tables.entering import Entering
-from synth.hump.tables.fewest_classes import fewest_axles, fewest_classes
-from synth.hump.tables.tables_configuration import (
+from synth.hump.rolling.hump_routes import hump_routes
+from synth.hump.rolling.table_hump_position import nearest_axles
+from synth.hump.tables_configuration import (
     APART_ROOT_M_S,
     speeds_of,
     tables_toml,
     targets_m_s,
     without_books,
 )
-from synth.hump.trains.class_choice import nearest_axles
-from synth.hump.trains.hump_routes import hump_routes
-from synth.hump.trains.needed_tables import kinds_of_cuts
-from synth.hump.trains.position_choice import HeldTables
-from synth.hump.trains.resolved_trial import load_trial, resolve_trial
+from synth.hump.trial.needed_tables import kinds_of_cuts
+from synth.hump.trial.position_choice import HeldTables
+from synth.hump.trial.resolved_trial import load_trial, resolve_trial
 from synth.retarder.configuration.config_file import parse_config
 from tests.effort import every, sized
 from tests.synth.hump.control.test_sorting_list import drawn_list
@@ -54,7 +53,7 @@ def held_by(configuration: str) -> HeldTables:
 def test_the_printed_configuration_fits_its_trial(hump: str, number: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of every hump of the library: all cuts have a class, no class can be missed, and all targets are there that the
     position keeps cuts apart with below the speed of the fastest cuts."""
-    monkeypatch.setattr("synth.hump.tables.entering.CUTS", sized(160, 1000))
+    monkeypatch.setattr("synth.hump.book_needs.CUTS", sized(160, 1000))
     trial, text = load_trial(Path(hump)), tables_toml(Path(hump), number)
     need, held = trial.needs[number - 1], held_by(text)
     assert need.missing_kinds(held, trial.categories) == set()

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.hump.trains.hump_routes import Mark as LayeredMark
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.rolling.hump_routes import Mark as LayeredMark
+from synth.hump.rolling.train_memory import TrainMemory
 from tests.synth.hump.trains.fast_and_slow import BothTrains
 from tests.synth.hump.trains.slow_train import Kind, Mark, SlowRun
 

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.library import load_hump
-from synth.hump.trains.asked import Asked
-from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
-from synth.hump.trains.motion import Moving
-from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.rolling.hump_routes import HumpRoutes, hump_routes
+from synth.hump.rolling.motion import Moving
+from synth.hump.rolling.train_cuts import TrainCuts
+from synth.hump.rolling.train_memory import Asked, TrainMemory
 from synth.simulation.free_roll import Rolled
 
 Floats = NDArray[np.float64]

@@ -8,12 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.hump import Branch, Edge, HumpGraph, Retarder, Signal, Switch, TrackSection
-from synth.hump.trains.asked import Asked
-from synth.hump.trains.hump_position import Arrivals
-from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
-from synth.hump.trains.humping import Hump, humped
-from synth.hump.trains.normal_hump_position import NormalHumpPosition
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.rolling.hump_position import Arrivals, NormalHumpPosition
+from synth.hump.rolling.hump_routes import HumpRoutes, hump_routes
+from synth.hump.rolling.humping import Hump, humped
+from synth.hump.rolling.train_memory import Asked, TrainMemory
 from synth.simulation.free_roll import Rolled
 
 Floats = NDArray[np.float64]

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from plant_models.frozen_arrays import Floats
-from synth.hump.trains.hump_position import Arrivals
+from synth.hump.rolling.hump_position import Arrivals
 from synth.retarder.class_setup import class_setup, origin_of, validation_passes
 from synth.retarder.configuration.config_file import parse_config
 from synth.retarder.estimation.estimator_design import estimator_of

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from synth.hump.trains.hump_position import Arrivals
+from synth.hump.rolling.hump_position import Arrivals
 
 
 def arriving(

@@ -10,10 +10,10 @@ from plant_models.library import load_hump, load_weight_categories
 from synth.aim.configuration.aim_file import parse_aim_file
 from synth.aim.resolved_aim import ResolvedAim
 from synth.frame.command import Asked
-from synth.hump.aiming.command import resolve
-from synth.hump.aiming.options import AimOptions
-from synth.hump.trains.aim_design import positions_m
-from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
+from synth.hump.aiming import resolve
+from synth.hump.options import AimOptions
+from synth.hump.planning.aim_design import positions_m
+from synth.hump.rolling.hump_routes import HumpRoutes, hump_routes
 from tests.tuning_tables.aim.made_tables import category_table, measured_table
 from tuning_tables.aim import AimTable, MeasuredResistance, ParkPosition
 from tuning_tables.json_file import write_json

@@ -15,13 +15,11 @@ from numpy.typing import NDArray
 from plant_models.hump import HumpGraph
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from synth.hump.control.train_population import TrainPopulation
-from synth.hump.trains.asked import Asked
-from synth.hump.trains.hump_position import Arrivals
-from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
-from synth.hump.trains.humping import Hump, humped
-from synth.hump.trains.normal_hump_position import NormalHumpPosition
-from synth.hump.trains.train_cuts import TrainCuts, trains
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.rolling.hump_position import Arrivals, NormalHumpPosition
+from synth.hump.rolling.hump_routes import HumpRoutes, hump_routes
+from synth.hump.rolling.humping import Hump, humped
+from synth.hump.rolling.train_cuts import TrainCuts, trains
+from synth.hump.rolling.train_memory import Asked, TrainMemory
 from tests.synth.hump.trains.humped_trains import route_rolling
 from tests.synth.hump.trains.slow_train import Heads, SlowBody, SlowCar, SlowCut, SlowTrain
 

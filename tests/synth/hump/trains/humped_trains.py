@@ -15,18 +15,15 @@ from numpy.typing import NDArray
 from plant_models.hump import Route
 from plant_models.library.hump_entry import HumpEntry, load_hump
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Weather
 from synth.hump.control.train_population import TrainPopulation
-from synth.hump.trains.asked import Asked
-from synth.hump.trains.hump_position import Arrivals
-from synth.hump.trains.hump_routes import hump_routes
-from synth.hump.trains.humping import Hump, humped
-from synth.hump.trains.normal_hump_position import NormalHumpPosition
-from synth.hump.trains.route_rolling import RouteRolling, rolling_on
-from synth.hump.trains.route_ways import route_ways
-from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.train_cuts import trains as drawn_trains
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.rolling.hump_position import Arrivals, NormalHumpPosition
+from synth.hump.rolling.hump_routes import hump_routes
+from synth.hump.rolling.humping import Hump, humped
+from synth.hump.rolling.route_rolling import RouteRolling, rolling_on, route_ways
+from synth.hump.rolling.train_cuts import TrainCuts
+from synth.hump.rolling.train_cuts import trains as drawn_trains
+from synth.hump.rolling.train_memory import Asked, TrainMemory
 from tests.plant_models.rolling.populations import CATEGORIES, MIX, population
 
 

@@ -12,24 +12,23 @@ from plant_models.hump import HumpGraph
 from plant_models.library import WeightCategories, load_weight_categories
 from plant_models.library.hump_entry import load_hump
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Weather
 from synth.hump.configuration.settings import TracksSettings
 from synth.hump.control.train_population import TrainPopulation
-from synth.hump.trains.forecast import SpeedRange
-from synth.hump.trains.hump_aim import CategoryAim, HumpAim
-from synth.hump.trains.hump_position import Arrivals
-from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
-from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, whole_train
-from synth.hump.trains.known_cuts import KnownCuts
-from synth.hump.trains.normal_hump_position import NormalHumpPosition
-from synth.hump.trains.position_roles import Roles, Spacing
-from synth.hump.trains.route_ways import route_ways
-from synth.hump.trains.train_plan import Planner, TrainPlan
-from synth.hump.trains.train_source import TrainSource
-from synth.hump.trains.trial import Control, HumpTrial
+from synth.hump.planning.aim_control import CategoryAim, HumpAim
+from synth.hump.planning.forecast import SpeedRange
+from synth.hump.planning.known_cuts import KnownCuts
+from synth.hump.planning.position_roles import Roles, Spacing
+from synth.hump.planning.speed_rules import HumpSpeedLimits, SpeedMethod, whole_train
+from synth.hump.planning.train_plan import Planner, TrainPlan
+from synth.hump.rolling.hump_position import Arrivals, NormalHumpPosition
+from synth.hump.rolling.hump_routes import HumpRoutes, hump_routes
+from synth.hump.rolling.list_trains import TrainSource
+from synth.hump.rolling.route_rolling import route_ways
+from synth.hump.trial.trial import Control, HumpTrial
 from tests.plant_models.rolling.populations import MIX, population
 from tuning_tables.aim import AimAxes
-from tuning_tables.aim.held_aim import aim_grid
+from tuning_tables.aim.axes import aim_grid
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -7,9 +7,9 @@ import pytest
 
 from plant_models.library.hump_entry import load_hump
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
-from plant_models.rolling.weather import Weather
-from synth.hump.trains.hump_routes import Mark
-from synth.hump.trains.train_memory import TrainMemory
+from plant_models.rolling.roll_track import Weather
+from synth.hump.rolling.hump_routes import Mark
+from synth.hump.rolling.train_memory import TrainMemory
 from synth.hump.trains.train_trace import body_of
 from tests.effort import every, sized
 from tests.plant_models.rolling.populations import MIX, population

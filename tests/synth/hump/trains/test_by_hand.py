@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from synth.hump.trains.hump_routes import Mark
-from synth.hump.trains.motion import Cars, Moving
-from synth.hump.trains.standing_cars import StandingCars
+from synth.hump.rolling.hump_routes import Mark
+from synth.hump.rolling.motion import Cars, Moving
+from synth.hump.rolling.standing_cars import StandingCars
 from tests.synth.hump.trains.bare_cuts import (
     FIRST_M,
     GRAVITY_M_S2,

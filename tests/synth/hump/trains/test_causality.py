@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from synth.hump.trains.asked import Asked, ExitSpeeds
-from synth.hump.trains.hump_position import Arrivals, HumpPosition, Passed
-from synth.hump.trains.humping import Hump, humped
-from synth.hump.trains.interval_control import Feedback, FeedbackSpeeds
-from synth.hump.trains.rollability import Rollability
-from synth.hump.trains.route_rolling import rolling_on
-from synth.hump.trains.tracks_between import free_before_m, with_room
-from synth.hump.trains.train_memory import TrainMemory
-from synth.hump.trains.trial import Control, HumpTrial, Sensing
+from synth.hump.planning.interval_control import Feedback, FeedbackSpeeds
+from synth.hump.planning.rollability import Rollability
+from synth.hump.rolling.hump_position import Arrivals, HumpPosition, Passed
+from synth.hump.rolling.humping import Hump, humped
+from synth.hump.rolling.route_rolling import rolling_on
+from synth.hump.rolling.train_memory import Asked, ExitSpeeds, TrainMemory
+from synth.hump.trial.tracks_between import free_before_m, with_room
+from synth.hump.trial.trial import Control, HumpTrial, Sensing
 from tests.effort import every
 from tests.synth.hump.trains.made_trials import Day
 

@@ -19,17 +19,16 @@ import pytest
 
 from plant_models.errors import PlantError
 from plant_models.hump import Retarder, Switch
-from synth.hump.control.event import Kind, Why
-from synth.hump.control.hump_state import replayed
-from synth.hump.control.practice_rules import PracticeRules
-from synth.hump.control.route_table import RouteTable
-from synth.hump.trains.controlled_train import TICK_S, ControlledTrain, controlled_train
-from synth.hump.trains.hump_routes import HumpRoutes, Mark
-from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.control.cut_routes import RouteTable
+from synth.hump.control.events import Kind, Why, replayed
+from synth.hump.control.models import PracticeRules
+from synth.hump.rolling.hump_routes import HumpRoutes, Mark
+from synth.hump.rolling.train_cuts import TrainCuts
+from synth.hump.rolling.train_memory import TrainMemory
+from synth.hump.trains.traced_train import TICK_S, ControlledTrain, controlled_train
 from synth.hump.trains.train_passages import train_passages
 from synth.hump.trains.train_trace import user_ahead
-from synth.hump.trains.trial import HumpTrial
+from synth.hump.trial.trial import HumpTrial
 from tests.effort import every
 from tests.synth.hump.trains.humped_trains import humped_trains
 from tests.synth.hump.trains.made_trials import Day

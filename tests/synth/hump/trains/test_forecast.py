@@ -8,16 +8,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from plant_models.rolling.weather import Weather
-from synth.hump.trains.asked import Asked
-from synth.hump.trains.forecast import Expected, SpeedRange, Ways, from_crest
-from synth.hump.trains.hump_routes import HumpRoutes
-from synth.hump.trains.known_rolls import KnownRolls
-from synth.hump.trains.motion import Cars, Moving, Push
-from synth.hump.trains.route_rolling import rolling_on
-from synth.hump.trains.train_cuts import TrainCuts, expected
-from synth.hump.trains.train_memory import TrainMemory
-from synth.hump.trains.trial import HumpTrial
+from plant_models.rolling.roll_track import Weather
+from synth.hump.planning.forecast import Expected, SpeedRange, Ways, from_crest
+from synth.hump.rolling.hump_routes import HumpRoutes
+from synth.hump.rolling.motion import Cars, KnownRolls, Moving, Push
+from synth.hump.rolling.route_rolling import rolling_on
+from synth.hump.rolling.train_cuts import TrainCuts, expected
+from synth.hump.rolling.train_memory import Asked, TrainMemory
+from synth.hump.trial.trial import HumpTrial
 from tests.synth.hump.trains.made_trials import Day
 
 Floats = NDArray[np.float64]

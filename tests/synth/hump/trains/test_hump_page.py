@@ -16,11 +16,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.frame.page.scripted_document import script_safe
-from synth.hump.comparison.compared_trains import MOST_CUTS
-from synth.hump.trains.hump_page.hump_page import PlayedRun, hump_page
-from synth.hump.trains.hump_page.train_data import HUNDREDTHS, differences
-from synth.hump.trains.outcomes import USUAL_COUPLINGS, outcomes
+from synth.frame.page.document import script_safe
+from synth.hump.compared_runs import MOST_CUTS
+from synth.hump.rolling.outcomes import USUAL_COUPLINGS, outcomes
+from synth.hump.trains.hump_page.hump_page import HUNDREDTHS, PlayedRun, differences, hump_page
 from synth.hump.trains.train_trace import TrainTrace, train_trace
 from tests.plant_models.rolling.populations import CATEGORIES
 from tests.synth.hump.trains.humped_trains import HumpedTrains, humped_trains

@@ -18,16 +18,15 @@ import pytest
 from scipy import stats
 
 from plant_models import PlantError, RollingResistance, couple
-from plant_models.approach import Approach
-from plant_models.brake_power import FullBrake
 from plant_models.library.catalogue import load_car, load_position, load_weight_categories
 from plant_models.plant import Plant
-from scripts.studies.control_computer.stuck_position import StuckPosition, StuckStage, released
+from plant_models.stage_regulator import FullBrake
+from plant_models.track_profile import Approach
+from scripts.studies.control_computer.failed_hump import StuckPosition, StuckStage, released
 from synth.hump.configuration.trial_file import parse_trial_file
-from synth.hump.trains.hump_position import Arrivals
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.normal_hump_position import SLOWEST_M_S, LibraryBrake, NormalHumpPosition
-from synth.hump.trains.resolved_trial import ResolvedTrial, resolve_trial
+from synth.hump.rolling.hump_position import SLOWEST_M_S, Arrivals, LibraryBrake, NormalHumpPosition
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.resolved_trial import ResolvedTrial, resolve_trial
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.controllers import full_brake
 from synth.simulation.random_passes import random_passes

@@ -16,11 +16,10 @@ from plant_models.hump import Signal, Switch
 from plant_models.library import load_hump
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
-from plant_models.rolling.weather import Weather
-from synth.hump.trains.hump_routes import HumpRoutes, Mark, hump_routes
-from synth.hump.trains.motion import Cars, Moving, Push, braked_evenly, rolled_free
-from synth.hump.trains.route_rolling import RouteRolling, rolling_on
-from synth.hump.trains.route_ways import route_ways
+from plant_models.rolling.roll_track import Weather
+from synth.hump.rolling.hump_routes import HumpRoutes, Mark, hump_routes
+from synth.hump.rolling.motion import Cars, Moving, Push, braked_evenly, rolled_free
+from synth.hump.rolling.route_rolling import RouteRolling, rolling_on, route_ways
 from synth.simulation.free_roll import Rolled, rolling_cuts
 from tests.oracles.rolling.made_cuts import MIX
 from tests.plant_models.hump.random_humps import random_hump, small_hump

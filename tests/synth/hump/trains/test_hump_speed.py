@@ -14,10 +14,18 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
-from synth.hump.trains.forecast import Compared
-from synth.hump.trains.hump_speed import HumpSpeedLimits, SpeedMethod, pair_by_pair, whole_train
-from synth.hump.trains.interval import NEARLY_M_S, centred, early, possible
-from synth.hump.trains.trial import reduced_gravity_m_s2
+from synth.hump.planning.forecast import Compared
+from synth.hump.planning.speed_rules import (
+    NEARLY_M_S,
+    HumpSpeedLimits,
+    SpeedMethod,
+    centred,
+    early,
+    pair_by_pair,
+    possible,
+    whole_train,
+)
+from synth.hump.trial.trial import reduced_gravity_m_s2
 from tests.synth.hump.trains.made_trials import Day
 
 Floats = NDArray[np.float64]

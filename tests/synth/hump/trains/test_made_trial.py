@@ -15,20 +15,19 @@ import pytest
 from plant_models.library.hump_entry import load_hump
 from synth.frame import sheet
 from synth.frame.exhibits import Table
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.results_directory import results_directory
 from synth.hump.configuration.trial_file import parse_trial_file
-from synth.hump.forms.hump_csv import to_csv, to_xlsx
 from synth.hump.hump_file import hump_text
-from synth.hump.trains.hump_position import Arrivals
-from synth.hump.trains.hump_speed import pair_by_pair
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.position_choice import HeldTables
-from synth.hump.trains.resolved_trial import load_trial, resolve_trial
-from synth.hump.trains.shown.program import program_exhibits
-from synth.hump.trains.speed_program import speed_program
-from synth.hump.trains.trial import HumpTrial
-from synth.hump.trains.trial_inputs import write_inputs
+from synth.hump.hump_forms import to_csv, to_xlsx
+from synth.hump.planning.speed_rules import pair_by_pair
+from synth.hump.rolling.hump_position import Arrivals
+from synth.hump.trains.speed_program import program_exhibits, speed_program
+from synth.hump.trial.asked_trial import write_inputs
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.position_choice import HeldTables
+from synth.hump.trial.resolved_trial import load_trial, resolve_trial
+from synth.hump.trial.trial import HumpTrial
 from tests.synth.hump.trains.coarse_book import PARK, coarse_tables
 from tests.system.conftest import changed
 from tuning_tables import write_book

@@ -18,20 +18,16 @@ from plant_models.library.catalogue import load_car, load_weight_categories
 from plant_models.rolling.car_mix import CarMix, MixedCar
 from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Weather
 from synth.aim.knowledge import ByCategory, Requirement
 from synth.aim.position_models import NormalPosition
-from synth.hump.trains.aim_control import AimControl, ReadAhead
-from synth.hump.trains.aim_design import CARS, AimDesign, MeasuredAhead, hump_aim
-from synth.hump.trains.asked import Asked
-from synth.hump.trains.expected_way import ExpectedWay
-from synth.hump.trains.hump_aim import CategoryAim, HumpAim
-from synth.hump.trains.motion import Cars, Moving, rolled_free
-from synth.hump.trains.resistance_prior import bend_spreads, resistance_prior
-from synth.hump.trains.rollability import MeasuredRollability, measured_rollability
-from synth.hump.trains.speed_sensors import SpeedSensors
-from synth.hump.trains.train_cuts import TrainCuts, expected, trains
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.planning.aim_control import AimControl, CategoryAim, HumpAim, ReadAhead
+from synth.hump.planning.aim_design import CARS, AimDesign, MeasuredAhead, hump_aim
+from synth.hump.planning.free_stretch import ExpectedWay, SpeedSensors
+from synth.hump.planning.rollability import MeasuredRollability, bend_spreads, measured_rollability, resistance_prior
+from synth.hump.rolling.motion import Cars, Moving, rolled_free
+from synth.hump.rolling.train_cuts import TrainCuts, expected, trains
+from synth.hump.rolling.train_memory import Asked, TrainMemory
 from tests.plant_models.rolling.populations import MIX, population
 from tests.synth.hump.trains.asked_cuts import (
     FIRST_M,
@@ -46,7 +42,7 @@ from tests.synth.hump.trains.asked_cuts import (
 from tests.synth.hump.trains.humped_trains import route_rolling
 from tests.synth.hump.trains.test_train_cuts import PEOPLE, TRAINS
 from tuning_tables.aim import AimAxes
-from tuning_tables.aim.held_aim import aim_grid
+from tuning_tables.aim.axes import aim_grid
 
 Floats = NDArray[np.float64]
 ROUTES = large()

@@ -16,26 +16,24 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models.hump import HumpGraph
-from plant_models.rolling.weather import Weather
+from plant_models.rolling.roll_track import Weather
 from synth.frame.exhibits import Chapter, Sentence, Tiles, exhibits_of
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.hump_file import hump_text
-from synth.hump.trains.asked import Asked
-from synth.hump.trains.controlled_train import controlled_train
-from synth.hump.trains.hump_routes import HumpRoutes, Mark, hump_routes
+from synth.hump.rolling.hump_position import NormalHumpPosition
+from synth.hump.rolling.hump_routes import HumpRoutes, Mark, hump_routes
+from synth.hump.rolling.humping import Hump, humped
+from synth.hump.rolling.train_cuts import TrainCuts, trains
+from synth.hump.rolling.train_memory import Asked, TrainMemory
 from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.humping import Hump, humped
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.normal_hump_position import NormalHumpPosition
 from synth.hump.trains.outcome_file import TRAINS
-from synth.hump.trains.resolved_trial import resolve_trial
 from synth.hump.trains.simulate_command import show
-from synth.hump.trains.traced_train import OneTrain, one_train
-from synth.hump.trains.train_cuts import TrainCuts, trains
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.trains.traced_train import OneTrain, controlled_train, one_train
 from synth.hump.trains.train_passages import TrainPassages, train_passages, with_contacts
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.resolved_trial import resolve_trial
 from tests.plant_models.hump.random_humps import random_hump
 from tests.plant_models.rolling.populations import CATEGORIES, MIX, population
 from tests.synth.hump.trains.humped_trains import route_rolling

@@ -18,9 +18,8 @@ import pytest
 
 from plant_models.library import load_hump
 from synth.hump.configuration.settings import TracksSettings
-from synth.hump.trains.hump_routes import HumpRoutes, hump_routes
-from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
-from synth.hump.trains.outcomes import (
+from synth.hump.rolling.hump_routes import HumpRoutes, hump_routes
+from synth.hump.rolling.outcomes import (
     GAP_BINS_M,
     SPEED_BINS_M_S,
     PassLimits,
@@ -29,13 +28,14 @@ from synth.hump.trains.outcomes import (
     joined,
     outcomes,
 )
-from synth.hump.trains.tracks_between import SPARE_M, free_before_m, with_room
-from synth.hump.trains.train_memory import TrainMemory
+from synth.hump.rolling.train_memory import TrainMemory
+from synth.hump.trains.outcome_file import TrialTrains, from_npz, to_npz
+from synth.hump.trial.tracks_between import SPARE_M, free_before_m, with_room
 from tests.plant_models.rolling.populations import population
 from tests.synth.hump.trains.bare_cuts import LEAD, BareTrains, one_switch
 from tests.synth.hump.trains.made_trials import CATEGORIES, Day
 from tuning_tables import DamagedTable
-from tuning_tables.seal import seal_of
+from tuning_tables.whole_file import seal_of
 
 LENGTH_M = np.array([[14.0, 28.0, 14.0, 14.0, 42.0, 14.0]])
 NONE, SWITCH, BRAKE = 2, 0, 1

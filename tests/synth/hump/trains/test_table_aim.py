@@ -10,20 +10,19 @@ import numpy as np
 import pytest
 
 from plant_models.hump import Retarder
-from synth.frame.input_error import InputError
+from synth.frame.faults import InputError
 from synth.frame.results_directory import results_directory
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.hump_file import hump_text
-from synth.hump.trains.asked import Asked
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.motion import Moving
-from synth.hump.trains.resolved_trial import ResolvedTrial, load_trial, resolve_trial
-from synth.hump.trains.route_rolling import rolling_on
+from synth.hump.planning.aim_control import ReadOnStretch
+from synth.hump.planning.free_stretch import SpeedSensors
+from synth.hump.rolling.motion import Moving
+from synth.hump.rolling.route_rolling import rolling_on
+from synth.hump.rolling.train_memory import Asked, TrainMemory
 from synth.hump.trains.shown.positions import aim_rows
-from synth.hump.trains.speed_sensors import SpeedSensors
-from synth.hump.trains.stretch_reading import ReadOnStretch
-from synth.hump.trains.train_memory import TrainMemory
-from synth.hump.trains.trial_inputs import write_inputs
+from synth.hump.trial.asked_trial import write_inputs
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.resolved_trial import ResolvedTrial, load_trial, resolve_trial
 from synth.simulation.free_roll import rolling_cuts
 from tests.synth.hump.trains.exported_aims import (
     CATEGORIES,

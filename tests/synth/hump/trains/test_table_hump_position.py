@@ -8,15 +8,13 @@ import numpy as np
 import pytest
 
 from plant_models import PlantError
-from plant_models.brake_power import FullBrake
 from plant_models.library.catalogue import load_car, load_weight_categories
-from synth.hump.trains.class_choice import ClassChoice
-from synth.hump.trains.hump_position import Arrivals
-from synth.hump.trains.table_hump_position import Looped, TableHumpPosition
+from plant_models.stage_regulator import FullBrake
+from synth.hump.rolling.hump_position import Arrivals
+from synth.hump.rolling.table_hump_position import ClassChoice, Looped, TableHumpPosition
 from synth.retarder.table_class import TableClass
 from synth.simulation.closed_loop import simulate, trace
-from synth.simulation.keyed_passes import keyed_passes
-from synth.simulation.random_passes import RandomPasses
+from synth.simulation.random_passes import RandomPasses, keyed_passes
 from tests.synth.hump.trains.coarse_book import coarse_classes, coming, estimating
 
 CATEGORIES = load_weight_categories()

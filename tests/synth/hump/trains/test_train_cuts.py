@@ -19,13 +19,11 @@ from plant_models.hump import Route
 from plant_models.library.hump_entry import load_hump
 from plant_models.rolling.car_mix import CarMix, MixedCar
 from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
-from plant_models.rolling.weather import Weather
-from synth.hump.control.cut_record import CutRecord, Mark
-from synth.hump.control.sorting_list import SortingList
+from plant_models.rolling.roll_track import Weather
+from synth.hump.control.cut_record import CutRecord, Mark, SortingList
 from synth.hump.control.train_population import TrainPopulation
-from synth.hump.trains.list_trains import list_trains
-from synth.hump.trains.listed_cars import FITS_M, ListedCars
-from synth.hump.trains.train_cuts import TrainCuts, expected, trains
+from synth.hump.rolling.list_trains import FITS_M, ListedCars, list_trains
+from synth.hump.rolling.train_cuts import TrainCuts, expected, trains
 from tests.plant_models.rolling.populations import CATEGORIES, FLAT, GONDOLA, LONG_TANK, MIX, TANK, population
 from tests.synth.hump.control.test_sorting_list import drawn_list
 from tests.synth.hump.trains.humped_trains import route_rolling

@@ -16,26 +16,23 @@ from scipy import stats
 
 from synth.frame.exhibits import Column, Row, Sentence, Table, Tiles
 from synth.frame.interval import Interval
-from synth.frame.summary import plain
-from synth.hump.configuration.coupling_limits import CouplingLimits
+from synth.frame.told import plain
+from synth.hump.configuration.sections import CouplingLimits
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.control.cut_record import CutRecord
-from synth.hump.trains.car_warnings import list_warnings
-from synth.hump.trains.chosen_trains import chosen_trains
-from synth.hump.trains.hump_routes import HumpRoutes, Mark
-from synth.hump.trains.humped_trial import HumpedTrial
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.outcomes import TrainOutcomes, outcomes
-from synth.hump.trains.position_strength import strengths, weak
-from synth.hump.trains.resolved_trial import resolve_trial
-from synth.hump.trains.shown.figures import MEANS, SHARES, mean_row, share_row, titles_of
+from synth.hump.rolling.hump_routes import HumpRoutes, Mark
+from synth.hump.rolling.outcomes import TrainOutcomes, outcomes
+from synth.hump.rolling.train_cuts import TrainCuts
+from synth.hump.rolling.train_memory import TrainMemory
+from synth.hump.trains.humped_trial import HumpedTrial, trial_limits
+from synth.hump.trains.shown.figures import MEANS, SHARES, element_rows, mean_row, share_row, titles_of
 from synth.hump.trains.shown.first_screen import first_screen, one_in
-from synth.hump.trains.shown.places import element_rows
 from synth.hump.trains.shown.positions import positions
-from synth.hump.trains.train_cuts import TrainCuts
-from synth.hump.trains.train_figures import TrainFigure, interval_of, ratio, share, train_figures
-from synth.hump.trains.train_memory import TrainMemory
-from synth.hump.trains.trial_limits import trial_limits
+from synth.hump.trains.traced_train import chosen_trains
+from synth.hump.trains.train_figures import TrainFigure, interval_of, ratio, share, strengths, train_figures, weak
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.resolved_trial import resolve_trial
+from synth.hump.trial.trial_parameters import list_warnings
 from tests.synth.hump.trains.humped_trains import humped_trains
 from tests.synth.hump.trains.made_trials import Day
 

@@ -16,17 +16,14 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from plant_models.library.hump_entry import load_hump
-from synth.aim.coupling_speed import COUPLING_SPEED_M_S
-from synth.frame.picture.figure_file import draw
-from synth.hump.trains.hump_routes import OF_FIRST_AXLE, Mark
-from synth.hump.trains.outcomes import TrainOutcomes, outcomes
-from synth.hump.trains.pictures.catch_ups import catch_ups
-from synth.hump.trains.pictures.couplings import couplings
-from synth.hump.trains.pictures.element_strip import levels
-from synth.hump.trains.pictures.hump_speed_program import PushedTrain, hump_speed_program
-from synth.hump.trains.pictures.speed_path import speed_path
-from synth.hump.trains.pictures.time_path import time_path
-from synth.hump.trains.shown.places import by_element
+from synth.aim.configuration.shared_settings import COUPLING_SPEED_M_S
+from synth.frame.picture.house_style import draw
+from synth.hump.rolling.hump_routes import OF_FIRST_AXLE, Mark
+from synth.hump.rolling.outcomes import TrainOutcomes, outcomes
+from synth.hump.trains.pictures.outcomes import catch_ups, couplings
+from synth.hump.trains.pictures.time_path import levels, time_path
+from synth.hump.trains.pictures.train_speeds import PushedTrain, hump_speed_program, speed_path
+from synth.hump.trains.shown.figures import by_element
 from synth.hump.trains.train_trace import AlarmKind, TracedCut, TrainTrace, body_of, train_trace
 from tests.plant_models.rolling.populations import CATEGORIES
 from tests.synth.hump.trains.humped_trains import CUTS, FIRST, TRAINS, HumpedTrains, humped_trains

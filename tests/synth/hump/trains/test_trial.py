@@ -14,21 +14,20 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models.rolling.resistance_law import Tb10062Law
-from plant_models.rolling.weather import Weather
-from synth.frame.input_error import InputError
+from plant_models.rolling.roll_track import Weather
+from synth.frame.faults import InputError
 from synth.hump.configuration.settings import TracksSettings
 from synth.hump.configuration.trial_file import parse_trial_file
+from synth.hump.planning.speed_rules import pair_by_pair
+from synth.hump.rolling.hump_routes import HumpRoutes
+from synth.hump.rolling.outcomes import TrainOutcomes, joined, some_of
 from synth.hump.trains.batch import batches, orders_of
-from synth.hump.trains.hump_routes import HumpRoutes
-from synth.hump.trains.hump_speed import pair_by_pair
-from synth.hump.trains.outcomes import TrainOutcomes, joined, some_of
-from synth.hump.trains.resolved_trial import resolve_trial
-from synth.hump.trains.shift_sums import longer_shifts, shift_sums, shifts_in
-from synth.hump.trains.shown.shift import rows
+from synth.hump.trains.shown.figures import rows
 from synth.hump.trains.traced_train import one_train
-from synth.hump.trains.tracks_between import SPARE_M
-from synth.hump.trains.train_figures import FIGURES, ratio, train_figures
-from synth.hump.trains.trial import Control, HumpTrial, Sensing, Turn
+from synth.hump.trains.train_figures import FIGURES, longer_shifts, ratio, shift_sums, shifts_in, train_figures
+from synth.hump.trial.resolved_trial import resolve_trial
+from synth.hump.trial.tracks_between import SPARE_M
+from synth.hump.trial.trial import Control, HumpTrial, Sensing, Turn
 from tests.effort import every
 from tests.synth.hump.trains.made_trials import Day
 

@@ -8,15 +8,14 @@ import pytest
 
 from plant_models.library.hump_entry import hump_names
 from plant_models.rolling.resistance_law import Tb10062Law
-from synth.frame.input_error import InputError
-from synth.hump.configuration.template import default_trial_toml
-from synth.hump.configuration.trial_file import parse_trial_file, read_trial_file
-from synth.hump.control.sorting_list import SortingList
+from synth.frame.faults import InputError
+from synth.hump.configuration.trial_file import default_trial_toml, parse_trial_file, read_trial_file
+from synth.hump.control.cut_record import SortingList
 from synth.hump.control.train_population import TrainPopulation
 from synth.hump.hump_file import hump_text
-from synth.hump.trains.forecast import SpeedRange
-from synth.hump.trains.position_roles import Fixed, Spacing
-from synth.hump.trains.resolved_trial import ResolvedTrial, load_trial, resolve_trial
+from synth.hump.planning.forecast import SpeedRange
+from synth.hump.planning.position_roles import Fixed, Spacing
+from synth.hump.trial.resolved_trial import ResolvedTrial, load_trial, resolve_trial
 
 
 def resolved(text: str, place: str = "trial.toml") -> ResolvedTrial:

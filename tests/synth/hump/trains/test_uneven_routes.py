@@ -20,18 +20,18 @@ import pytest
 from synth.cli import main
 from synth.hump.configuration.trial_file import parse_trial_file
 from synth.hump.hump_file import hump_text, parse_hump
-from synth.hump.trains.forecast import Given, SpeedRange, from_crest, from_entrance
-from synth.hump.trains.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark, hump_routes
-from synth.hump.trains.humping import Hump, humped
-from synth.hump.trains.made_trial import made_trial
-from synth.hump.trains.motion import Moving
-from synth.hump.trains.normal_hump_position import NormalHumpPosition
-from synth.hump.trains.resolved_trial import resolve_trial
-from synth.hump.trains.route_rolling import rolling_on
+from synth.hump.planning.forecast import Given, SpeedRange, from_crest, from_entrance
+from synth.hump.rolling.hump_position import NormalHumpPosition
+from synth.hump.rolling.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark, hump_routes
+from synth.hump.rolling.humping import Hump, humped
+from synth.hump.rolling.motion import Moving
+from synth.hump.rolling.route_rolling import rolling_on
+from synth.hump.rolling.train_cuts import expected
 from synth.hump.trains.speed_program import speed_program
-from synth.hump.trains.train_cuts import expected
 from synth.hump.trains.train_trace import body_of
-from synth.hump.trains.trial import Control, HumpTrial, Sensing
+from synth.hump.trial.made_trial import made_trial
+from synth.hump.trial.resolved_trial import resolve_trial
+from synth.hump.trial.trial import Control, HumpTrial, Sensing
 from synth.simulation.free_roll import rolling_cuts
 from tests.effort import every
 from tests.plant_models.hump.random_humps import SMALL

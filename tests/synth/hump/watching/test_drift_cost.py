@@ -10,8 +10,8 @@ import pytest
 
 from plant_models.frozen_arrays import Floats
 from synth.hump.configuration.trial_file import parse_trial_file
-from synth.hump.trains.made_trial import brake_of, made_trial
-from synth.hump.trains.resolved_trial import ResolvedTrial, resolve_trial
+from synth.hump.trial.made_trial import brake_of, made_trial
+from synth.hump.trial.resolved_trial import ResolvedTrial, resolve_trial
 from synth.hump.watching.drift_cost import (
     Difference,
     MeasuredRetarder,

@@ -14,10 +14,9 @@ import pytest
 
 from plant_models import Plant, PlantError, PressingForce, RollingResistance
 from plant_models.motion import braked_axles, mean_braked_axles
-from synth.frame.input_error import InputError
-from synth.logs.configured_numbers import configured_numbers
-from synth.logs.identified_config import with_numbers
-from synth.logs.retune.predicted_gain import MOST_FALSE, CaseGain, better, no_better
+from synth.frame.faults import InputError
+from synth.logs.identified_config import configured_numbers, with_numbers
+from synth.logs.retune.retune import MOST_FALSE, CaseGain, better, no_better
 from synth.retarder.configuration.config_file import ConfigSource, parse_config, source_of_text
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.simulation.replicates import student_quantile

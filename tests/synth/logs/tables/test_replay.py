@@ -12,27 +12,25 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from plant_models.approach import AT_THE_ENTRANCE
 from plant_models.motion import path_coefficients
+from plant_models.track_profile import AT_THE_ENTRANCE
 from synth.logs.fitting_passes import FittingPasses, fitting_passes
 from synth.logs.likelihood import likelihood_of
-from synth.logs.replay.known_cuts import KnownCuts, known_cuts
-from synth.logs.replay.logged_tables import logged_tables
+from synth.logs.replay.predicted_exits import KnownCuts, known_cuts
 from synth.logs.replay.replay import STOPPED, Replay, ReplayOrder, replay
-from synth.logs.replay.rule_agreement import rule_agreement
+from synth.logs.replay.rule_agreement import logged_tables, rule_agreement
 from synth.logs.unknowns import slope_of, unknowns_of, values_at
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
 from synth.retarder.estimation.estimator_design import estimator_of
 from synth.simulation.closed_loop import TableController, close_loop
-from synth.simulation.logged_passes import logged_passes
 from synth.simulation.random_passes import random_passes
+from synth.simulation.sampled_pass import logged_passes
 from tests.synth.logs.tables.conftest import Yard
 from tests.synth.test_closed_loop_lanes import wavy_table
 from tuning_tables import ControllerTable, ValidRange
-from tuning_tables.approach import Approach
-from tuning_tables.pass_log.join_logs import one_after_the_other
-from tuning_tables.pass_log.pass_log import PassLog
+from tuning_tables.decisions import Approach
+from tuning_tables.pass_log.pass_log import PassLog, one_after_the_other
 
 CASE = ("S-1", 3.0)
 PASSES, REPETITIONS = 60, 12

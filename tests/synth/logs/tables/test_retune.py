@@ -12,15 +12,14 @@ import pytest
 from synth.cli import main
 from synth.frame.command import Limit
 from synth.frame.exhibits import File, Table
-from synth.frame.summary import rows_of
+from synth.frame.told import rows_of
 from synth.frame.workers.engine import Teller
 from synth.logs.fitting_passes import fitting_passes
-from synth.logs.retune.predicted_gain import GainOrder
-from synth.logs.retune.retune import Retuned, RetuneOrder, retune
+from synth.logs.retune.retune import GainOrder, Retuned, RetuneOrder, retune
 from synth.logs.retune.shown import files
 from synth.retarder.failed_case import FailedCase
 from synth.simulation.closed_loop import TableController, simulate
-from synth.simulation.logged_passes import LoggedClass, mixed_log
+from synth.simulation.sampled_pass import LoggedClass, mixed_log
 from synth.simulation.stratified_passes import stratified_passes
 from tuning_tables import ControllerTable, from_json, read_book, write_book
 from tuning_tables.pass_log.log_files import write_log

@@ -10,21 +10,21 @@ import pytest
 from scipy import stats
 
 from plant_models.errors import PlantError, require
-from synth.computer.economics.uncertainty.model import without_numbers
-from synth.computer.economics.uncertainty.monte_carlo import (
+from synth.computer.economics.monte_carlo import (
     QUANTILES,
     drawn,
     output_figures,
     quantile_of,
     share_of,
 )
-from synth.computer.economics.uncertainty.ranges import (
+from synth.computer.economics.ranges import (
     Constant,
     LogNormal,
     Measured,
     Range,
     Triangular,
     Uniform,
+    without_numbers,
 )
 from tests.synth.computer.economics.made_cases import CASE, case_figures, half95
 

@@ -15,7 +15,7 @@ import pytest
 from scipy import stats
 
 from plant_models.errors import PlantError, require
-from synth.computer.economics.uncertainty.ranges import (
+from synth.computer.economics.ranges import (
     Constant,
     LogNormal,
     Measured,
@@ -24,8 +24,7 @@ from synth.computer.economics.uncertainty.ranges import (
     Uniform,
     range_of,
 )
-from synth.computer.economics.uncertainty.sobol import SobolIndex, sobol_of
-from synth.computer.economics.uncertainty.tornado import tornado
+from synth.computer.economics.sensitivity import SobolIndex, sobol_of, tornado
 from synth.frame.interval import Interval
 from tests.synth.computer.economics.made_cases import CASE, case_figures
 

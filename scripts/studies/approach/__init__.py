@@ -1,1 +1,0 @@
-"""What a start before the entrance is worth."""

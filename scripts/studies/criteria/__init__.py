@@ -1,1 +1,0 @@
-"""The study `criteria`: other criteria than the mean square."""

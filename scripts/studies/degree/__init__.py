@@ -1,1 +1,0 @@
-"""Study: which degree the polynomial lines need (R4)."""

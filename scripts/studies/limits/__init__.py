@@ -1,1 +1,0 @@
-"""The study `limits`: what limits the accuracy."""

@@ -1,1 +1,0 @@
-"""Study: what fewer switchings cost in accuracy, at rest and at any time."""

@@ -1,1 +1,0 @@
-"""What a price of a second in the position costs in accuracy."""

@@ -1,1 +1,0 @@
-"""The command `aim`, which may be given the track of a hump file."""

@@ -1,1 +1,0 @@
-"""What a hump file says, and what is likely wrong in it though nothing forbids it."""

@@ -1,1 +1,0 @@
-"""Runs of `hump simulate` side by side, on the same trains."""

@@ -1,1 +1,0 @@
-"""Pictures of a hump: the track plan and the profile with speed heads."""

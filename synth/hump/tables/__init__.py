@@ -1,1 +1,0 @@
-"""The configuration of a book of tables that a position needs in a hump trial."""

@@ -1,1 +1,0 @@
-"""Tables of regulators that may give a command at every sample."""

@@ -1,1 +1,0 @@
-"""The section [sensors] of a configuration: point sensors along the position."""

@@ -1,1 +1,0 @@
-"""Accuracy against time in the position: tables for several prices of a second."""
