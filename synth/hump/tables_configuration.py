@@ -178,10 +178,12 @@ def commanded_m_s(place: int, config: ResolvedTrial, entering: Entering) -> tupl
 def targets_m_s(low_m_s: float, high_m_s: float) -> Iterator[float]:
     """The fewest targets from one speed to the other, two at least, closer to each other where cuts are slow; where
     both speeds are one, the other target is a step lower."""
-    low, high = math.sqrt(low_m_s), math.sqrt(high_m_s)
-    low = max(high - APART_ROOT_M_S, math.sqrt(LOWEST_M_S)) if high <= low else low
+    high = math.sqrt(high_m_s)
+    first_m_s = low_m_s if low_m_s < high_m_s else max((high - APART_ROOT_M_S) ** 2, LOWEST_M_S)
+    low = math.sqrt(first_m_s)
     steps = max(math.ceil((high - low) / APART_ROOT_M_S - 1e-9), 1)
-    return (round(float(root) ** 2, 2) for root in np.linspace(low, high, steps + 1))
+    between = (float(root) ** 2 for root in np.linspace(low, high, steps + 1)[1:-1])
+    return (round(speed_m_s, 2) for speed_m_s in (first_m_s, *between, high_m_s))
 
 
 def class_tree(each: NeededClass, entry: dict[str, Any]) -> dict[str, Any]:

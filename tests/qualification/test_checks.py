@@ -179,10 +179,10 @@ def test_the_program_ends_with_a_command_that_is_killed(tmp_path: Path) -> None:
     text = """\
 import sys
 from pathlib import Path
-from synth.cli.qualification import program
+from synth.cli.qualification import check
 waits = "import os, time; from pathlib import Path; Path('pid').write_text(f'{os.getpid()}.'); time.sleep(60)"
-program.ENTRY = (*program.ENTRY[:3], f"{program.WATCH}; {waits}")
-program.program("", Path(sys.argv[1]))
+check.ENTRY = (*check.ENTRY[:3], f"{check.WATCH}; {waits}")
+check.program("", Path(sys.argv[1]))
 """
     command = subprocess.Popen([sys.executable, "-c", text, str(tmp_path)])
     told = tmp_path / "pid"

@@ -130,7 +130,7 @@ ON_POSIX = pytest.mark.skipif(os.name != "posix", reason="the limit of a file's 
 
 LOST_FOR_A_MOMENT = """
 import resource, sys
-from tuning_tables import book_image, read_book, write_book
+from tuning_tables import book_layout, read_book, write_book
 writes_axis, (_, hard) = book_layout.write_axis, resource.getrlimit(resource.RLIMIT_FSIZE)
 def lost(*arguments):
     resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))

@@ -6,11 +6,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from synth.retarder.configuration.settings import AcceptanceSettings
 from synth.simulation.exit_statistics import ExitStatistics
 from synth.simulation.replicates import Interval
 from tuning_tables import Predicted
+
+if TYPE_CHECKING:  # pydantic is nothing for a process that draws
+    from synth.retarder.configuration.settings import AcceptanceSettings
 
 UNKNOWN: Interval = (math.nan, math.nan)
 

@@ -246,20 +246,20 @@ def pareto_fronts(fronts: Sequence[ParetoFront]) -> Figure:
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes, front in zip(panels, fronts, strict=False):
         times = [each.statistics.time_s for each in front.points]
-        rms = [1e3 * each.statistics.rms_m_s for each in front.points]
+        rms = [each.statistics.rms_m_s for each in front.points]
         ends = [each.statistics.rms_ci95_m_s for each in front.points]
-        off = [[abs(1e3 * each[end] - value) for each, value in zip(ends, rms, strict=True)] for end in (0, 1)]
+        off = [[abs(each[end] - value) for each, value in zip(ends, rms, strict=True)] for end in (0, 1)]
         axes.errorbar(
             times, rms, yerr=off, color=BLUE, marker="o", markersize=4, capsize=2, linewidth=1.0,
             label="simulated, 95 %, by the price of a second, m²/s³",
         )  # fmt: skip
-        predicted = [1e3 * each.predicted_rms_m_s for each in front.points]
+        predicted = [each.predicted_rms_m_s for each in front.points]
         axes.plot(times, predicted, color=INK, marker="x", linestyle="", label="predicted")
         for i in apart(times):
             price = f"{front.points[i].time_price_m2_s3:g}"
             axes.annotate(price, (times[i], rms[i]), xytext=(3, -11), textcoords="offset points", fontsize=7)
         axes.margins(x=0.12)
-        dress(axes, front.name, "mean time, s", "rms, mm/s")
+        dress(axes, front.name, "mean time, s", "rms, m/s")
     for axes in panels[len(fronts) :]:
         axes.set_visible(False)
     legend_below(figure, panels[0].get_legend_handles_labels()[0], columns=2)

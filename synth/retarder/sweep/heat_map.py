@@ -33,7 +33,7 @@ def heat_map(book: BookFigures) -> Figure:
     figure = new_figure(8.0, height + 1.5, "Exit-speed error of every table", subject)
     place(figure, left=1.7, right=1.5, bottom=0.75, top=0.75)
     axes = figure.subplots()
-    rms = [1e3 * case["rms_m_s"].value for case in cases]
+    rms = [case["rms_m_s"].value for case in cases]
     low, high = min(rms), max(rms)
     norm = LogNorm(low * 0.999, max(high, 1.05 * low))
     found = {(case["label"], case["target_speed_m_s"]): case for case in cases}
@@ -50,7 +50,7 @@ def heat_map(book: BookFigures) -> Figure:
                 empty.append(cell)
                 continue
             cells.append(cell)
-            values.append(1e3 * case["rms_m_s"].value)
+            values.append(case["rms_m_s"].value)
             if case["missed_limits"]:
                 dots.append((target, row))
     painted = PatchCollection(cells, cmap=COLOURS, norm=norm, edgecolor="white", linewidth=0.4)
@@ -94,6 +94,6 @@ def bar_of(figure: Figure, axes: Axes, painted: ScalarMappable, norm: LogNorm) -
     assert norm.vmin is not None
     assert norm.vmax is not None
     mark_plainly(bar.ax.yaxis, norm.vmin, norm.vmax)
-    bar.set_label("rms, mm/s", fontsize=9)
+    bar.set_label("rms, m/s", fontsize=9)
     bar.ax.tick_params(labelsize=8, length=3)
     bar.outline.set_visible(False)
