@@ -20,7 +20,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from plant_models import PlantError
-from plant_models.library.hump_forms import UNITS, in_unit, unit_in_name
+from plant_models.library.hump_forms import UNITS, in_unit
 from plant_models.library.sourced_value import SET_BY_USER
 from synth.aim.configuration.settings import AimFileSettings
 from synth.cli import main
@@ -264,22 +264,6 @@ def test_every_declared_number_may_be_written_with_its_units(
         for key in path:
             found = getattr(found, key)
         assert found == pytest.approx(value, rel=1e-9, abs=1e-9)
-
-
-def test_numbers_of_the_library_take_those_of_the_unit_in_their_key() -> None:
-    tree = {
-        "entry": {"low_m_s": "18 km/h"},
-        "targets": {"exit_speeds_m_s": [2.5, "9 km/h"]},
-        "track": {"grade_permille": "1.1 %"},
-        "cut": [{"car": "gondola-4", "mass_t": "80 short tons"}],
-    }
-    found = settings_in(Settings, tree, "x.toml")
-    assert (found.entry.low_m_s, found.targets.exit_speeds_m_s, found.track.grade_permille) == (5.0, (2.5, 2.5), 11.0)
-    assert found.cut[0].mass_t == pytest.approx(72.574779)
-    validator = jsonschema.Draft202012Validator(schema_of(Settings, "Configuration"))
-    assert validator.is_valid(tree)
-    assert not validator.is_valid({"entry": {"low_m_s": "18 t"}})
-    assert unit_in_name("slope_kn_per_kpa_per_t") == unit_in_name("delay_s") == ""
 
 
 def test_the_page_tells_all_of_them() -> None:
