@@ -1,7 +1,5 @@
-"""Types of one's own.
-
-Types of one's own in files, and the configurations that use them.
-Types of one's own in a configuration: found, checked, traced to their files, refused in one sentence.
+"""Types of one's own, in files and in the configurations that use them: found, checked, traced to their files, refused
+in one sentence.
 """
 
 from __future__ import annotations
@@ -10,14 +8,19 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import jsonschema
 import pytest
 
 from plant_models.library import CARS, KINDS, POSITIONS, RETARDERS, Kind, TypeFile, load_car
+from plant_models.library.hump_forms import unit_in_name
 from plant_models.library.library import BUILT_IN, Library, TypeFileError
 from synth.cli.type_template import START_FROM, type_toml
 from synth.frame.faults import InputError
+from synth.frame.settings.numbers import schema_of
+from synth.frame.settings.settings_file import settings_in
 from synth.retarder.configuration.config_file import load_config
 from synth.retarder.configuration.resolved_config import ResolvedConfig
+from synth.retarder.configuration.settings import Settings
 
 CUT = '[[cut]]\ncar = "gondola-4"\nmass_t = 22\n'
 
@@ -195,3 +198,19 @@ def test_a_position_that_does_not_state_how_uncertain_its_mean_friction_is_takes
     assert telling.retarder.friction.mean_cv == 0.11
     (told,) = (value for value in silent.parameters if value.key == "friction.mean_cv")
     assert told.source.startswith("not stated")
+
+
+def test_numbers_of_the_library_take_those_of_the_unit_in_their_key() -> None:
+    tree = {
+        "entry": {"low_m_s": "18 km/h"},
+        "targets": {"exit_speeds_m_s": [2.5, "9 km/h"]},
+        "track": {"grade_permille": "1.1 %"},
+        "cut": [{"car": "gondola-4", "mass_t": "80 short tons"}],
+    }
+    found = settings_in(Settings, tree, "x.toml")
+    assert (found.entry.low_m_s, found.targets.exit_speeds_m_s, found.track.grade_permille) == (5.0, (2.5, 2.5), 11.0)
+    assert found.cut[0].mass_t == pytest.approx(72.574779)
+    validator = jsonschema.Draft202012Validator(schema_of(Settings, "Configuration"))
+    assert validator.is_valid(tree)
+    assert not validator.is_valid({"entry": {"low_m_s": "18 t"}})
+    assert unit_in_name("slope_kn_per_kpa_per_t") == unit_in_name("delay_s") == ""

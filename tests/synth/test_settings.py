@@ -282,19 +282,3 @@ def test_a_grid_too_coarse_for_a_low_target_is_warned_of() -> None:
     assert "cells of 0.060 m/s at the target 1.5 m/s" in sentence
     advised = float(sentence.split("; ")[1].split(" ")[0])
     assert not parse_config(text.format(1.5, advised), "a.toml").warnings
-
-
-def test_numbers_of_the_library_take_those_of_the_unit_in_their_key() -> None:
-    tree = {
-        "entry": {"low_m_s": "18 km/h"},
-        "targets": {"exit_speeds_m_s": [2.5, "9 km/h"]},
-        "track": {"grade_permille": "1.1 %"},
-        "cut": [{"car": "gondola-4", "mass_t": "80 short tons"}],
-    }
-    found = settings_in(Settings, tree, "x.toml")
-    assert (found.entry.low_m_s, found.targets.exit_speeds_m_s, found.track.grade_permille) == (5.0, (2.5, 2.5), 11.0)
-    assert found.cut[0].mass_t == pytest.approx(72.574779)
-    validator = jsonschema.Draft202012Validator(schema_of(Settings, "Configuration"))
-    assert validator.is_valid(tree)
-    assert not validator.is_valid({"entry": {"low_m_s": "18 t"}})
-    assert unit_in_name("slope_kn_per_kpa_per_t") == unit_in_name("delay_s") == ""
