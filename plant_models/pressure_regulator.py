@@ -1,16 +1,14 @@
-"""The pressure regulator of a retarder, one function for each of its parts (zhukovitsky-2012, figure 4); the gauge
-that it reads, noisy and quantised; and the pads: they touch the wheels at a pressure P0, so the drive has a dead
-zone below it.
+"""The pressure regulator of a retarder, one function for each of its parts (zhukovitsky-2012, figure 4), the gauge that
+it reads, noisy and quantised, and the brake pads.
 
-The brake pads: they touch the wheels at a pressure P0, so the drive has a dead zone below it (zhukovitsky-2012). What
-force follows from the pressure above that, by the number N of braked wheel pairs, is `retarder.ForceLaw`; what
-deceleration, `motion.path_coefficients`; how the slope varies by chance, `friction.Friction`.
+The pads touch the wheels at a pressure P0, so the drive has a dead zone below it. What force follows from the pressure
+above that, by the number N of braked wheel pairs, is `retarder.ForceLaw`; what deceleration,
+`motion.path_coefficients`; how the slope varies by chance, `friction.Friction`.
 
-The pressure regulator of a retarder, one function for each of its parts (zhukovitsky-2012, figure 4). The converter
-turns the pressure into the signal that is compared with the stage. The relay answers −1, 0 or +1. The block of changing
-structure connects the drive to the supply, to the exhaust, or to itself; the valve delay before that is
-`valve_drive.wait_after_command`. The drive is a link of first order whose time constant goes with the sign. Closed on
-itself it is an integrator without an input, so the pressure stays.
+The converter turns the pressure into the signal that is compared with the stage. The relay answers −1, 0 or +1. The
+block of changing structure connects the drive to the supply, to the exhaust, or to itself; the valve delay before that
+is `valve_drive.wait_after_command`. The drive is a link of first order whose time constant goes with the sign. Closed
+on itself it is an integrator without an input, so the pressure stays.
 
 `Pneumatics.respond` puts these parts together; `valve_drive.drive_on` states the flow once more for kernels.
 """

@@ -1,15 +1,14 @@
-"""The stage-locked actuator: resting modes, commands and the pressure histories between them; and the brake power
-of a position, the energy head that its full brake takes from a cut.
+"""The stage-locked actuator, with its resting modes, commands and the pressure histories between them; and the brake
+power of a position, the energy head that its full brake takes from a cut.
 
-The stage-locked actuator: resting modes, commands and the pressure histories between them. A command is taken at a
-sample; no other is taken until its transient has ended (zhukovitsky-2002: choice only at the discrete pressures P_k).
-So a change of stage lasts a whole number of sampling periods, and what the brake does meanwhile is known when the
-command is given. Because the regulator stops at the edge of its dead band, a stage rests at P_k − ε when it is reached
-from below and at P_k + ε from above: the resting *mode* is (stage, pressure).
+A command is taken at a sample; no other is taken until its transient has ended (zhukovitsky-2002: choice only at the
+discrete pressures P_k). So a change of stage lasts a whole number of sampling periods, and what the brake does
+meanwhile is known when the command is given. Because the regulator stops at the edge of its dead band, a stage rests at
+P_k − ε when it is reached from below and at P_k + ε from above: the resting *mode* is (stage, pressure).
 
-Brake power of a retarder position: the energy head that its full brake takes from a cut. The work of the brake is the
-force on each wheel pair times the braked length, summed over the wheel pairs. It depends on mass and axles of the cut;
-where the cars couple matters only to force laws whose slope depends on how many wheel pairs are braked at once.
+The work of the brake is the force on each wheel pair times the braked length, summed over the wheel pairs. It depends
+on mass and axles of the cut; where the cars couple matters only to force laws whose slope depends on how many wheel
+pairs are braked at once.
 """
 
 from __future__ import annotations

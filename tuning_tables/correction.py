@@ -1,12 +1,9 @@
-"""On-line correction of the commanded speed from the last exits: its numbers, checked; and golden exits: what one
-pass must make of a state of the correction, where a wrong implementation shows.
+"""On-line correction of the commanded speed from the last exits: its numbers, checked, and its golden exits.
 
-On-line correction of the commanded speed from the last exits: its numbers, checked. The rules are `programs.correct`:
-`usable_exit` judges a pass, `learn_exit` takes its exit, `corrected_speed` is asked.
-
-Golden exits: what one pass must make of a state of the correction, where a wrong implementation shows. A row stands for
-itself: state before, exit, state after, and a speed with what becomes of it. Equal rows one by one make equal sequences
-of any length.
+The rules are `programs.correct`: `usable_exit` judges a pass, `learn_exit` takes its exit, `corrected_speed` is asked.
+A golden exit is what one pass must make of a state of the correction, where a wrong implementation shows. A row stands
+for itself: state before, exit, state after, and a speed with what becomes of it. Equal rows one by one make equal
+sequences of any length.
 """
 
 from __future__ import annotations

@@ -1,13 +1,5 @@
-"""A table as CSV (RFC 4180), for spreadsheets and for controllers that read nothing else: rows of key and value,
-the nodes of an aim table, and the one rule on texts that a spreadsheet would compute. Export only.
-
-CSV sheets for people, and the one rule on texts that a spreadsheet would compute. A spreadsheet takes a cell that
-begins with one of `FORMULA_MARKS` for a formula, and a formula can run a program or send what it finds to another
-machine. Names of cuts, cars and tables come from users and from logs. So in a sheet for people such a text gets an
-apostrophe before it, which a spreadsheet shows as text. Files that programs read back keep every text as it is (logs,
-events, sorting lists), or refuse such a text (`csv_rows`).
-
-A table as CSV (RFC 4180), for spreadsheets and for controllers that read nothing else. Export only.
+"""A table as CSV (RFC 4180), for spreadsheets and for controllers that read nothing else; and the one rule on texts
+that a spreadsheet would compute. Export only.
 
     record,key,value0,value1,value2,value3
     text,format,retarder-table,,,
@@ -25,6 +17,11 @@ inf (never raise so far). The nodes of an aim table have a row each, numbered fr
 
 A cell of a node is empty where there is no number. Numbers have the shortest form that reads back exactly. The checksum
 is that of the JSON table.
+
+A spreadsheet takes a cell that begins with one of `FORMULA_MARKS` for a formula, and a formula can run a program or
+send what it finds to another machine. Names of cuts, cars and tables come from users and from logs. So in a sheet for
+people such a text gets an apostrophe before it, which a spreadsheet shows as text. Files that programs read back keep
+every text as it is (logs, events, sorting lists), or refuse such a text (`csv_rows`).
 """
 
 from __future__ import annotations

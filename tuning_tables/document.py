@@ -1,15 +1,13 @@
-"""A table of any kind as a JSON document (dicts, lists, numbers, strings), and back, without the text around it;
-and the JSON Schema (draft 2020-12) of a table, for editors and for readers in other languages.
+"""A table of any kind as a JSON document (dicts, lists, numbers, strings), and back, without the text around it; and
+the JSON Schema (draft 2020-12) of a table, for editors and for readers in other languages.
 
-A table of any kind as a JSON document (dicts, lists, numbers, strings), and back, without the text around it. A
-document has a head, the members that the class of its kind declares, and a checksum:
+A document has a head, the members that the class of its kind declares, and a checksum:
 
     {"format": "retarder-table", "version": 1, "kind": "lines", "exported_by": "retarder-synth 0.1.0", ...,
      "crc32": "0f1e2d3c"}
 
-The JSON Schema (draft 2020-12) of a table, for editors and for readers in other languages. A schema states keys, types
-and ranges. What it cannot state, the reader checks beyond it: the checksum, the order of stages, lines, passages and
-axes, that numbers belong together, what float32 can hold, and that no key is given twice.
+A schema states keys, types and ranges. What it cannot state, the reader checks beyond it: the checksum, the order of
+stages, lines, passages and axes, that numbers belong together, what float32 can hold, and that no key is given twice.
 """
 
 from __future__ import annotations

@@ -1,12 +1,9 @@
-"""Why a table was refused, what one value of a table must be (each function raises `InvalidTable` with key, value
-and what is allowed), and a long text cut to what a message can show.
+"""Why a table was refused, what one value of a table must be, and a long text cut to what a message can show.
 
-Why a table was refused. Each class is one answer to "what do I do now?": correct the values, export again, take another
-file, or take another version of the tool. Every message is one sentence that names the file, the key, the value and
-what is allowed.
-
-What one value of a table must be; each function raises `InvalidTable` with key, value and what is allowed. They check
-and change nothing, so a frozen dataclass holds exactly what its caller gave.
+Each class is one answer to "what do I do now?": correct the values, export again, take another file, or take another
+version of the tool. Every message is one sentence that names the file, the key, the value and what is allowed. The
+functions raise `InvalidTable` with these. They check and change nothing, so a frozen dataclass holds exactly what its
+caller gave.
 """
 
 from __future__ import annotations

@@ -1,16 +1,15 @@
-"""Files whole: one appears complete or not at all, whatever happens to the writing process or the power; one is
-read whole but never without bound, so that neither a device nor a pipe can hold the reader; and a seal ends a
-file, one line with the SHA-256 of all that stands before it.
+"""Files whole: one appears complete or not at all, one is read whole but never without bound, so that neither a device
+nor a pipe can hold the reader; and a seal ends a file.
 
-A file that appears complete or not at all, whatever happens to the writing process or the power. The content goes to a
-sibling `.NAME.<random>.part`, is forced to the disk, and takes the name in one step; then the directory entry is forced
-out too. Leftovers of a killed process are known by that name and may be deleted.
+What is written goes to a sibling `.NAME.<random>.part`, is forced to the disk, and takes the name in one step; then the
+directory entry is forced out too. So whatever happens to the writing process or the power, the file is complete or not
+there. Leftovers of a killed process are known by that name and may be deleted.
 
-A seal at the end of a file: one line with the SHA-256 of all that stands before it. It is for formats whose own library
-must not meet a damaged file. HDF5 is one: a single flipped bit in a part that it keeps without a checksum (the heap of
-strings and references) can hold it in an endless loop, as was measured with HDF5 2.0. With the seal, plain Python has
-read every byte before the library sees the first. HDF5 ignores what follows its own end, so that h5py and xarray open a
-sealed file as any other; a program that writes into it breaks the seal.
+The seal is one line with the SHA-256 of all that stands before it, for formats whose own library must not meet a
+damaged file. HDF5 is one: a single flipped bit in a part that it keeps without a checksum (the heap of strings and
+references) can hold it in an endless loop, as was measured with HDF5 2.0. With the seal, plain Python has read every
+byte before the library sees the first. HDF5 ignores what follows its own end, so that h5py and xarray open a sealed
+file as any other; a program that writes into it breaks the seal.
 """
 
 from __future__ import annotations

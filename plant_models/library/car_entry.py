@@ -1,8 +1,7 @@
-"""A car type of the library, its axle pattern stated or worked out of pivots and bogie; and a car mix: which types
-come in which shares, and what the wind meets of them.
+"""A car type of the library, its axle pattern stated or worked out of pivots and bogie; and a car mix: which types come
+in which shares, and what the wind meets of them.
 
-A car mix of the library: which types of cars come in which shares, and what the wind meets of them.
-`plant_models.library` does not name it: the mix that it makes knows the library's weight categories.
+`plant_models.library` does not name the mix: what it makes knows the library's weight categories.
 """
 
 from __future__ import annotations

@@ -1,12 +1,9 @@
-"""Plants that differ from the one that a table was tuned for: friction, valves, single values; and faults of the
+"""Plants that differ from the one that a table was tuned for, by friction, valves or single values; and faults of the
 speed sensor, as data: what they do to the random numbers that a pass's readings are made of.
 
-Plants that differ from the one that a table was tuned for: friction, valves, single values. The sizes are assumed, like
-the values they act on; none was measured.
-
-Faults of the speed sensor, as data: what they do to the random numbers that a pass's readings are made of. The closed
-loop knows nothing of faults: a reading is speed + noise·z, and z = NaN is a reading that is missing, to which the
-tables' rule answers HOLD. Random numbers repeat after 256 readings (25.6 s at 0.1 s), and a fault with them.
+The sizes are assumed, like the values they act on; none was measured. The closed loop knows nothing of faults: a
+reading is speed + noise·z, and z = NaN is a reading that is missing, to which the tables' rule answers HOLD. Random
+numbers repeat after 256 readings (25.6 s at 0.1 s), and a fault with them.
 """
 
 from __future__ import annotations

@@ -1,12 +1,11 @@
-"""A study: a question, how long the answer takes, its options (the fields of a frozen dataclass, and how the words
-of a command line become one), the run that answers it, and the tables of its answer.
+"""A study: a question, how long the answer takes, its options, the run that answers it, and the tables of its answer.
 
-Options of a study: the fields of a frozen dataclass, and how the words of a command line become one. A field has a
-default made by `option`, which tells its meaning and what is allowed. Types: int, float, str, bool (a switch, off by
-default), `Path | None`, and tuples of int, float or str, which take one or more words.
+Options are the fields of a frozen dataclass, and the words of a command line become one. A field has a default made by
+`option`, which tells its meaning and what is allowed. Types: int, float, str, bool (a switch, off by default),
+`Path | None`, and tuples of int, float or str, which take one or more words.
 
-A study: a question, how long the answer takes, options, and the run that answers it. What can be listed is light; what
-runs is in a module of its own, which is imported when the study runs or is read. That module calls its `Method` METHOD.
+What can be listed is light; what runs is in a module of its own, which is imported when the study runs or is read. That
+module calls its `Method` METHOD.
 """
 
 from __future__ import annotations

@@ -1,8 +1,5 @@
-"""What every command line makes of a word: a value, or one sentence that tells what is allowed; and what a shell
-is told when a user completes one, for which nothing heavy is imported.
-
-What a shell is told when a user completes a word of the command line; nothing heavy is imported for it. Where nothing
-is told, shells complete files by themselves.
+"""What every command line makes of a word: a value, or one sentence that tells what is allowed; and what a shell is
+told when a user completes one, for which nothing heavy is imported. Where nothing is told, shells complete files.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
-"""Sound passes of log files, and which cut class of a configuration each belongs to: what every command on
-measured passes asks. A released drive is open to the air, or rests at the edge of its dead band as in every other
-stage.
+"""Sound passes of log files, and which cut class of a configuration each belongs to: what every command on measured
+passes asks.
 
-Whether a released drive is open to the air, or rests at the edge of its dead band as in every other stage. The drive of
+A released drive is open to the air, or rests at the edge of its dead band as in every other stage. The drive of
 `plant_models` has one regulator for all stages: coming from above, stage 0 rests at the upper edge of the dead band.
 Many drives leave the exhaust valve open when they are released; then the pressure goes on to that of the air. No number
 of the model makes one of the other, so it is told from the readings of the gauge.

@@ -1,13 +1,10 @@
-"""How likely measured passes are with given numbers of the position: their motion as the filter takes it (what
-grade, resistance and brake do from row to row), and the innovations of the filter.
+"""How likely measured passes are with given numbers of the position: by the innovations of the filter.
 
-The motion of measured passes as the filter takes it: what grade, resistance and brake do from row to row. From
-`plant_models.motion`, exactly averaged over path; the logged path is linear in time between two rows. Where it was set
-anew within a pass, it is the path that was set right (`path_resets`).
-
-How likely measured passes are with given numbers of the position: by the innovations of the filter. Observations of a
-pass: each reading of the speed, each of the gauge, and how much the sensor shows above path by time. Each has an
-innovation r with the variance S, and the logarithm of the likelihood is −½ Σ (log 2πS + r²/S).
+Motion is as the filter takes it: what grade, resistance and brake do from row to row, from `plant_models.motion`,
+exactly averaged over path. The logged path is linear in time between two rows; where it was set anew within a pass, it
+is the path that was set right (`path_resets`). Observations of a pass: each reading of the speed, each of the gauge,
+and how much the sensor shows above path by time. Each has an innovation r with the variance S, and the logarithm of the
+likelihood is −½ Σ (log 2πS + r²/S).
 """
 
 from __future__ import annotations

@@ -1,7 +1,5 @@
-"""From lines to polynomials, and from these to a table.
-
-Fitted and polished lines: what the optimiser promises, checked against the exact evaluation itself.
-From lines to a table: rounding, forbidden stages, prediction of exactly what is exported.
+"""From lines to polynomials, fitted and polished: what the optimiser promises, checked against the exact evaluation
+itself; and from these to a table: rounding, forbidden stages, prediction of exactly what is exported.
 """
 
 from __future__ import annotations

@@ -1,14 +1,13 @@
 """An export in the forms of two makers: external sources in SCL, which the TIA Portal makes blocks of (S7-1200,
-S7-1500), and objects of TwinCAT 3: a `.TcDUT` each structure, a `.TcPOU` each block, those of the self-test apart.
+S7-1500), and objects of TwinCAT 3.
 
-An export as external sources in SCL, which the TIA Portal makes blocks of (S7-1200, S7-1500). What differs from IEC
-61131-3, all of it: names of types and blocks stand in quotes; names of variables of a block begin with # in statements;
-`VERSION`, the attribute of optimised access and `BEGIN` are there; what is said of a declaration stands behind //;
-types are written Int, Real, Bool, Array[0..9] of Int; and VAR CONSTANT takes no array, so that an array of constants is
-a static variable with initial values, which no statement writes.
+What SCL has otherwise than IEC 61131-3, all of it: names of types and blocks stand in quotes; names of variables of a
+block begin with # in statements; `VERSION`, the attribute of optimised access and `BEGIN` are there; what is said of a
+declaration stands behind //; types are written Int, Real, Bool, Array[0..9] of Int; and VAR CONSTANT takes no array, so
+that an array of constants is a static variable with initial values, which no statement writes.
 
-An export as objects of TwinCAT 3: a `.TcDUT` each structure, a `.TcPOU` each block, those of the self-test apart.
-Declarations and statements are those of the `.st` files, each in a CDATA section of its own.
+Of TwinCAT 3 there is a `.TcDUT` each structure, a `.TcPOU` each block, those of the self-test apart. Declarations and
+statements are those of the `.st` files, each in a CDATA section of its own.
 """
 
 from __future__ import annotations

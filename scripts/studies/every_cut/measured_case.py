@@ -1,8 +1,8 @@
-"""One case as a tune does it: its table, the rules tuned for it, and all of them on the same passes; finished ones
-are kept in a file, so that a run that was stopped goes on where it was.
+"""One case as a tune does it: its table, the rules tuned for it, and all of them on the same passes.
 
-Finished cases in a file, so that a run that was stopped goes on where it was. What is kept holds for this very software
-alone. Every case is a line, on the disk as soon as it is known; a line that a process was killed in is passed over.
+Finished cases are kept in a file, so that a run that was stopped goes on where it was. What is kept holds for this very
+software alone. Every case is a line, on the disk as soon as it is known; a line that a process was killed in is passed
+over.
 """
 
 from __future__ import annotations

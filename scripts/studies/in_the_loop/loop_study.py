@@ -1,13 +1,9 @@
-"""The compiled C controller as a process of its own in the closed loop, asked through a pipe at every decision,
-against the same in the simulator.
+"""The compiled C controller as a process of its own in the closed loop, asked through a pipe at every decision, against
+the same in the simulator.
 
-The closed loop with the compiled C controller as a separate process, asked through a pipe at every decision. If the
-table has an estimator, the process observes as well, at every sample. A table that decides at any time is asked at
-every sample, with the pressure of the gauge if it has slopes.
-
-The compiled C controller as a process of its own in the closed loop, against the same in the simulator. Every table
-runs over the same passes twice: with rule and estimator in the simulator, and with each decision, and each estimate if
-the table has an estimator, asked from the process through a pipe.
+Every table runs over the same passes twice: with rule and estimator in the simulator, and with each decision asked from
+the process. If the table has an estimator, the process observes as well, at every sample. A table that decides at any
+time is asked at every sample, with the pressure of the gauge if it has slopes.
 """
 
 from __future__ import annotations

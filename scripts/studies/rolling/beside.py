@@ -1,9 +1,8 @@
-"""The same rolls beside the kernel: in numpy, all cuts at once, as a careful user would write them; and the
-equation of motion of one cut in time, written from docs/explanation/rolling.md axle by axle and solved by scipy.
+"""The same rolls beside the kernel: in numpy, all cuts at once, as a careful user would write them; and the equation of
+motion of one cut in time, written from docs/explanation/rolling.md axle by axle and solved by scipy.
 
-The same rolls in numpy, all cuts at once: what a careful user would write. Written from the equations of
-docs/explanation/rolling.md without a look at the kernel: Heun's rule in the energy, steps of one length, falls by
-interpolation in a table for each type of car.
+Those in numpy are written from the equations of that page without a look at the kernel: Heun's rule in the energy,
+steps of one length, falls by interpolation in a table for each type of car.
 """
 
 from __future__ import annotations

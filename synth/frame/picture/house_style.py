@@ -1,8 +1,7 @@
-"""How all pictures look: colours of Okabe and Ito, sizes, axes; nothing is set globally. Lines that follow an
-order (cars, distances, resistances) go from dark to light, each with a marker. And a figure as the bytes of an SVG
-file: the same figure gives the same bytes.
+"""How all pictures look: colours of Okabe and Ito, sizes, axes; nothing is set globally. Lines that follow an order
+(cars, distances, resistances) go from dark to light, each with a marker.
 
-A figure as the bytes of an SVG file: the same figure gives the same bytes. One form, so that nothing is drawn twice: it
+A figure becomes the bytes of an SVG file, the same figure the same bytes. One form, so that nothing is drawn twice: it
 is sharp at every size, browsers and word processors take it, and the page of a command holds the same drawing. Text
 stays text: it can be found and copied, and takes a tenth of the bytes.
 """

@@ -1,7 +1,5 @@
-"""The simulator of commands at any time, with sound valves and with stuck ones.
-
-The simulator of commands at any time: the rule that it runs, and commands during a change of stage.
-Valves that do not open: without a fault the simulators of sound valves; what stands still; by hand; figures.
+"""The simulator of commands at any time: the rule that it runs, commands during a change of stage, and valves that do
+not open (without a fault the simulators of sound valves; what stands still; by hand; figures).
 """
 
 from __future__ import annotations

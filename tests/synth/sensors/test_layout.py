@@ -1,7 +1,5 @@
-"""Layouts of point sensors, and the nodes of their passages.
-
-Layouts of point sensors: the rule, exhaustive search, and that a plan is never worse than equal sections.
-Nodes of passages on the path of a chain: each its own, next to its place, and none where the cut has left.
+"""Layouts of point sensors: the rule, exhaustive search, and that a plan is never worse than equal sections; and nodes
+of passages on the path of a chain: each its own, next to its place, and none where the cut has left.
 """
 
 from __future__ import annotations

@@ -1,7 +1,5 @@
-"""The design test and its runners.
-
-The design test: its plan against cars that are humped, its worst pairs against all pairs, its fall and brakes.
-Runners without brakes: their rolls against an integration of the law in time, and the picture that shows them.
+"""The design test: its plan against cars that are humped, its worst pairs against all pairs, its fall and brakes; and
+runners without brakes: their rolls against an integration of the law in time, and the picture that shows them.
 """
 
 from __future__ import annotations

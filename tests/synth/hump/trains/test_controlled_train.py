@@ -1,8 +1,6 @@
-"""The hump control over humped trains.
+"""Catch-ups and misroutes of humped trains, as the simulation has them and as the hump control recorded them: a second
+opinion from the same times.
 
-Catch-ups and misroutes of humped trains, as the simulation has them and as the hump control recorded them.
-
-The hump control over humped trains: a second opinion on who is caught up and misrouted, from the same times.
 By hand: `python -m tests.synth.hump.trains.test_controlled_train 300 0.02` compares 300 trains of each hump with
 ticks of 0.02 s.
 """

@@ -1,7 +1,5 @@
-"""From a configuration to the trial, or to sentences.
-
-Mistakes of users in hump trials: each is one sentence with file, key, value and remedy, all of a file at once.
-From a configuration to the trial: models, limits and sources are what the file says.
+"""From a configuration to the trial: models, limits and sources are what the file says; and mistakes of users, each one
+sentence with file, key, value and remedy, all of a file at once.
 """
 
 from __future__ import annotations
