@@ -15,7 +15,7 @@ from tuning_tables.aim import AimTables
 
 
 def load_aim(path: Path | str | None = None, passes: int | None = None, seed: int | None = None) -> ResolvedAim:
-    """Read the configuration of aim tables, as `retarder-synth init --aim` prints one.
+    """Read the configuration of aim tables, as `retarder-synth init aim` writes one.
 
     Parameters
     ----------
@@ -33,6 +33,8 @@ def load_aim(path: Path | str | None = None, passes: int | None = None, seed: in
     ------
     InputError
         A sentence for each fault of the file.
+    PlantError
+        Passes or a seed that are not allowed.
 
     Examples
     --------
@@ -72,7 +74,7 @@ def aim_tables(aim: ResolvedAim) -> AimTables:
     --------
     >>> import synth
     >>> from tuning_tables.aim import aim_exit_speed
-    >>> tables = synth.aim_tables(synth.load_aim(passes=200))
+    >>> tables = synth.aim_tables(synth.load_aim(passes=1000))
     >>> table = tables.select(1, measured=False)
     >>> 1.0 < aim_exit_speed(table, cars=2, free_distance_m=120.0) < 5.0
     True

@@ -20,7 +20,7 @@ def load_trial(source: Path | str | None = None, seed: int | None = None) -> Res
     Parameters
     ----------
     source
-        A configuration (`retarder-synth init --hump` prints one), a hump file, the name of a hump of the library, or
+        A configuration (`retarder-synth init trial` writes one), a hump file, the name of a hump of the library, or
         None for the default trial.
     seed
         Which trains, in place of the seed of the configuration.

@@ -124,6 +124,7 @@ def test_a_problem_of_ones_own_has_a_hash_of_its_own(problem: synth.Problem) -> 
         (lambda t, p: synth.load_trial(seed=-3), "seed is -3; it must not be negative"),
         (lambda t, p: synth.hump_trains(synth.load_trial(), trains=0), "trains is 0; one is needed at least"),
         (lambda t, p: synth.load_aim("nowhere.toml"), "nowhere.toml"),
+        (lambda t, p: synth.load_aim(passes=0), "passes is 0; it must be from 1000 to 200000"),
         (lambda t, p: synth.load_passes("nowhere.csv"), "nowhere.csv"),
         (lambda t, p: synth.fit(synth.solve(p, COARSE), 10), "degree is 10; it must be a whole number from 0 to 9"),
         (lambda t, p: synth.load_passes(), "no log is named; name a file or a folder."),

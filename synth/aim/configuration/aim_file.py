@@ -25,7 +25,7 @@ from plant_models.rolling.roll_track import RollTrack
 from synth.aim.configuration.settings import DEFAULT_TRACK, AimFileSettings
 from synth.aim.configuration.shared_settings import usual_mix
 from synth.frame.settings.numbers import Told, Usual, library_values, numbers_of, told_numbers
-from synth.frame.settings.settings_file import settings_in
+from synth.frame.settings.settings_file import changed, settings_in
 from synth.frame.settings.template import template
 from synth.frame.settings.toml_file import toml_tree
 from synth.retarder.configuration.own_types import with_own_types
@@ -108,9 +108,12 @@ class AimFile:
     place: str
 
     def with_simulation(self, passes: int | None, seed: int | None) -> AimFile:
-        """The same with other passes or another seed, as given on a command line; None keeps the file's."""
+        """The same with other passes or another seed, as given on a command line; None keeps the file's.
+
+        `PlantError` for one that is not allowed.
+        """
         given = {key: value for key, value in (("passes", passes), ("seed", seed)) if value is not None}
-        simulation = self.settings.simulation.model_copy(update=given)
+        simulation = changed(self.settings.simulation, **given)
         return replace(self, settings=self.settings.model_copy(update={"simulation": simulation}))
 
 
