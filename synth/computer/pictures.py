@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 
 from plant_models.errors import PlantError
 from synth.computer.asked import ComputerModel
-from synth.computer.economics.monte_carlo import drawn
+from synth.computer.economics.monte_carlo import QUANTILES, drawn
 from synth.computer.economics.ranges import Constant
 from synth.computer.economics.sensitivity import Tornado
 from synth.computer.reliability.four_states import HOURS_PER_YEAR
@@ -47,7 +47,6 @@ SHARES = np.linspace(0.4, 1.6, 13)
 DRAWS = 400
 THOUSAND = 1000.0
 OUTPUTS = ("net_present_value", "pay_back_rate_per_year")
-QUANTILES = (0.05, 0.5, 0.95)
 MOST_IMPOSSIBLE = 0.05
 """Share of overloaded draws from which on the others no longer tell what to expect."""
 

@@ -18,6 +18,7 @@ from plant_models.frozen_arrays import Floats
 from synth.logs.drift.causes import TIMES, Cause
 from synth.logs.drift.charts import Charts
 from synth.logs.drift.evidence import Evidence, evidence_of
+from synth.logs.estimate import FALL95
 from synth.logs.fitting_passes import FittingPasses
 
 BACK = 30
@@ -34,9 +35,6 @@ Each has its best size and beginning, and the question is asked anew after every
 
 NEAR = 8.0
 """Sizes whose logarithms of likelihood differ by less have a parabola through them."""
-
-FALL95 = 1.9207294103470202
-"""Half the 95 % quantile of χ² with one degree of freedom."""
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from synth.kernels.any_time.sampled_arrays import Entry, Motion, Periods, Sample
 from synth.kernels.sweep.chain_arrays import PathNoise
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.any_time.drive_modes import DriveModes, drive_modes
+from synth.solver.chain.chain import NODE_AT_ENTRANCE_M
 from synth.solver.chain.grid import Grid, make_grid
 from synth.solver.chain.sampling import entry_distribution
 from synth.solver.chain.scenarios import Scenarios, check_scenarios, correlated_noise, persistent_scenarios
@@ -81,9 +82,6 @@ def shifts_and_std(observed: Observed) -> tuple[float, float, float]:
 
 PRESSURE_STEP_KPA = 30.0
 """Largest distance of pressures at which the drive is valued; between them a cubic."""
-
-NODE_AT_ENTRANCE_M = 1e-9
-"""A path node this near to the entrance is there."""
 
 
 @frozen_arrays
